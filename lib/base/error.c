@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "error.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+static void copy(char *to, size_t size, const char *from)
+{
+    snprintf(to, size, "%s", from ? from : "");
+}
+
+tm_status tm_fail(tm_error *error, tm_status status, const char *format, ...)
+{
+    if (error) {
+        memset(error, 0, sizeof *error);
+        error->status = status;
+        va_list arguments;
+        va_start(arguments, format);
+        vsnprintf(error->what, sizeof error->what, format, arguments);
+        va_end(arguments);
+    }
+    return status;
+}
+
+tm_status tm_fail_at(tm_error *error, tm_status status, const char *file, size_t line,
+                     const char *block, const char *format, ...)
+{
+    if (error) {
+        error->status = status;
+        error->line = line;
+        copy(error->file, sizeof error->file, file);
+        copy(error->block, sizeof error->block, block);
+        va_list arguments;
+        va_start(arguments, format);
+        vsnprintf(error->what, sizeof error->what, format, arguments);
+        va_end(arguments);
+    }
+    return status;
+}
+
+tm_status tm_fail_memory(tm_error *error)
+{
+    return tm_fail(error, TM_ERROR_SYSTEM, "out of memory");
+}

@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Errors are values: a function of the library that can fail returns a tm_status and
+ * fills a tm_error with the place and the cause. Only the filters in cmd/ print them. */
+#ifndef TM_BASE_ERROR_H
+#define TM_BASE_ERROR_H
+
+#include <stddef.h>
+
+/* What went wrong, as the exit status of a filter that meets it. */
+typedef enum tm_status {
+    TM_OK = 0,
+    TM_ERROR_INPUT = 3,   /* the input is not what it should be */
+    TM_ERROR_SYSTEM = 4,  /* I/O, memory, a program that is missing */
+    TM_ERROR_INTERNAL = 5 /* a self-check failed */
+} tm_status;
+
+typedef struct tm_error {
+    tm_status status;
+    char file[256]; /* "" where the error is not about a file */
+    size_t line;    /* from 1; 0 where there is none */
+    char block[64]; /* ".ele", "surface.node"; "" where there is none */
+    char what[512]; /* what is wrong (what would be right) */
+} tm_error;
+
+/* Sets *error (which may be NULL) to status and the printf-style message; place fields
+ * are cleared. Returns status, so that a caller can write `return tm_fail(…)`. */
+tm_status tm_fail(tm_error *error, tm_status status, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* The same with a place; file and block may be NULL, line 0. */
+tm_status tm_fail_at(tm_error *error, tm_status status, const char *file, size_t line,
+                     const char *block, const char *format, ...)
+    __attribute__((format(printf, 6, 7)));
+
+/* "out of memory", as TM_ERROR_SYSTEM. */
+tm_status tm_fail_memory(tm_error *error);
+
+#endif

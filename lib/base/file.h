@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Bytes from and to file descriptors, complete and checked. */
+#ifndef TM_BASE_FILE_H
+#define TM_BASE_FILE_H
+
+#include "error.h"
+#include "text.h"
+
+/* Reads at most size bytes, again after an interrupt. Returns how many, 0 at the end;
+ * on failure -1 with errno. */
+ptrdiff_t tm_read_some(int fd, char *bytes, size_t size);
+
+/* Appends all that is left to read to *text. `name` is for the message. */
+tm_status tm_read_all(int fd, const char *name, tm_text *text, tm_error *error);
+
+/* Writes all bytes. TM_ERROR_SYSTEM with errno's message where that fails. */
+tm_status tm_write_all(int fd, const char *bytes, size_t size, tm_error *error);
+
+#endif

@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A JSON value written piece by piece into a tm_text. Commas and quotes are added;
+ * the caller keeps the brackets balanced. A key of NULL is for items of arrays.
+ *
+ *     tm_json json = {&text};
+ *     tm_json_open(&json, NULL, '{');
+ *     tm_json_integer(&json, "tets", 12);
+ *     tm_json_close(&json, '}');
+ */
+#ifndef TM_BASE_JSON_H
+#define TM_BASE_JSON_H
+
+#include "text.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef struct tm_json {
+    tm_text *text;
+    bool comma; /* the next item needs one before it */
+} tm_json;
+
+void tm_json_open(tm_json *json, const char *key, char bracket); /* '{' or '[' */
+void tm_json_close(tm_json *json, char bracket);                 /* '}' or ']' */
+void tm_json_integer(tm_json *json, const char *key, int64_t value);
+void tm_json_double(tm_json *json, const char *key,
+                    double value); /* null if not finite */
+void tm_json_string(tm_json *json, const char *key, const char *value);
+void tm_json_boolean(tm_json *json, const char *key, bool value);
+
+#endif

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Numbers to and from text, without the locale, without a terminating NUL. */
+#ifndef TM_BASE_NUMBER_H
+#define TM_BASE_NUMBER_H
+
+#include <stdint.h>
+
+/* Bytes that the writers below may need at most. */
+enum { TM_DOUBLE_CHARS = 32, TM_INTEGER_CHARS = 24 };
+
+/* Reads the decimal number that begins at text and ends before end:
+ *     [+-] (digits [. [digits]] | . digits) [(e|E) [+-] digits]
+ * No byte at or after end is read. The value is correctly rounded (to nearest, ties to
+ * even) for every input of any length; too large gives infinity, too small 0 with the
+ * sign. "inf", "nan" and hexadecimal are not numbers. Returns the first byte after the
+ * number, or NULL where no number begins at text (*value is then untouched).
+ * Clinger's fast path (PLDI 1990), then Eisel and Lemire (Number parsing at a gigabyte
+ * per second, 2021), then exact comparison of big integers. O(length). */
+const char *tm_read_double(const char *text, const char *end, double *value);
+
+/* Reads [+-] digits in the same manner; NULL also where the value does not fit. */
+const char *tm_read_int64(const char *text, const char *end, int64_t *value);
+
+/* Writes the shortest text that tm_read_double reads back as value, of those the one
+ * closest to it: the plain form (0.0625, 1200) or, where that is shorter, the form
+ * with an exponent (1e-9, 1.5e22). -0 is written "-0"; value must be finite. Returns
+ * the end of what was written, at most TM_DOUBLE_CHARS bytes; no NUL is added.
+ * Giulietti, The Schubfach way to render doubles (2020). O(1). */
+char *tm_write_double(char *text, double value);
+
+/* Writes value in decimal; at most TM_INTEGER_CHARS bytes. */
+char *tm_write_int64(char *text, int64_t value);
+char *tm_write_uint32(char *text, uint32_t value);
+
+#endif

@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parallel.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+
+/* More would only wait for each other. */
+enum { MAX_THREADS = 256 };
+
+typedef struct loop {
+    void (*work)(void *context, size_t chunk);
+    void *context;
+    size_t chunks;
+    atomic_size_t next;
+} loop;
+
+static void *take_chunks(void *argument)
+{
+    loop *l = argument;
+    size_t chunk;
+    while ((chunk = atomic_fetch_add(&l->next, 1)) < l->chunks)
+        l->work(l->context, chunk);
+    return NULL;
+}
+
+void tm_parallel(unsigned threads, size_t chunks,
+                 void (*work)(void *context, size_t chunk), void *context)
+{
+    loop l = {.work = work, .context = context, .chunks = chunks};
+    atomic_init(&l.next, 0);
+    pthread_t helper[MAX_THREADS];
+    size_t helpers = 0;
+    while (helpers < MAX_THREADS && helpers + 1 < threads && helpers + 1 < chunks &&
+           pthread_create(&helper[helpers], NULL, take_chunks, &l) == 0)
+        helpers++;
+    take_chunks(&l);
+    while (helpers > 0)
+        pthread_join(helper[--helpers], NULL);
+}

@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A loop whose steps run in any order, on several threads. For results that do not
+ * depend on the number of threads, cut the work into chunks of a fixed size, let each
+ * step write what is its own, and put the parts together in order afterwards. */
+#ifndef TM_BASE_PARALLEL_H
+#define TM_BASE_PARALLEL_H
+
+#include <stddef.h>
+
+/* Calls work(context, chunk) once for each chunk in 0 … chunks-1 and returns when all
+ * are done. At most `threads` of them, this one included, run at a time; fewer where
+ * the system has no more threads to give. With threads 0 or 1 the chunks come in order,
+ * on this thread. */
+void tm_parallel(unsigned threads, size_t chunks,
+                 void (*work)(void *context, size_t chunk), void *context);
+
+#endif

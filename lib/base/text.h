@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A growing string. Appending never fails at once: a text that ran out of memory has
+ * `failed` set, ignores what follows, and is asked about once at the end. */
+#ifndef TM_BASE_TEXT_H
+#define TM_BASE_TEXT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef struct tm_text {
+    char *byte; /* size bytes, then a NUL; NULL while nothing was appended */
+    size_t size;
+    size_t capacity;
+    bool failed;
+} tm_text;
+
+void tm_text_append(tm_text *text, const char *bytes, size_t size);
+void tm_text_string(tm_text *text, const char *string);
+void tm_text_format(tm_text *text, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+void tm_text_double(tm_text *text, double value); /* shortest form; see number.h */
+void tm_text_free(tm_text *text);
+
+#endif
