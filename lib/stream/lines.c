@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "lines.h"
+
+#include "../base/file.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Fits the second-level cache, so that what was read is parsed there. */
+enum { WINDOW = 1 << 17 };
+
+tm_status tm_lines_open(tm_lines *lines, int fd, const char *name, tm_error *error)
+{
+    *lines = (tm_lines){.fd = fd, .name = name, .capacity = WINDOW, .line = 1};
+    lines->buffer = malloc(WINDOW + TM_LINES_SLACK);
+    if (!lines->buffer)
+        return tm_fail_memory(error);
+    memset(lines->buffer, 0, WINDOW + TM_LINES_SLACK);
+    lines->at = lines->end = lines->filled = lines->buffer;
+    return TM_OK;
+}
+
+void tm_lines_close(tm_lines *lines)
+{
+    free(lines->buffer);
+    lines->buffer = NULL;
+}
+
+/* Doubles the buffer for a line that does not fit; the line begins it. */
+static tm_status widen(tm_lines *lines, tm_error *error)
+{
+    if (lines->capacity >= TM_LINE_MAX)
+        return tm_fail_at(error, TM_ERROR_INPUT, lines->name, lines->line, NULL,
+                          "the line is longer than %zu bytes", TM_LINE_MAX);
+    size_t used = (size_t)(lines->filled - lines->buffer);
+    size_t capacity = lines->capacity * 2;
+    char *moved = realloc(lines->buffer, capacity + TM_LINES_SLACK);
+    if (!moved)
+        return tm_fail_memory(error);
+    memset(moved + lines->capacity, 0, capacity + TM_LINES_SLACK - lines->capacity);
+    lines->buffer = moved;
+    lines->at = lines->end = moved;
+    lines->capacity = capacity;
+    lines->filled = moved + used;
+    return TM_OK;
+}
+
+/* Reads once into the free end of the buffer; sets `end` behind the last line feed. */
+static tm_status read_more(tm_lines *lines, tm_error *error)
+{
+    size_t room = lines->capacity - (size_t)(lines->filled - lines->buffer);
+    ptrdiff_t got = tm_read_some(lines->fd, lines->filled, room);
+    if (got < 0)
+        return tm_fail_at(error, TM_ERROR_SYSTEM, lines->name, 0, NULL, "cannot read: %s",
+                          strerror(errno));
+    if (got == 0) {
+        lines->at_end = true;
+        if (lines->filled > lines->at) {
+            *lines->filled++ = '\n';
+            lines->ended_without_line_feed = true;
+        }
+        lines->end = lines->filled;
+        return TM_OK;
+    }
+    char *last = memrchr(lines->filled, '\n', (size_t)got);
+    lines->filled += got;
+    if (last)
+        lines->end = last + 1;
+    return TM_OK;
+}
+
+tm_status tm_lines_fill(tm_lines *lines, tm_error *error)
+{
+    if (lines->at < lines->end || lines->at_end)
+        return TM_OK;
+    size_t rest = (size_t)(lines->filled - lines->at);
+    memmove(lines->buffer, lines->at, rest);
+    lines->at = lines->end = lines->buffer;
+    lines->filled = lines->buffer + rest;
+    tm_status status = TM_OK;
+    while (status == TM_OK && lines->at == lines->end && !lines->at_end) {
+        if ((size_t)(lines->filled - lines->buffer) == lines->capacity)
+            status = widen(lines, error);
+        if (status == TM_OK)
+            status = read_more(lines, error);
+    }
+    return status;
+}

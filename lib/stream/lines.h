@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A file as whole lines in memory, a window at a time; for lib/stream/ only. */
+#ifndef TM_STREAM_LINES_H
+#define TM_STREAM_LINES_H
+
+#include "../base/error.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* Bytes after `end` that may be read (not used): parsers load 8 bytes at a time. */
+enum { TM_LINES_SLACK = 16 };
+
+/* The window holds whole lines: [at, end), and end[-1] is a line feed. Only the last
+ * line of a file may lack its own; it is given one. */
+typedef struct tm_lines {
+    int fd;
+    const char *name;
+    char *buffer;
+    size_t capacity;
+    const char *at;  /* begin of the next line */
+    const char *end; /* past the last whole line */
+    char *filled;    /* past the last byte that was read */
+    bool at_end;     /* the file has no more */
+    bool ended_without_line_feed;
+    size_t line; /* number of the line at `at`, from 1 */
+} tm_lines;
+
+tm_status tm_lines_open(tm_lines *lines, int fd, const char *name, tm_error *error);
+void tm_lines_close(tm_lines *lines);
+
+/* Makes at < end, reading more if there is none; at == end then means the end of the
+ * file. A line of over TM_LINE_MAX bytes is an error. */
+tm_status tm_lines_fill(tm_lines *lines, tm_error *error);
+
+/* The longest line that is read: a polyhedron of a million facets has room. */
+#define TM_LINE_MAX ((size_t)1 << 24)
+
+#endif

@@ -1,0 +1,390 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The stream's reader: lines into blocks. Rows are parsed by row.c; what refers from
+ * one block to another is checked by references.c when all is read. */
+#include "stream.h"
+
+#include "../base/number.h"
+#include "block.h"
+#include "lines.h"
+#include "row.h"
+#include "sniff.h"
+
+#include <ctype.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* More attributes per row than this are taken for a damaged header. */
+enum { ATTRIBUTES_MAX = 1000 };
+
+static const char magic[] = "termesh 1\n";
+
+typedef struct {
+    tm_lines lines;
+    tm_stream *stream;
+    bool base_known;
+    tm_error *error;
+} reader;
+
+static bool is_blank(char c)
+{
+    return c == ' ' || c == '\t';
+}
+
+/* A line for a message: its first printable bytes. */
+static const char *quote(const char *at, char text[32])
+{
+    size_t size = 0;
+    while (size < 24 && at[size] != '\n' && isprint((unsigned char)at[size])) {
+        text[size] = at[size];
+        size++;
+    }
+    memcpy(text + size, size == 24 ? "…" : "", size == 24 ? sizeof "…" : 1);
+    return text;
+}
+
+#define FAIL(r, block, ...)                                                              \
+    tm_fail_at((r)->error, TM_ERROR_INPUT, (r)->lines.name, (r)->lines.line, block,      \
+               __VA_ARGS__)
+
+static void next_line(reader *r)
+{
+    const char *feed = memchr(r->lines.at, '\n', (size_t)(r->lines.end - r->lines.at));
+    r->lines.at = feed + 1;
+    r->lines.line++;
+}
+
+/* Goes to the next line that is no comment and not blank; at == end where there is
+ * none. Blanks before its first character are skipped. */
+static tm_status next_content(reader *r)
+{
+    for (;;) {
+        tm_status status = tm_lines_fill(&r->lines, r->error);
+        if (status != TM_OK || r->lines.at == r->lines.end)
+            return status;
+        const char *at = r->lines.at;
+        while (is_blank(*at))
+            at++;
+        if (*at != '\n' && *r->lines.at != '#')
+            return TM_OK;
+        next_line(r);
+    }
+}
+
+/* The first line. Only as much is read of a file that is something else as its look
+ * needs. */
+static tm_status read_magic(reader *r)
+{
+    size_t size = sizeof magic - 1;
+    tm_status status = TM_OK;
+    /* A binary file may be one long line: then there is no first line to look at. */
+    tm_error too_long;
+    if (tm_lines_fill(&r->lines, &too_long) != TM_OK) {
+        if (too_long.status != TM_ERROR_INPUT) {
+            *r->error = too_long;
+            return too_long.status;
+        }
+        r->lines.end = r->lines.filled;
+    }
+    size_t there = (size_t)(r->lines.end - r->lines.at);
+    if (there < size || memcmp(r->lines.at, magic, size) != 0) {
+        if (there >= size && memcmp(r->lines.at, "termesh 1\r\n", size + 1) == 0)
+            return FAIL(r, NULL, "the lines end in CR LF (LF alone)");
+        size_t filled = (size_t)(r->lines.filled - r->lines.at);
+        if (r->lines.ended_without_line_feed)
+            filled--;
+        return FAIL(r, NULL,
+                    "no termesh stream (its first line is 'termesh 1'); looks like %s",
+                    tm_looks_like(r->lines.at, filled));
+    }
+    next_line(r);
+    return status;
+}
+
+static tm_status read_history(reader *r)
+{
+    for (;;) {
+        tm_status status = tm_lines_fill(&r->lines, r->error);
+        if (status != TM_OK || r->lines.at == r->lines.end || *r->lines.at != '#')
+            return status;
+        const char *begin = r->lines.at;
+        next_line(r);
+        tm_text_append(&r->stream->history, begin, (size_t)(r->lines.at - begin));
+        if (r->stream->history.failed)
+            return tm_fail_memory(r->error);
+    }
+}
+
+/* Copies the block name that the line holds; false where it holds none. A name is
+ * [part].suffix, of letters, digits, '-' and '_'. */
+static bool block_name(const char *at, char name[TM_BLOCK_NAME])
+{
+    size_t size = 0, dots = 0;
+    for (; size < TM_BLOCK_NAME - 1; size++) {
+        char c = at[size];
+        if (c == '.')
+            dots++;
+        else if (!isalnum((unsigned char)c) && c != '-' && c != '_')
+            break;
+        name[size] = c;
+    }
+    name[size] = '\0';
+    const char *rest = at + size;
+    while (is_blank(*rest))
+        rest++;
+    return dots == 1 && size > 1 && name[size - 1] != '.' && *rest == '\n' &&
+           !isdigit((unsigned char)name[0]);
+}
+
+/* The count and the numbers after it. */
+static tm_status read_header(reader *r, tm_block *block, size_t *rows)
+{
+    const tm_block_shape *shape = tm_block_shape_of(block->kind);
+    tm_status status = next_content(r);
+    if (status != TM_OK)
+        return status;
+    if (r->lines.at == r->lines.end)
+        return FAIL(r, block->name, "truncated: the header is missing");
+    const char *at = r->lines.at;
+    for (size_t i = 0; i <= shape->headers; i++) {
+        int64_t number;
+        while (is_blank(*at))
+            at++;
+        at = tm_read_int64(at, r->lines.end, &number);
+        if (!at || (*at != '\n' && !is_blank(*at)))
+            return FAIL(r, block->name, "the header is not %zu whole numbers",
+                        shape->headers + 1);
+        int is = i == 0 ? 0 : shape->header[i - 1];
+        if (i == 0 && (number < 0 || number >= TM_NONE))
+            return FAIL(r, block->name, "a count of %lld (0…%lld)", (long long)number,
+                        (long long)TM_NONE - 1);
+        if (is == TM_HEADER_ATTRIBUTES && (number < 0 || number > ATTRIBUTES_MAX))
+            return FAIL(r, block->name, "%lld attributes (0…%d)", (long long)number,
+                        ATTRIBUTES_MAX);
+        if (is == TM_HEADER_MARKERS && number != 0 && number != 1)
+            return FAIL(r, block->name, "the header says %lld for markers (0 or 1)",
+                        (long long)number);
+        if (is > 0 && number != is)
+            return FAIL(r, block->name, "the header says %lld (%d)", (long long)number,
+                        is);
+        if (i == 0)
+            *rows = (size_t)number;
+        else if (is == TM_HEADER_ATTRIBUTES)
+            block->attributes = (size_t)number;
+        else if (is == TM_HEADER_MARKERS)
+            block->markers = number == 1;
+    }
+    while (is_blank(*at))
+        at++;
+    if (*at != '\n') {
+        char text[32];
+        return FAIL(r, block->name, "'%s' after the header's %zu numbers",
+                    quote(at, text), shape->headers + 1);
+    }
+    next_line(r);
+    return TM_OK;
+}
+
+/* How many nodes the indices of a block may name: those of its own part, which come
+ * before it. */
+static tm_status find_limit(reader *r, const tm_block *block, size_t *limit)
+{
+    char name[TM_BLOCK_NAME + 8];
+    size_t part = (size_t)(strrchr(block->name, '.') - block->name);
+    memcpy(name, block->name, part);
+    memcpy(name + part, ".node", sizeof ".node");
+    const tm_block *nodes = tm_stream_find(r->stream, name);
+    *limit = nodes ? nodes->count : 0;
+    bool refers = block->kind == TM_ELE || block->kind == TM_FACE ||
+                  block->kind == TM_EDGE || block->kind == TM_MIX ||
+                  block->kind == TM_FACET;
+    if (refers && !nodes)
+        return FAIL(r, block->name, "comes before %s, whose nodes it names", name);
+    return TM_OK;
+}
+
+static tm_status missing_row(reader *r, const tm_block *block, size_t row, size_t rows)
+{
+    char text[32];
+    if (r->lines.at == r->lines.end)
+        return FAIL(r, block->name, "truncated: row %zu of %zu is missing", row + 1,
+                    rows);
+    return FAIL(r, block->name, "row %zu of %zu is missing: '%s' follows", row + 1, rows,
+                quote(r->lines.at, text));
+}
+
+/* Room for one more row; memory grows by half, up to what the header claims. */
+static bool reserve_row(tm_block *block, size_t row, size_t rows, size_t *room)
+{
+    enum { FIRST = 1024 };
+    if (row < *room)
+        return true;
+    size_t wanted = *room + *room / 2 + FIRST;
+    if (wanted > rows)
+        wanted = rows;
+    if (!tm_block_resize(block, wanted))
+        return false;
+    *room = wanted;
+    return true;
+}
+
+/* The number of the first row of the first .node is the stream's index base. */
+static tm_status read_base(reader *r, const tm_block *block)
+{
+    int64_t number;
+    char text[32];
+    const char *at = r->lines.at;
+    while (is_blank(*at))
+        at++;
+    if (block->kind != TM_NODE)
+        return FAIL(r, block->name,
+                    "comes before the nodes, whose first number is the "
+                    "index base of the stream");
+    if (!tm_read_int64(at, r->lines.end, &number) || number < 0 || number > 1)
+        return FAIL(r, block->name, "the first row's number is '%s' (0 or 1)",
+                    quote(at, text));
+    r->stream->base = (unsigned)number;
+    r->base_known = true;
+    return TM_OK;
+}
+
+/* Makes the next row begin at lines.at. */
+static tm_status find_row(reader *r, const tm_block *block, size_t rows)
+{
+    tm_status status = tm_lines_fill(&r->lines, r->error);
+    if (status == TM_OK && r->lines.at < r->lines.end && !isdigit(*r->lines.at))
+        status = next_content(r);
+    if (status == TM_OK && (r->lines.at == r->lines.end || !tm_row_begins(r->lines.at)))
+        status = missing_row(r, block, block->count, rows);
+    return status;
+}
+
+static tm_status read_rows(reader *r, tm_block *block, size_t rows)
+{
+    size_t room = 0;
+    tm_row_context context = {.block = block};
+    tm_status status = find_limit(r, block, &context.limit);
+    if (status == TM_OK && !tm_block_resize(block, 0))
+        status = tm_fail_memory(r->error);
+    if (status == TM_OK && block->start)
+        block->start[0] = 0;
+    while (status == TM_OK && block->count < rows) {
+        status = find_row(r, block, rows);
+        if (status == TM_OK && !r->base_known)
+            status = read_base(r, block);
+        if (status == TM_OK && !reserve_row(block, block->count, rows, &room))
+            status = tm_fail_memory(r->error);
+        if (status != TM_OK)
+            return status;
+        context.base = r->stream->base;
+        const char *after = tm_row_read(&context, r->lines.at, r->lines.end);
+        if (!after)
+            return context.problem.status == TM_ERROR_SYSTEM
+                       ? tm_fail_memory(r->error)
+                       : FAIL(r, block->name, "%s", context.problem.what);
+        r->lines.at = after;
+        r->lines.line++;
+        block->count++;
+    }
+    return status;
+}
+
+/* Gives back the room of a block's arrays that its rows did not need. */
+static void trim(tm_block *block)
+{
+    if (block->start && block->start[block->count] > 0) {
+        size_t items = block->start[block->count];
+        uint32_t *item = realloc(block->item, items * sizeof *item);
+        block->item = item ? item : block->item;
+    }
+}
+
+static tm_status read_unknown(reader *r, tm_block *block)
+{
+    char name[TM_BLOCK_NAME];
+    for (;;) {
+        tm_status status = tm_lines_fill(&r->lines, r->error);
+        if (status != TM_OK || r->lines.at == r->lines.end ||
+            block_name(r->lines.at, name))
+            return status;
+        const char *begin = r->lines.at;
+        next_line(r);
+        tm_text_append(&block->text, begin, (size_t)(r->lines.at - begin));
+        if (block->text.failed)
+            return tm_fail_memory(r->error);
+    }
+}
+
+static tm_status read_block(reader *r, const char *name)
+{
+    if (tm_stream_find(r->stream, name))
+        return FAIL(r, name, "a second block of that name");
+    tm_block *block = tm_stream_add(r->stream, name);
+    if (!block)
+        return tm_fail_memory(r->error);
+    next_line(r);
+    if (block->kind == TM_UNKNOWN)
+        return read_unknown(r, block);
+    size_t rows = 0;
+    tm_status status = read_header(r, block, &rows);
+    if (status == TM_OK)
+        status = read_rows(r, block, rows);
+    if (status == TM_OK)
+        trim(block);
+    return status;
+}
+
+/* After .end only blank lines and comments. */
+static tm_status read_end(reader *r)
+{
+    next_line(r);
+    tm_status status = next_content(r);
+    char text[32];
+    if (status == TM_OK && r->lines.at != r->lines.end)
+        return FAIL(r, ".end", "'%s' follows (nothing may)", quote(r->lines.at, text));
+    return status;
+}
+
+static tm_status read_blocks(reader *r)
+{
+    for (;;) {
+        char name[TM_BLOCK_NAME], text[32];
+        tm_status status = next_content(r);
+        if (status != TM_OK)
+            return status;
+        if (r->lines.at == r->lines.end)
+            return FAIL(r, NULL, "truncated: the stream has no .end");
+        if (!block_name(r->lines.at, name)) {
+            size_t blocks = r->stream->blocks;
+            const tm_block *last = blocks ? &r->stream->block[blocks - 1] : NULL;
+            if (last && tm_row_begins(r->lines.at))
+                return FAIL(r, last->name, "more rows than the %zu that its header says",
+                            last->count);
+            return FAIL(r, NULL, "'%s' is not the name of a block",
+                        quote(r->lines.at, text));
+        }
+        if (strcmp(name, ".end") == 0)
+            return read_end(r);
+        status = read_block(r, name);
+        if (status != TM_OK)
+            return status;
+    }
+}
+
+tm_status tm_stream_read(tm_stream *stream, int fd, const char *name, tm_error *error)
+{
+    tm_error unused;
+    reader r = {.stream = stream, .error = error ? error : &unused};
+    tm_status status = tm_lines_open(&r.lines, fd, name, r.error);
+    if (status == TM_OK)
+        status = read_magic(&r);
+    if (status == TM_OK)
+        status = read_history(&r);
+    if (status == TM_OK)
+        status = read_blocks(&r);
+    if (status == TM_OK)
+        status = tm_stream_check_references(stream, name, r.error);
+    tm_lines_close(&r.lines);
+    if (status != TM_OK)
+        tm_stream_free(stream);
+    return status;
+}

@@ -1,0 +1,259 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One row of a block from text. Most of a mesh is small whole numbers with one blank
+ * between them: those are read eight bytes at a time. */
+#include "row.h"
+
+#include "../base/array.h"
+#include "../base/number.h"
+#include "block.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <string.h>
+
+static bool is_blank(char c)
+{
+    return c == ' ' || c == '\t';
+}
+
+bool tm_row_begins(const char *at)
+{
+    while (is_blank(*at))
+        at++;
+    return isdigit((unsigned char)*at) || *at == '-' || *at == '+';
+}
+
+/* The field at `at`, for a message. */
+static const char *field(const char *at, char text[32])
+{
+    size_t size = 0;
+    while (size < 24 && isgraph((unsigned char)at[size])) {
+        text[size] = at[size];
+        size++;
+    }
+    memcpy(text + size, size == 24 ? "…" : "", size == 24 ? sizeof "…" : 1);
+    return text;
+}
+
+#define FAIL(c, ...) (tm_fail(&(c)->problem, TM_ERROR_INPUT, __VA_ARGS__), (char *)NULL)
+
+/* Says why no number, or not all of the field, could be read. */
+static const char *fail_field(tm_row_context *c, const char *at, const char *what)
+{
+    char text[32];
+    size_t row = c->block->count + c->base;
+    if (*at == '\n')
+        return FAIL(c, "row %zu ends before its %s", row, what);
+    if (*at == '\r')
+        return FAIL(c, "the line ends in CR LF (LF alone; the importers take CR)");
+    if (*at == '#')
+        return FAIL(c, "a comment behind a row's numbers (on a line of its own)");
+    return FAIL(c, "row %zu: '%s' is not a %s", row, field(at, text), what);
+}
+
+#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
+/* Reads one to seven digits that a blank or the line's end follows: the usual case.
+ * Returns what follows them, or NULL for anything else. The first byte that is no digit
+ * is found in a word of eight by its high bit after adding 0x76 to (byte xor '0'). */
+static inline const char *short_number(const char *at, uint64_t *value)
+{
+    uint64_t word;
+    memcpy(&word, at, sizeof word);
+    word ^= 0x3030303030303030u;
+    uint64_t other = ((word + 0x7676767676767676u) | word) & 0x8080808080808080u;
+    unsigned bits = other ? (unsigned)__builtin_ctzll(other) & ~7u : 64;
+    if (bits == 0 || bits == 64 || (unsigned char)at[bits / 8] > ' ')
+        return NULL;
+    word <<= 64 - bits; /* the digits last, zeros before them */
+    word = (word * 10) + (word >> 8);
+    word = ((word & 0x000000FF000000FFu) * 0x000F424000000064u +
+            ((word >> 16) & 0x000000FF000000FFu) * 0x0000271000000001u) >>
+           32;
+    *value = word;
+    return at + bits / 8;
+}
+#else
+static const char *short_number(const char *at, uint64_t *value)
+{
+    (void)at, (void)value;
+    return NULL;
+}
+#endif
+
+/* A whole number of any length, after blanks. */
+static inline const char *whole(tm_row_context *c, const char *at, const char *end,
+                                int64_t *value, const char *what)
+{
+    while (is_blank(*at))
+        at++;
+    uint64_t small;
+    const char *after = short_number(at, &small);
+    if (after) {
+        *value = (int64_t)small;
+        return after;
+    }
+    after = tm_read_int64(at, end, value);
+    if (!after || (*after != '\n' && !is_blank(*after)))
+        return fail_field(c, after && *after <= ' ' ? after : at, what);
+    return after;
+}
+
+static inline const char *index_of(tm_row_context *c, const char *at, const char *end,
+                                   uint32_t *index)
+{
+    int64_t number;
+    at = whole(c, at, end, &number, "node number");
+    if (!at)
+        return NULL;
+    uint64_t zero_based = (uint64_t)number - c->base;
+    if (zero_based >= c->limit) {
+        if (c->limit == 0)
+            return FAIL(c, "node %lld is out of range (there are none)",
+                        (long long)number);
+        return FAIL(c, "node %lld is out of range (%u..%zu)", (long long)number, c->base,
+                    c->limit - 1 + c->base);
+    }
+    *index = (uint32_t)zero_based;
+    return at;
+}
+
+/* An index into another block, checked when that is read; -1 where it may be none. */
+static const char *reference(tm_row_context *c, const char *at, const char *end,
+                             bool may_be_none, uint32_t *index)
+{
+    int64_t number;
+    at = whole(c, at, end, &number, "number");
+    if (!at)
+        return NULL;
+    if (may_be_none && number == -1) {
+        *index = TM_NONE;
+        return at;
+    }
+    number -= c->base;
+    if (number < 0 || number >= TM_NONE)
+        return FAIL(c, "row %zu: %lld is out of range", c->block->count + c->base,
+                    (long long)(number + c->base));
+    *index = (uint32_t)number;
+    return at;
+}
+
+static const char *reals(tm_row_context *c, const char *at, const char *end, double *real,
+                         size_t count)
+{
+    char text[32];
+    for (size_t i = 0; i < count; i++) {
+        while (is_blank(*at))
+            at++;
+        const char *after = tm_read_double(at, end, &real[i]);
+        if (!after || (*after != '\n' && !is_blank(*after)))
+            return fail_field(c, after && *after < ' ' ? after : at, "finite number");
+        if (!isfinite(real[i]))
+            return FAIL(c, "row %zu: '%s' is too large for a double",
+                        c->block->count + c->base, field(at, text));
+        at = after;
+    }
+    return at;
+}
+
+/* The fixed integers of a row. */
+static const char *integers(tm_row_context *c, const char *at, const char *end)
+{
+    tm_block_kind kind = c->block->kind;
+    size_t width = tm_block_shape_of(kind)->integers;
+    uint32_t *to = c->block->integer + c->block->count * width;
+    unsigned base = c->base;
+    for (size_t i = 0; i < width && at; i++) {
+        if (kind == TM_ELE || kind == TM_FACE || kind == TM_EDGE) {
+            at = index_of(c, at, end, &to[i]);
+        } else {
+            bool plain = kind == TM_ROOT || (kind == TM_OCTANT && i < TM_OCTANT_PLAIN);
+            c->base = plain ? 0 : base;
+            at = reference(c, at, end, kind == TM_FACET && i == 1, &to[i]);
+            c->base = base;
+        }
+    }
+    return at;
+}
+
+/* k and k indices. An element of .mix has 4, 5, 6 or 8 nodes, a facet 3, a cell 4. */
+static const char *list(tm_row_context *c, const char *at, const char *end)
+{
+    tm_block *block = c->block;
+    int64_t count;
+    at = whole(c, at, end, &count, "count");
+    if (!at)
+        return NULL;
+    bool is_element = count == 4 || count == 5 || count == 6 || count == 8;
+    if (block->kind == TM_MIX && !is_element)
+        return FAIL(c, "row %zu: an element of %lld nodes (4, 5, 6 or 8)",
+                    block->count + c->base, (long long)count);
+    int64_t least = block->kind == TM_FACET ? 3 : 4;
+    if (count < least || count > end - at)
+        return FAIL(c, "row %zu: a list of %lld (%lld or more, all on the line)",
+                    block->count + c->base, (long long)count, (long long)least);
+    size_t begin = block->start[block->count];
+    uint32_t *item =
+        tm_grow(block->item, &c->item_room, begin + (size_t)count, sizeof *item);
+    if (!item) {
+        tm_fail_memory(&c->problem);
+        return NULL;
+    }
+    block->item = item;
+    for (size_t i = 0; i < (size_t)count && at; i++)
+        at = block->kind == TM_CELL ? reference(c, at, end, false, &item[begin + i])
+                                    : index_of(c, at, end, &item[begin + i]);
+    block->start[block->count + 1] = begin + (size_t)count;
+    return at;
+}
+
+static const char *marker(tm_row_context *c, const char *at, const char *end)
+{
+    int64_t number;
+    at = whole(c, at, end, &number, "marker");
+    if (at && (number < INT32_MIN || number > INT32_MAX))
+        return FAIL(c, "row %zu: the marker %lld does not fit 32 bits",
+                    c->block->count + c->base, (long long)number);
+    if (at)
+        c->block->marker[c->block->count] = (int32_t)number;
+    return at;
+}
+
+static const char *row_number(tm_row_context *c, const char *at, const char *end)
+{
+    int64_t number;
+    size_t right = c->block->count + c->base;
+    at = whole(c, at, end, &number, "number");
+    if (at && (uint64_t)number != right)
+        return FAIL(c, "row %zu is numbered %lld (rows are numbered without a gap)",
+                    right, (long long)number);
+    return at;
+}
+
+const char *tm_row_read(tm_row_context *c, const char *at, const char *end)
+{
+    tm_block *block = c->block;
+    const tm_block_shape *shape = tm_block_shape_of(block->kind);
+    size_t row = block->count;
+    at = row_number(c, at, end);
+    if (at && shape->reals)
+        at = reals(c, at, end, block->real + row * shape->reals, shape->reals);
+    if (at && shape->integers)
+        at = integers(c, at, end);
+    if (at && shape->list)
+        at = list(c, at, end);
+    if (at && block->attributes)
+        at = reals(c, at, end, block->attribute + row * block->attributes,
+                   block->attributes);
+    if (at && block->markers)
+        at = marker(c, at, end);
+    while (at && is_blank(*at))
+        at++;
+    if (at && *at != '\n') {
+        char text[32];
+        if (*at == '#' || *at == '\r')
+            return fail_field(c, at, "");
+        return FAIL(c, "row %zu: '%s' after the last number that its header says",
+                    row + c->base, field(at, text));
+    }
+    return at ? at + 1 : NULL;
+}

@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One row of a block from text; for lib/stream/ only. */
+#ifndef TM_STREAM_ROW_H
+#define TM_STREAM_ROW_H
+
+#include "stream.h"
+
+typedef struct tm_row_context {
+    tm_block *block;  /* row block->count is read; it has room for it */
+    unsigned base;    /* of the stream's indices */
+    size_t limit;     /* nodes that an index may name */
+    size_t item_room; /* of block->item; grows */
+    tm_error problem; /* what is wrong, without the place */
+} tm_row_context;
+
+/* Whether a line may be a row: it begins with a number. Blanks are skipped. */
+bool tm_row_begins(const char *at);
+
+/* Reads the line at `at` as row block->count; the line feed is before end, and
+ * TM_LINES_SLACK bytes after end may be read. Returns the begin of the next line, or
+ * NULL with the cause in context->problem. */
+const char *tm_row_read(tm_row_context *context, const char *at, const char *end);
+
+/* What is between blocks: elements of octants, facets of cells, cells of facets. */
+tm_status tm_stream_check_references(const tm_stream *stream, const char *name,
+                                     tm_error *error);
+
+#endif

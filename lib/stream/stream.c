@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "stream.h"
+
+#include "block.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void tm_stream_init(tm_stream *stream)
+{
+    *stream = (tm_stream){.base = 1};
+}
+
+void tm_stream_free(tm_stream *stream)
+{
+    for (size_t b = 0; b < stream->blocks; b++)
+        tm_block_clear(&stream->block[b]);
+    free(stream->block);
+    tm_text_free(&stream->history);
+    tm_stream_init(stream);
+}
+
+tm_block *tm_stream_find(const tm_stream *stream, const char *name)
+{
+    for (size_t b = 0; b < stream->blocks; b++)
+        if (strcmp(stream->block[b].name, name) == 0)
+            return &stream->block[b];
+    return NULL;
+}
+
+tm_block *tm_stream_add(tm_stream *stream, const char *name)
+{
+    tm_block *moved =
+        realloc(stream->block, (stream->blocks + 1) * sizeof *stream->block);
+    if (!moved)
+        return NULL;
+    stream->block = moved;
+    tm_block *block = &moved[stream->blocks++];
+    *block = (tm_block){.kind = tm_block_kind_of(name)};
+    snprintf(block->name, sizeof block->name, "%s", name);
+    return block;
+}
+
+void tm_stream_remove(tm_stream *stream, tm_block *block)
+{
+    tm_block_clear(block);
+    tm_block *end = stream->block + stream->blocks;
+    memmove(block, block + 1, (size_t)(end - (block + 1)) * sizeof *block);
+    stream->blocks--;
+}
+
+void tm_stream_add_history(tm_stream *stream, const char *line)
+{
+    size_t from = stream->history.size;
+    tm_text_format(&stream->history, "# %s", line);
+    for (size_t i = from; i < stream->history.size; i++)
+        if (stream->history.byte[i] == '\n' || stream->history.byte[i] == '\r')
+            stream->history.byte[i] = ' ';
+    tm_text_string(&stream->history, "\n");
+}

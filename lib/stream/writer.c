@@ -1,0 +1,195 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The stream's writer. Rows are formatted by the chunk, by as many threads as there may
+ * be, and written in order. */
+#include "stream.h"
+
+#include "../base/file.h"
+#include "../base/number.h"
+#include "../base/parallel.h"
+#include "block.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { CHUNK_ROWS = 4096 };
+
+/* One batch of chunks of a block: chunk c of it goes to text[c]. */
+typedef struct {
+    const tm_block *block;
+    uint32_t base;
+    size_t first; /* row with which the batch begins */
+    tm_text *text;
+} batch;
+
+static char *put_reals(char *to, const double *real, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        *to++ = ' ';
+        to = tm_write_double(to, real[i]);
+    }
+    return to;
+}
+
+static char *put_indices(char *to, const uint32_t *index, size_t count, uint32_t base)
+{
+    for (size_t i = 0; i < count; i++) {
+        *to++ = ' ';
+        if (index[i] == TM_NONE) {
+            memcpy(to, "-1", 2);
+            to += 2;
+        } else {
+            to = tm_write_uint32(to, index[i] + base);
+        }
+    }
+    return to;
+}
+
+/* The fixed integers of a row: level x y z of an octant and the level of a root are
+ * counts, all others are indices. */
+static char *put_integers(char *to, const tm_block *block, size_t row, uint32_t base)
+{
+    size_t width = tm_block_integers(block->kind), plain = 0;
+    const uint32_t *integer = block->integer + row * width;
+    if (block->kind == TM_OCTANT)
+        plain = TM_OCTANT_PLAIN;
+    else if (block->kind == TM_ROOT)
+        plain = 1;
+    to = put_indices(to, integer, plain, 0);
+    return put_indices(to, integer + plain, width - plain, base);
+}
+
+static char *put_row(char *to, const tm_block *block, size_t row, uint32_t base)
+{
+    size_t reals = tm_block_reals(block->kind);
+    to = tm_write_int64(to, (int64_t)(row + base));
+    to = put_reals(to, block->real + row * reals, reals);
+    to = put_integers(to, block, row, base);
+    if (block->start) {
+        size_t begin = block->start[row], count = block->start[row + 1] - begin;
+        *to++ = ' ';
+        to = tm_write_int64(to, (int64_t)count);
+        to = put_indices(to, block->item + begin, count, base);
+    }
+    to = put_reals(to, block->attribute + row * block->attributes, block->attributes);
+    if (block->markers) {
+        *to++ = ' ';
+        to = tm_write_int64(to, block->marker[row]);
+    }
+    *to++ = '\n';
+    return to;
+}
+
+/* Most bytes that put_row() needs for the rows from…to. */
+static size_t room(const tm_block *block, size_t from, size_t to)
+{
+    size_t reals = tm_block_reals(block->kind) + block->attributes;
+    size_t integers = tm_block_integers(block->kind) + 3;
+    size_t items = block->start ? block->start[to] - block->start[from] : 0;
+    return (to - from) *
+               (reals * (TM_DOUBLE_CHARS + 1) + integers * (TM_INTEGER_CHARS + 1) + 1) +
+           items * (TM_INTEGER_CHARS + 1);
+}
+
+static void format_chunk(void *context, size_t chunk)
+{
+    const batch *b = context;
+    tm_text *text = &b->text[chunk];
+    size_t from = b->first + chunk * CHUNK_ROWS, to = from + CHUNK_ROWS;
+    if (to > b->block->count)
+        to = b->block->count;
+    size_t needed = room(b->block, from, to);
+    if (text->capacity < needed) {
+        free(text->byte);
+        text->byte = malloc(needed);
+        text->capacity = text->byte ? needed : 0;
+        text->failed = !text->byte;
+    }
+    if (text->failed)
+        return;
+    char *end = text->byte;
+    for (size_t row = from; row < to; row++)
+        end = put_row(end, b->block, row, b->base);
+    text->size = (size_t)(end - text->byte);
+}
+
+static tm_status write_header(int fd, const tm_block *block, tm_error *error)
+{
+    const tm_block_shape *shape = tm_block_shape_of(block->kind);
+    tm_text text = {0};
+    tm_text_format(&text, "%zu", block->count);
+    for (size_t i = 0; i < shape->headers; i++) {
+        if (shape->header[i] == TM_HEADER_ATTRIBUTES)
+            tm_text_format(&text, " %zu", block->attributes);
+        else if (shape->header[i] == TM_HEADER_MARKERS)
+            tm_text_format(&text, " %d", block->markers);
+        else
+            tm_text_format(&text, " %d", shape->header[i]);
+    }
+    tm_text_string(&text, "\n");
+    tm_status status = text.failed ? tm_fail_memory(error)
+                                   : tm_write_all(fd, text.byte, text.size, error);
+    tm_text_free(&text);
+    return status;
+}
+
+static tm_status write_rows(int fd, const tm_block *block, uint32_t base,
+                            unsigned threads, tm_text *text, tm_error *error)
+{
+    batch b = {.block = block, .base = base, .text = text};
+    tm_status status = TM_OK;
+    while (b.first < block->count && status == TM_OK) {
+        size_t left = (block->count - b.first + CHUNK_ROWS - 1) / CHUNK_ROWS;
+        size_t chunks = left < threads ? left : threads;
+        tm_parallel(threads, chunks, format_chunk, &b);
+        for (size_t c = 0; c < chunks && status == TM_OK; c++)
+            status = text[c].failed ? tm_fail_memory(error)
+                                    : tm_write_all(fd, text[c].byte, text[c].size, error);
+        b.first += chunks * CHUNK_ROWS;
+    }
+    return status;
+}
+
+static tm_status write_name(int fd, const tm_block *block, tm_error *error)
+{
+    tm_status status = tm_write_all(fd, block->name, strlen(block->name), error);
+    return status == TM_OK ? tm_write_all(fd, "\n", 1, error) : status;
+}
+
+tm_status tm_block_write(const tm_block *block, unsigned base, int fd, unsigned threads,
+                         tm_error *error)
+{
+    if (block->kind == TM_UNKNOWN)
+        return block->text.size > 0
+                   ? tm_write_all(fd, block->text.byte, block->text.size, error)
+                   : TM_OK;
+    tm_text *text = calloc(threads, sizeof *text);
+    if (!text)
+        return tm_fail_memory(error);
+    tm_status status = write_header(fd, block, error);
+    if (status == TM_OK)
+        status = write_rows(fd, block, base, threads, text, error);
+    for (unsigned t = 0; t < threads; t++)
+        free(text[t].byte);
+    free(text);
+    return status;
+}
+
+tm_status tm_stream_write(const tm_stream *stream, int fd, unsigned threads,
+                          tm_error *error)
+{
+    static const char magic[] = "termesh 1\n", end[] = ".end\n";
+    if (stream->history.failed)
+        return tm_fail_memory(error);
+    tm_status status = tm_write_all(fd, magic, sizeof magic - 1, error);
+    if (status == TM_OK && stream->history.size > 0)
+        status = tm_write_all(fd, stream->history.byte, stream->history.size, error);
+    for (size_t b = 0; b < stream->blocks && status == TM_OK; b++) {
+        const tm_block *block = &stream->block[b];
+        status = write_name(fd, block, error);
+        if (status == TM_OK)
+            status = tm_block_write(block, stream->base, fd, threads, error);
+    }
+    if (status == TM_OK)
+        status = tm_write_all(fd, end, sizeof end - 1, error);
+    return status;
+}
