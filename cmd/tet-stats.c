@@ -1,0 +1,224 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* tet-stats: how good the tetrahedra of a mesh are, or of two meshes side by side. */
+#include "common/filter.h"
+#include "common/gnuplot.h"
+#include "common/tet_plot.h"
+
+#include "../lib/geom/predicates.h"
+#include "../lib/quality/tet_quality.h"
+#include "../lib/quality/tet_statistics.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { OPTION_PLOT = FILTER_OWN, OPTION_LIST };
+
+static const struct option long_options[] = {
+    {"plot", required_argument, NULL, OPTION_PLOT},
+    {"list", no_argument, NULL, OPTION_LIST},
+    {"threshold", required_argument, NULL, 't'},
+    FILTER_OPTIONS};
+
+typedef struct options {
+    double threshold; /* degrees */
+    const char *plot; /* NULL: none */
+    bool list;
+    bool compare;      /* there are two FILEs */
+    const char *after; /* the second; NULL: standard input */
+} options;
+
+/* A stream of which the tetrahedra are used, all right-hand positive or flat. */
+typedef struct mesh {
+    tm_stream stream;
+    const double (*xyz)[3];
+    size_t nodes;
+    uint32_t (*tet)[4];
+    size_t tets;
+} mesh;
+
+static void turn(uint32_t tet[4])
+{
+    const uint32_t third = tet[2];
+    tet[2] = tet[3];
+    tet[3] = third;
+}
+
+/* Turns the tetrahedra that are left-handed; says how many. */
+static size_t orient(mesh *m)
+{
+    size_t turned = 0;
+    for (size_t t = 0; t < m->tets; t++) {
+        const uint32_t *v = m->tet[t];
+        if (tm_orient3d(m->xyz[v[0]], m->xyz[v[1]], m->xyz[v[2]], m->xyz[v[3]]) < 0) {
+            turn(m->tet[t]);
+            turned++;
+        }
+    }
+    return turned;
+}
+
+static void read_mesh(const filter *f, mesh *m)
+{
+    filter_read(f, &m->stream);
+    const tm_block *node = tm_stream_find(&m->stream, ".node");
+    const tm_block *ele = tm_stream_find(&m->stream, ".ele");
+    m->xyz = node ? (const double(*)[3])node->real : NULL;
+    m->nodes = node ? node->count : 0;
+    m->tet = ele ? (uint32_t(*)[4])ele->integer : NULL;
+    m->tets = ele ? ele->count : 0;
+    const size_t turned = orient(m);
+    if (turned > 0)
+        filter_note(f,
+                    "%s: %zu of %zu tetrahedra were left-handed and are counted turned",
+                    filter_input_name(f), turned, m->tets);
+}
+
+static void measure(const filter *f, const mesh *m, const options *o,
+                    tm_tet_statistics *s)
+{
+    tm_error error;
+    if (tm_tet_statistics_measure(s, m->xyz, m->nodes, (const uint32_t(*)[4])m->tet,
+                                  m->tets, o->threshold, f->threads, &error) != TM_OK)
+        filter_fail(f, &error);
+}
+
+/* One line for each tetrahedron: its number in the stream, its smallest and its largest
+ * dihedral angle, its volume quality. */
+static void list(const mesh *m, tm_text *text)
+{
+    for (size_t t = 0; t < m->tets; t++) {
+        const uint32_t *v = m->tet[t];
+        const double *const corner[] = {m->xyz[v[0]], m->xyz[v[1]], m->xyz[v[2]],
+                                        m->xyz[v[3]]};
+        double angle[TM_TET_EDGES];
+        tm_tet_dihedrals(corner[0], corner[1], corner[2], corner[3], angle);
+        double least = angle[0];
+        double largest = angle[0];
+        for (size_t e = 1; e < TM_TET_EDGES; e++) {
+            least = fmin(least, angle[e]);
+            largest = fmax(largest, angle[e]);
+        }
+        tm_text_format(text, "%zu %.6f %.6f %.6f\n", t + m->stream.base, least, largest,
+                       tm_tet_volume_quality(corner[0], corner[1], corner[2], corner[3]));
+    }
+}
+
+static void write_json(filter *f, const tm_tet_statistics *before,
+                       const tm_tet_statistics *s)
+{
+    tm_text text = {0};
+    tm_json json = {.text = &text};
+    tm_json_open(&json, NULL, '{');
+    if (before) {
+        tm_json_open(&json, "before", '{');
+        tm_tet_statistics_json(&json, before);
+        tm_json_close(&json, '}');
+        tm_json_open(&json, "after", '{');
+    }
+    tm_tet_statistics_json(&json, s);
+    if (before)
+        tm_json_close(&json, '}');
+    tm_json_close(&json, '}');
+    tm_text_string(&text, "\n");
+    filter_write_json(f, &text);
+    tm_text_free(&text);
+}
+
+static void write_plot(const filter *f, const options *o, const tm_tet_statistics *before,
+                       const tm_tet_statistics *s)
+{
+    tm_error error;
+    tm_text script = {0};
+    tet_plot_script(&script, before, s);
+    if (gnuplot_plot(&script, o->plot, &error) != TM_OK)
+        filter_fail(f, &error);
+    tm_text_free(&script);
+}
+
+/* What standard output or -o gets; nothing where standard output is for the JSON. */
+static void write_report(filter *f, const options *o, const mesh *m,
+                         const tm_tet_statistics *before, const tm_tet_statistics *s)
+{
+    if (!f->output && f->json && strcmp(f->json, "-") == 0)
+        return;
+    tm_text text = {0};
+    if (o->list)
+        list(m, &text);
+    else
+        tm_tet_statistics_table(&text, before, s);
+    filter_write_text(f, &text);
+    tm_text_free(&text);
+}
+
+static void read_options(filter *f, options *o)
+{
+    const double right_angle = 90;
+    int c;
+    while ((c = filter_option(f)) != -1) {
+        switch (c) {
+        case 't':
+            o->threshold = filter_number(f, "-t", optarg, 0, right_angle);
+            break;
+        case OPTION_PLOT:
+            o->plot = optarg;
+            break;
+        default: /* OPTION_LIST */
+            o->list = true;
+        }
+    }
+    if (f->argc - optind > 2)
+        filter_usage_error(f, "two files at most, but there is also '%s'",
+                           f->argv[optind + 2]);
+    o->compare = f->argc - optind == 2;
+    if (o->compare)
+        o->after = f->argv[--f->argc];
+    filter_operands(f);
+    if (o->after && strcmp(o->after, "-") == 0)
+        o->after = NULL;
+    if (o->compare && !o->after && !f->input)
+        filter_usage_error(f, "only one of the two files can be standard input");
+    if (o->compare && o->list)
+        filter_usage_error(f, "--list takes one file, not two");
+}
+
+int main(int argc, char **argv)
+{
+    filter f = {
+        .name = "tet-stats",
+        .synopsis = "[-t DEG] [--plot FILE.svg] [--list] [FILE [AFTER]]",
+        .purpose =
+            "Says how good the tetrahedra of a mesh are: shares and histograms of\n"
+            "dihedral angles and of volume quality; with AFTER, of both meshes.",
+        .help = "  -t, --threshold DEG an angle below DEG or above 180-DEG is bad (30)\n"
+                "      --plot FILE.svg draw the histograms by gnuplot\n"
+                "      --list          a line per tetrahedron: number, smallest and\n"
+                "                      largest dihedral angle, volume quality\n",
+        .options = long_options,
+        .letters = "t:" FILTER_LETTERS,
+        .json_is_output = true,
+    };
+    options o = {.threshold = 30};
+    mesh first, second;
+    tm_tet_statistics before, after;
+    filter_start(&f, argc, argv);
+    read_options(&f, &o);
+
+    read_mesh(&f, &first);
+    measure(&f, &first, &o, &before);
+    if (o.compare) {
+        filter g = f;
+        g.input = o.after;
+        read_mesh(&g, &second);
+        measure(&g, &second, &o, &after);
+        tm_stream_free(&second.stream);
+    }
+    const tm_tet_statistics *earlier = o.compare ? &before : NULL;
+    const tm_tet_statistics *last = o.compare ? &after : &before;
+    if (o.plot)
+        write_plot(&f, &o, earlier, last);
+    write_report(&f, &o, &first, earlier, last);
+    if (f.json)
+        write_json(&f, earlier, last);
+    tm_stream_free(&first.stream);
+    return filter_finish(&f, 0);
+}

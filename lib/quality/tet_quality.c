@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tet_quality.h"
+
+#include "../geom/vector.h"
+
+#include <math.h>
+#include <stddef.h>
+
+enum { DIMENSIONS = 3, CORNERS = 4 };
+
+static const double half_turn = 180; /* degrees */
+static const double pi = 3.14159265358979323846;
+
+const unsigned char tm_tet_edge_corner[TM_TET_EDGES][2] = {{0, 1}, {0, 2}, {0, 3},
+                                                           {1, 2}, {1, 3}, {2, 3}};
+
+/* Moves corner a to the origin; where products of coordinates could leave the range of
+ * double, scales the largest one into [1/2, 1). False where all corners are one point or
+ * a difference overflows. */
+static bool make_unit(double unit[CORNERS][DIMENSIONS],
+                      const double *const corner[CORNERS])
+{
+    const double small = 1e-20;
+    const double large = 1e20;
+    double largest = 0;
+    for (size_t v = 0; v < CORNERS; v++) {
+        tm_subtract(unit[v], corner[v], corner[0]);
+        for (size_t i = 0; i < DIMENSIONS; i++) {
+            const double size = fabs(unit[v][i]);
+            largest = size > largest ? size : largest;
+        }
+    }
+    if (small < largest && largest < large)
+        return true;
+    if (!(largest > 0 && isfinite(largest)))
+        return false;
+    int exponent;
+    frexp(largest, &exponent);
+    for (size_t v = 0; v < CORNERS; v++) {
+        for (size_t i = 0; i < DIMENSIONS; i++)
+            unit[v][i] = ldexp(unit[v][i], -exponent);
+    }
+    return true;
+}
+
+double tm_tet_sine2_scaled(const double a[3], const double b[3], const double c[3],
+                           const double d[3])
+{
+    const double *const corner[CORNERS] = {a, b, c, d};
+    double unit[CORNERS][DIMENSIONS];
+    if (!make_unit(unit, corner))
+        return 0;
+    bool measured;
+    return tm_tet_sine2_measure(unit[0], unit[1], unit[2], unit[3], &measured);
+}
+
+double tm_sine2_to_degrees(double sine2)
+{
+    return asin(sqrt(fmin(fmax(sine2, 0), 1))) * half_turn / pi;
+}
+
+double tm_bad_sine2(double degrees)
+{
+    const double quarter_turn = 90;
+    const double limit = fmin(fmax(degrees - TM_ANGLE_TOLERANCE, 0), quarter_turn);
+    const double sine = sin(limit * pi / half_turn);
+    return sine * sine;
+}
+
+/* The angle between faces whose normals, both inward or both outward, have that product:
+ * cos α = -n_i·n_j / (|n_i| |n_j|), sin α = D l / (|n_i| |n_j|). */
+static double dihedral(double sine, double normal_product)
+{
+    /* 0 - x, for -x would be -0 at a face without area: an angle of 180°, not 0. */
+    return atan2(sine, 0 - normal_product) * half_turn / pi;
+}
+
+void tm_tet_dihedrals(const double a[3], const double b[3], const double c[3],
+                      const double d[3], double degrees[TM_TET_EDGES])
+{
+    const double *const corner[CORNERS] = {a, b, c, d};
+    double p[CORNERS][DIMENSIONS];
+    if (!make_unit(p, corner)) {
+        for (size_t e = 0; e < TM_TET_EDGES; e++)
+            degrees[e] = 0;
+        return;
+    }
+    double normal[CORNERS][DIMENSIONS]; /* outward if abcd is positive */
+    tm_triangle_normal(normal[0], p[1], p[2], p[3]);
+    tm_triangle_normal(normal[1], p[0], p[3], p[2]);
+    tm_triangle_normal(normal[2], p[0], p[1], p[3]);
+    tm_triangle_normal(normal[3], p[0], p[2], p[1]);
+    const double determinant = fabs(tm_dot(normal[3], p[3]));
+    for (size_t e = 0; e < TM_TET_EDGES; e++) {
+        /* The faces at an edge are those opposite to the corners of the opposite edge. */
+        const unsigned char *end = tm_tet_edge_corner[e];
+        const unsigned char *opposite = tm_tet_edge_corner[TM_TET_EDGES - 1 - e];
+        const double length = sqrt(tm_distance2(p[end[0]], p[end[1]]));
+        degrees[e] = dihedral(determinant * length,
+                              tm_dot(normal[opposite[0]], normal[opposite[1]]));
+    }
+}
+
+double tm_tet_volume_quality(const double a[3], const double b[3], const double c[3],
+                             const double d[3])
+{
+    const double *const corner[CORNERS] = {a, b, c, d};
+    double p[CORNERS][DIMENSIONS];
+    if (!make_unit(p, corner))
+        return 0;
+    double longest2 = 0;
+    for (size_t e = 0; e < TM_TET_EDGES; e++)
+        longest2 = fmax(longest2, tm_distance2(p[tm_tet_edge_corner[e][0]],
+                                               p[tm_tet_edge_corner[e][1]]));
+    const double per_volume = 8.48528137423857029281; /* 6√2 */
+    return per_volume * tm_tet_volume(p[0], p[1], p[2], p[3]) /
+           (longest2 * sqrt(longest2));
+}
