@@ -1,0 +1,236 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Who is whose neighbour, and which faces have to stay. */
+#include "connect.h"
+
+#include "../base/array.h"
+#include "../geom/predicates.h"
+#include "face_order.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define FAIL(block, ...) tm_fail_at(error, TM_ERROR_INPUT, NULL, 0, block, __VA_ARGS__)
+
+static int orientation(const tm_tet_mesh *mesh, size_t t)
+{
+    const uint32_t *n = mesh->tet[t];
+    return tm_orient3d(mesh->xyz[n[0]], mesh->xyz[n[1]], mesh->xyz[n[2]],
+                       mesh->xyz[n[3]]);
+}
+
+static void turn(tm_tet_mesh *mesh, size_t t)
+{
+    uint32_t n = mesh->tet[t][2];
+    mesh->tet[t][2] = mesh->tet[t][3];
+    mesh->tet[t][3] = n;
+}
+
+/* Makes all tetrahedra positive but the flat ones. */
+static tm_status orient(tm_tet_mesh *mesh, unsigned base, tm_error *error)
+{
+    for (size_t t = 0; t < mesh->slots; t++) {
+        const uint32_t *n = mesh->tet[t];
+        if (n[0] == n[1] || n[0] == n[2] || n[0] == n[3] || n[1] == n[2] ||
+            n[1] == n[3] || n[2] == n[3])
+            return FAIL(".ele", "tetrahedron %zu names a node twice", t + base);
+        int sign = orientation(mesh, t);
+        mesh->flat += sign == 0;
+        if (sign < 0) {
+            turn(mesh, t);
+            mesh->turned++;
+        }
+    }
+    return TM_OK;
+}
+
+static bool same_region(const tm_tet_mesh *mesh, uint32_t t, uint32_t u)
+{
+    for (size_t r = 0; r < mesh->regions; r++)
+        if (mesh->region[t * mesh->regions + r] != mesh->region[u * mesh->regions + r])
+            return false;
+    return true;
+}
+
+/* Whether two tetrahedra turn around their common face in the same sense, which those on
+ * its two sides do not. */
+static bool same_sense(const tm_tet_mesh *mesh, uint32_t h, uint32_t g)
+{
+    const uint32_t *p = mesh->tet[h / 4], *q = mesh->tet[g / 4];
+    const uint8_t *i = tm_face_corner[h % 4], *j = tm_face_corner[g % 4];
+    int k = p[i[0]] == q[j[0]] ? 0 : p[i[0]] == q[j[1]] ? 1 : 2;
+    return p[i[1]] == q[j[(k + 1) % 3]];
+}
+
+/* A face entry that has no row in .face. */
+static tm_status add_face(tm_tet_mesh *mesh, uint32_t half, tm_error *error)
+{
+    tm_status status = tm_tet_mesh_reserve(mesh, 0, 0, 1, 0, error);
+    if (status != TM_OK)
+        return status;
+    tm_kept_face *face = &mesh->face[mesh->faces++];
+    *face = (tm_kept_face){.side = {TM_NONE, TM_NONE}};
+    for (int i = 0; i < 3; i++)
+        face->node[i] = mesh->tet[half / 4][tm_face_corner[half % 4][i]];
+    return TM_OK;
+}
+
+/* Connects one face: half[0 … count) are the tetrahedra at it, `listed` its row of .face
+ * or TM_NONE. */
+static tm_status connect_face(tm_tet_mesh *mesh, const uint32_t *half, size_t count,
+                              uint32_t listed, tm_error *error)
+{
+    uint32_t h = half[0], g = count == 2 ? half[1] : TM_NONE;
+    bool stays = g == TM_NONE || !same_region(mesh, h / 4, g / 4) ||
+                 (listed != TM_NONE && mesh->face[listed].marker != 0);
+    if (!stays) {
+        tm_tet_join(mesh, h, g);
+        if (listed != TM_NONE) {
+            mesh->face[listed].listed = false;
+            mesh->dropped_faces++;
+        }
+        return TM_OK;
+    }
+    if (listed == TM_NONE) {
+        listed = (uint32_t)mesh->faces;
+        tm_status status = add_face(mesh, h, error);
+        if (status != TM_OK)
+            return status;
+    }
+    mesh->face[listed].side[0] = h;
+    mesh->face[listed].side[1] = g;
+    mesh->neighbour[h / 4][h % 4] = listed | TM_FACE_BIT;
+    if (g != TM_NONE)
+        mesh->neighbour[g / 4][g % 4] = listed | TM_FACE_BIT;
+    return TM_OK;
+}
+
+/* Takes a run of equal faces apart: tetrahedra and rows of .face. */
+static tm_status connect_run(tm_tet_mesh *mesh, const tm_face_entry *run, size_t size,
+                             unsigned base, tm_error *error)
+{
+    uint32_t half[2], listed = TM_NONE;
+    size_t count = 0;
+    for (size_t i = 0; i < size; i++) {
+        uint32_t h = run[i].half;
+        if (h & TM_FACE_ORDER_ADDED) {
+            h &= ~TM_FACE_ORDER_ADDED;
+            if (listed != TM_NONE)
+                return FAIL(".face", "rows %u and %u are the same triangle",
+                            listed + base, h + base);
+            listed = h;
+        } else if (count == 2) {
+            return FAIL(".ele", "tetrahedra %u, %u and %u have one face in common",
+                        half[0] / 4 + base, half[1] / 4 + base, h / 4 + base);
+        } else {
+            half[count++] = h;
+        }
+    }
+    if (count > 0)
+        return connect_face(mesh, half, count, listed, error);
+    mesh->dangling++;
+    return TM_OK;
+}
+
+static tm_status connect_faces(tm_tet_mesh *mesh, const uint32_t (*listed)[3],
+                               size_t listed_count, unsigned base, tm_error *error)
+{
+    tm_face_order order;
+    tm_status status =
+        tm_face_order_init(&order, (const uint32_t(*)[4])mesh->tet, mesh->slots, listed,
+                           listed_count, mesh->nodes, error);
+    if (status != TM_OK)
+        return status;
+    while (status == TM_OK && tm_face_order_next(&order, &status, error)) {
+        for (size_t i = 0, next; i < order.entries && status == TM_OK; i = next) {
+            for (next = i + 1; next < order.entries; next++)
+                if (order.entry[next].key != order.entry[i].key)
+                    break;
+            status = connect_run(mesh, order.entry + i, next - i, base, error);
+        }
+    }
+    tm_face_order_free(&order);
+    return status;
+}
+
+/* Looks for two tetrahedra on the same side of a face: those overlap. (Flat ones have
+ * no side.) */
+static tm_status check_sides(const tm_tet_mesh *mesh, unsigned base, tm_error *error)
+{
+    for (uint32_t t = 0; t < mesh->slots; t++)
+        for (uint32_t i = 0; i < 4; i++) {
+            uint32_t h = 4 * t + i, g = tm_tet_across(mesh, t, i);
+            if (g != TM_NONE && g < h && same_sense(mesh, h, g) &&
+                orientation(mesh, t) != 0 && orientation(mesh, g / 4) != 0)
+                return FAIL(".ele",
+                            "tetrahedra %u and %u overlap: they are on the same side of "
+                            "their common face",
+                            g / 4 + base, t + base);
+        }
+    return TM_OK;
+}
+
+/* Locks the edges with more than two boundary faces: there the mesh touches itself, and
+ * a star walk sees only a part of the tetrahedra. */
+static tm_status lock_edges(tm_tet_mesh *mesh, tm_error *error)
+{
+    tm_edge_map faces_at = {.with_values = true};
+    tm_status status = TM_OK;
+    for (size_t f = 0; f < mesh->faces; f++) {
+        const tm_kept_face *face = &mesh->face[f];
+        if ((face->side[0] == TM_NONE) == (face->side[1] == TM_NONE))
+            continue;
+        if (!tm_edge_map_reserve(&faces_at, 3) ||
+            !tm_edge_map_reserve(&mesh->locked, 3)) {
+            status = tm_fail_memory(error);
+            break;
+        }
+        for (int i = 0; i < 3; i++) {
+            uint32_t a = face->node[i], b = face->node[(i + 1) % 3], count = 0;
+            tm_edge_map_get(&faces_at, a, b, &count);
+            tm_edge_map_put(&faces_at, a, b, count + 1);
+            if (count == 2)
+                tm_edge_map_put(&mesh->locked, a, b, 0);
+        }
+    }
+    tm_edge_map_free(&faces_at);
+    return status;
+}
+
+/* Forgets the rows of .face that need not stay. */
+static void drop_faces(tm_tet_mesh *mesh, size_t listed_count)
+{
+    size_t kept = 0;
+    for (size_t f = 0; f < mesh->faces; f++) {
+        tm_kept_face *face = &mesh->face[f];
+        if (f < listed_count && !face->listed)
+            continue;
+        for (int s = 0; s < 2; s++)
+            if (face->side[s] != TM_NONE)
+                mesh->neighbour[face->side[s] / 4][face->side[s] % 4] =
+                    (uint32_t)kept | TM_FACE_BIT;
+        mesh->face[kept++] = *face;
+    }
+    mesh->faces = kept;
+}
+
+tm_status tm_tet_mesh_connect(tm_tet_mesh *mesh, unsigned base, tm_error *error)
+{
+    size_t listed_count = mesh->faces;
+    uint32_t(*listed)[3] = tm_new(listed_count, sizeof *listed);
+    if (!listed)
+        return tm_fail_memory(error);
+    for (size_t f = 0; f < listed_count; f++)
+        memcpy(listed[f], mesh->face[f].node, sizeof listed[f]);
+    tm_status status = orient(mesh, base, error);
+    if (status == TM_OK)
+        status =
+            connect_faces(mesh, (const uint32_t(*)[3])listed, listed_count, base, error);
+    free(listed);
+    if (status == TM_OK)
+        status = check_sides(mesh, base, error);
+    if (status == TM_OK && mesh->dropped_faces > 0)
+        drop_faces(mesh, listed_count);
+    if (status == TM_OK)
+        status = lock_edges(mesh, error);
+    return status;
+}

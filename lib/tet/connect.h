@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef TM_TET_CONNECT_H
+#define TM_TET_CONNECT_H
+
+#include "mesh.h"
+
+/* For tm_tet_mesh_take(): from tet, region and the listed faces (all of mesh->face, with
+ * node and marker) finds neighbour, the faces' sides and the faces that are not listed.
+ * Messages give numbers from `base`. Expected O(n). */
+tm_status tm_tet_mesh_connect(tm_tet_mesh *mesh, unsigned base, tm_error *error);
+
+#endif

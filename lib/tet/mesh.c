@@ -1,0 +1,126 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "mesh.h"
+
+#include "../base/array.h"
+
+#include <stdlib.h>
+
+void tm_tet_mesh_free(tm_tet_mesh *mesh)
+{
+    free(mesh->xyz);
+    free(mesh->node_attribute);
+    free(mesh->node_marker);
+    free(mesh->tet);
+    free(mesh->neighbour);
+    free(mesh->region);
+    free(mesh->face);
+    free(mesh->edge);
+    tm_edge_map_free(&mesh->edge_of);
+    tm_edge_map_free(&mesh->locked);
+    *mesh = (tm_tet_mesh){.first_dead = TM_NONE, .edge_of.with_values = true};
+}
+
+/* Grows one array to hold `needed` items; *room is left alone. */
+#define GROW(array, room, needed)                                                        \
+    do {                                                                                 \
+        size_t capacity = (room);                                                        \
+        void *moved = tm_grow(array, &capacity, needed, sizeof *(array));                \
+        if (!moved)                                                                      \
+            return tm_fail_memory(error);                                                \
+        (array) = moved;                                                                 \
+        grown = capacity;                                                                \
+    } while (0)
+
+static tm_status reserve_nodes(tm_tet_mesh *mesh, size_t needed, tm_error *error)
+{
+    size_t grown = 0;
+    if (needed <= mesh->node_room)
+        return TM_OK;
+    if (needed >= TM_NONE)
+        return tm_fail(error, TM_ERROR_SYSTEM, "more than %u nodes", TM_NONE - 1);
+    GROW(mesh->xyz, mesh->node_room, needed);
+    if (mesh->node_marker)
+        GROW(mesh->node_marker, mesh->node_room, needed);
+    if (mesh->node_attributes) {
+        size_t width = mesh->node_attributes;
+        GROW(mesh->node_attribute, mesh->node_room * width, grown * width);
+        grown /= width;
+    }
+    mesh->node_room = grown;
+    return TM_OK;
+}
+
+static tm_status reserve_tets(tm_tet_mesh *mesh, size_t needed, tm_error *error)
+{
+    size_t grown = 0;
+    if (needed <= mesh->slot_room)
+        return TM_OK;
+    if (needed >= TM_TETS_MAX)
+        return tm_fail(error, TM_ERROR_SYSTEM, "more than %zu tetrahedra", TM_TETS_MAX);
+    GROW(mesh->tet, mesh->slot_room, needed);
+    GROW(mesh->neighbour, mesh->slot_room, needed);
+    if (mesh->regions) {
+        size_t width = mesh->regions;
+        GROW(mesh->region, mesh->slot_room * width, grown * width);
+        grown /= width;
+    }
+    mesh->slot_room = grown;
+    return TM_OK;
+}
+
+tm_status tm_tet_mesh_reserve(tm_tet_mesh *mesh, size_t nodes, size_t tets, size_t faces,
+                              size_t edges, tm_error *error)
+{
+    size_t grown;
+    tm_status status = reserve_nodes(mesh, mesh->nodes + nodes, error);
+    if (status == TM_OK)
+        status = reserve_tets(mesh, mesh->slots + tets, error);
+    if (status != TM_OK)
+        return status;
+    if (mesh->faces + faces > mesh->face_room) {
+        if (mesh->faces + faces >= TM_FACE_BIT)
+            return tm_fail(error, TM_ERROR_SYSTEM, "more than %u faces", TM_FACE_BIT - 1);
+        GROW(mesh->face, mesh->face_room, mesh->faces + faces);
+        mesh->face_room = grown;
+    }
+    if (mesh->edges + edges > mesh->edge_room) {
+        GROW(mesh->edge, mesh->edge_room, mesh->edges + edges);
+        mesh->edge_room = grown;
+    }
+    if (edges > 0 && !tm_edge_map_reserve(&mesh->edge_of, edges))
+        return tm_fail_memory(error);
+    return TM_OK;
+}
+
+uint32_t tm_tet_mesh_new_tet(tm_tet_mesh *mesh)
+{
+    uint32_t t = mesh->first_dead;
+    mesh->tets++;
+    if (t == TM_NONE)
+        return (uint32_t)mesh->slots++;
+    mesh->first_dead = mesh->tet[t][1];
+    return t;
+}
+
+void tm_tet_mesh_delete_tet(tm_tet_mesh *mesh, uint32_t t)
+{
+    mesh->tet[t][0] = TM_NONE;
+    mesh->tet[t][1] = mesh->first_dead;
+    mesh->first_dead = t;
+    mesh->tets--;
+}
+
+tm_marked_edge *tm_tet_mesh_edge(const tm_tet_mesh *mesh, uint32_t a, uint32_t b)
+{
+    uint32_t e;
+    return tm_edge_map_get(&mesh->edge_of, a, b, &e) ? &mesh->edge[e] : NULL;
+}
+
+void tm_tet_mesh_forget_edge(tm_tet_mesh *mesh, uint32_t a, uint32_t b)
+{
+    tm_marked_edge *edge = tm_tet_mesh_edge(mesh, a, b);
+    if (!edge)
+        return;
+    edge->gone = true;
+    tm_edge_map_remove(&mesh->edge_of, a, b);
+}

@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A mesh of tetrahedra that knows its neighbours, its boundary and the faces between
+ * its regions; flat arrays over nodes, tetrahedra and faces.
+ *
+ * Corner i of tetrahedron t is node tet[t][i]; its face i is the one opposite corner i.
+ * The *half face* 4t + i is face i seen from t. All tetrahedra are right-hand positive
+ * (tm_orient3d > 0) but the flat ones that the input had. */
+#ifndef TM_TET_MESH_H
+#define TM_TET_MESH_H
+
+#include "../base/error.h"
+#include "../stream/stream.h"
+#include "edge_map.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* A value of neighbour[t][i] with this bit is the number of a tm_kept_face; without it,
+ * the half face on the other side. So a mesh has fewer than 2^29 tetrahedra. */
+#define TM_FACE_BIT ((uint32_t)1 << 31)
+#define TM_TETS_MAX ((size_t)1 << 29)
+
+/* A face that has to stay: on the boundary, between two regions, or inside with a marker
+ * that is not 0. */
+typedef struct tm_kept_face {
+    uint32_t node[3]; /* in the order of .face */
+    uint32_t side[2]; /* half faces; TM_NONE where there is no tetrahedron */
+    int32_t marker;
+    bool listed; /* .face has it: written again */
+} tm_kept_face;
+
+/* An edge of .edge. */
+typedef struct tm_marked_edge {
+    uint32_t node[2];
+    int32_t marker;
+    bool gone; /* removed from the mesh: not written again */
+} tm_marked_edge;
+
+typedef struct tm_tet_mesh {
+    size_t nodes;
+    size_t node_room;
+    double (*xyz)[3];
+    size_t node_attributes;
+    double *node_attribute; /* [nodes][node_attributes] */
+    int32_t *node_marker;   /* [nodes], or NULL */
+
+    size_t slots; /* of tetrahedra, dead ones among them */
+    size_t slot_room;
+    size_t tets;              /* that live */
+    uint32_t (*tet)[4];       /* tet[t][0] == TM_NONE: dead, tet[t][1] the next dead */
+    uint32_t (*neighbour)[4]; /* see TM_FACE_BIT */
+    uint32_t first_dead;
+    size_t regions; /* attributes of a tetrahedron */
+    double *region; /* [slots][regions] */
+
+    size_t faces;
+    size_t face_room;
+    tm_kept_face *face;
+
+    size_t edges;
+    size_t edge_room;
+    tm_marked_edge *edge;
+    bool edge_markers;
+    tm_edge_map edge_of; /* two nodes -> edge[…] */
+    tm_edge_map locked;  /* edges where the mesh is not manifold: never changed */
+
+    size_t turned;        /* tetrahedra that came left-handed and were turned */
+    size_t flat;          /* that came with volume 0 */
+    size_t dropped_faces; /* rows of .face inside, without marker, in one region */
+    size_t dangling;      /* rows of .face that are no face of a tetrahedron */
+} tm_tet_mesh;
+
+static inline bool tm_tet_lives(const tm_tet_mesh *mesh, uint32_t t)
+{
+    return mesh->tet[t][0] != TM_NONE;
+}
+
+/* The half face on the other side of face i of t; TM_NONE on the boundary. */
+static inline uint32_t tm_tet_across(const tm_tet_mesh *mesh, uint32_t t, uint32_t i)
+{
+    uint32_t n = mesh->neighbour[t][i];
+    if (!(n & TM_FACE_BIT))
+        return n;
+    const tm_kept_face *face = &mesh->face[n & ~TM_FACE_BIT];
+    return face->side[face->side[0] == 4 * t + i];
+}
+
+/* The corner of t that is node v; v must be one. */
+static inline uint32_t tm_tet_corner(const tm_tet_mesh *mesh, uint32_t t, uint32_t v)
+{
+    const uint32_t *n = mesh->tet[t];
+    return (uint32_t)(n[1] == v) + 2 * (uint32_t)(n[2] == v) + 3 * (uint32_t)(n[3] == v);
+}
+
+/* Takes .node, .ele, .face and .edge out of the stream (their arrays move, the empty
+ * blocks stay in place) and connects them: tetrahedra are turned to be positive,
+ * neighbours found, faces and edges with markers attached. No .ele is a mesh without
+ * tetrahedra. TM_ERROR_INPUT where the tetrahedra are no mesh: three at a face, two on
+ * the same side of one, a node twice in one, a face or edge listed twice. *mesh need not
+ * be initialised; tm_tet_mesh_free() also after an error. Expected O(n). */
+tm_status tm_tet_mesh_take(tm_tet_mesh *mesh, tm_stream *stream, tm_error *error);
+
+/* Gives the mesh back to the blocks that it was taken from; the mesh is empty then.
+ * Dead slots are filled by the last tetrahedra. */
+tm_status tm_tet_mesh_give(tm_tet_mesh *mesh, tm_stream *stream, tm_error *error);
+
+void tm_tet_mesh_free(tm_tet_mesh *mesh);
+
+/* Verifies every invariant that this header states. TM_ERROR_INTERNAL with the first
+ * that does not hold. O(n log n), for tests and self-checks. */
+tm_status tm_tet_mesh_check(const tm_tet_mesh *mesh, tm_error *error);
+
+/* What operations are made of. Each is O(1) on average; those that may run out of
+ * memory make room first, so that an operation that has begun cannot fail. */
+
+/* Room for so many more nodes, tetrahedra, faces and edges. */
+tm_status tm_tet_mesh_reserve(tm_tet_mesh *mesh, size_t nodes, size_t tets, size_t faces,
+                              size_t edges, tm_error *error);
+
+/* A slot for a tetrahedron; its contents are the caller's to set. */
+uint32_t tm_tet_mesh_new_tet(tm_tet_mesh *mesh);
+void tm_tet_mesh_delete_tet(tm_tet_mesh *mesh, uint32_t t);
+
+/* Makes half faces h and g each other's neighbours, with no face kept between them. */
+static inline void tm_tet_join(tm_tet_mesh *mesh, uint32_t h, uint32_t g)
+{
+    mesh->neighbour[h / 4][h % 4] = g;
+    mesh->neighbour[g / 4][g % 4] = h;
+}
+
+/* Half face h takes the place that `old` had on this side of its face; `across` is what
+ * stood in the neighbour entry of `old`. */
+static inline void tm_tet_replace_half(tm_tet_mesh *mesh, uint32_t h, uint32_t old,
+                                       uint32_t across)
+{
+    mesh->neighbour[h / 4][h % 4] = across;
+    if (across & TM_FACE_BIT) {
+        tm_kept_face *face = &mesh->face[across & ~TM_FACE_BIT];
+        face->side[face->side[0] != old] = h;
+    } else {
+        mesh->neighbour[across / 4][across % 4] = h;
+    }
+}
+
+/* The edge of .edge between two nodes, or NULL. */
+tm_marked_edge *tm_tet_mesh_edge(const tm_tet_mesh *mesh, uint32_t a, uint32_t b);
+
+/* For an edge that is removed from the mesh: .edge forgets it too, if it had it. */
+void tm_tet_mesh_forget_edge(tm_tet_mesh *mesh, uint32_t a, uint32_t b);
+
+#endif
