@@ -5,7 +5,8 @@
 
 #include <stdint.h>
 
-/* Bytes that the writers below may need at most. */
+/* Bytes that the writers below may need at most. They store whole words, so there must be
+ * so much room whatever the number, and what is behind their text in it is lost. */
 enum { TM_DOUBLE_CHARS = 32, TM_INTEGER_CHARS = 24 };
 
 /* Reads the decimal number that begins at text and ends before end:
@@ -21,9 +22,9 @@ const char *tm_read_double(const char *text, const char *end, double *value);
 /* Reads [+-] digits in the same manner; NULL also where the value does not fit. */
 const char *tm_read_int64(const char *text, const char *end, int64_t *value);
 
-/* Writes the shortest text that tm_read_double reads back as value, of those the one
- * closest to it: the plain form (0.0625, 1200) or, where that is shorter, the form
- * with an exponent (1e-9, 1.5e22). -0 is written "-0"; value must be finite. Returns
+/* Writes the fewest digits that tm_read_double reads back as value, of those the ones
+ * closest to it, in the shorter of two forms: plain (0.0625, 1200) or with an exponent
+ * (1e-9, 1.5e22). -0 is written "-0"; value must be finite. Returns
  * the end of what was written, at most TM_DOUBLE_CHARS bytes; no NUL is added.
  * Giulietti, The Schubfach way to render doubles (2020). O(1). */
 char *tm_write_double(char *text, double value);

@@ -152,6 +152,41 @@ static tm_status connect_faces(tm_tet_mesh *mesh, const uint32_t (*listed)[3],
     return status;
 }
 
+/* Turns a connected tetrahedron: its corners 2 and 3 change places. */
+static void turn_connected(tm_tet_mesh *mesh, uint32_t t)
+{
+    uint32_t across[2] = {mesh->neighbour[t][2], mesh->neighbour[t][3]};
+    turn(mesh, t);
+    for (uint32_t i = 0; i < 2; i++) {
+        uint32_t half = 4 * t + 3 - i, old = 4 * t + 2 + i;
+        mesh->neighbour[t][3 - i] = across[i];
+        if (across[i] & TM_FACE_BIT) {
+            tm_kept_face *face = &mesh->face[across[i] & ~TM_FACE_BIT];
+            face->side[face->side[0] != old] = half;
+        } else {
+            mesh->neighbour[across[i] / 4][across[i] % 4] = half;
+        }
+    }
+}
+
+/* Turns flat tetrahedra, which have no sense of their own, to agree with a neighbour
+ * that has: so they can be told apart from folded ones, and be improved away. */
+static void turn_flat(tm_tet_mesh *mesh)
+{
+    for (uint32_t t = 0; t < mesh->slots && mesh->flat > 0; t++) {
+        if (orientation(mesh, t) != 0)
+            continue;
+        for (uint32_t i = 0; i < 4; i++) {
+            uint32_t g = tm_tet_across(mesh, t, i);
+            if (g == TM_NONE || orientation(mesh, g / 4) == 0)
+                continue;
+            if (same_sense(mesh, 4 * t + i, g))
+                turn_connected(mesh, t);
+            break;
+        }
+    }
+}
+
 /* Looks for two tetrahedra on the same side of a face: those overlap. (Flat ones have
  * no side.) */
 static tm_status check_sides(const tm_tet_mesh *mesh, unsigned base, tm_error *error)
@@ -226,8 +261,10 @@ tm_status tm_tet_mesh_connect(tm_tet_mesh *mesh, unsigned base, tm_error *error)
         status =
             connect_faces(mesh, (const uint32_t(*)[3])listed, listed_count, base, error);
     free(listed);
-    if (status == TM_OK)
+    if (status == TM_OK) {
+        turn_flat(mesh);
         status = check_sides(mesh, base, error);
+    }
     if (status == TM_OK && mesh->dropped_faces > 0)
         drop_faces(mesh, listed_count);
     if (status == TM_OK)

@@ -96,34 +96,38 @@ static int32_t marker_on_edge(const tm_tet_mesh *mesh, const tm_star *star)
     return marker;
 }
 
-/* Barycentric weights of p in tetrahedron abcd, not normalised. */
-static void weights_in(const tm_tet_mesh *mesh, const uint32_t n[4], const double p[3],
-                       double weight[4])
+/* Weights of the corners of a tetrahedron, not normalised, that make p; the least one is
+ * returned: it is negative where p is outside. */
+static double weights_of(const tm_tet_mesh *mesh, const uint32_t n[4], const double p[3],
+                         double weight[4])
 {
-    const double *x[4] = {mesh->xyz[n[0]], mesh->xyz[n[1]], mesh->xyz[n[2]],
-                          mesh->xyz[n[3]]};
+    double least = HUGE_VAL;
     for (int i = 0; i < 4; i++) {
-        const double *y[4] = {x[0], x[1], x[2], x[3]};
-        y[i] = p;
-        weight[i] = fmax(tm_tet_volume(y[0], y[1], y[2], y[3]), 0);
+        const double *x[4] = {mesh->xyz[n[0]], mesh->xyz[n[1]], mesh->xyz[n[2]],
+                              mesh->xyz[n[3]]};
+        x[i] = p;
+        weight[i] = tm_tet_volume(x[0], x[1], x[2], x[3]);
+        least = fmin(least, weight[i]);
     }
+    return least;
 }
 
-/* The attributes of the new node, by those of the tetrahedron that p is in. */
+/* The attributes of the new node: on the edge by its ends, else by the tetrahedron of
+ * the star that p is deepest in. */
 static void interpolate(const tm_tet_mesh *mesh, const tm_star *star, const double p[3],
                         bool on_edge, double *to)
 {
     size_t width = mesh->node_attributes;
     uint32_t nodes[4] = {star->a, star->b, star->ring[0], star->ring[1]};
-    double weight[4] = {1, 1, 0, 0};
+    double weight[4] = {1, 1, 0, 0}, deepest = -HUGE_VAL;
     for (size_t i = 0; i < star->size && !on_edge; i++) {
         uint32_t n[4] = {star->a, star->b, star->ring[i], star->ring[i + 1]};
-        double w[4];
-        weights_in(mesh, n, p, w);
+        double w[4], least = weights_of(mesh, n, p, w);
+        if (least <= deepest)
+            continue;
+        deepest = least;
         memcpy(nodes, n, sizeof nodes);
         memcpy(weight, w, sizeof weight);
-        if (w[0] > 0 && w[1] > 0 && w[2] > 0 && w[3] > 0)
-            break;
     }
     double sum = weight[0] + weight[1] + weight[2] + weight[3];
     for (size_t k = 0; k < width; k++) {
