@@ -258,14 +258,14 @@ static tm_status find_row(reader *r, const tm_block *block, size_t rows)
     return status;
 }
 
-static tm_status read_rows(reader *r, tm_block *block, size_t rows)
+static tm_status read_rows(reader *r, tm_block *block, size_t rows, size_t limit)
 {
     size_t room = 0;
-    tm_row_context context = {.block = block};
-    tm_status status = find_limit(r, block, &context.limit);
-    if (status == TM_OK && !tm_block_resize(block, 0))
-        status = tm_fail_memory(r->error);
-    if (status == TM_OK && block->start)
+    tm_row_context context = {.block = block, .limit = limit};
+    tm_status status = TM_OK;
+    if (!tm_block_resize(block, 0))
+        return tm_fail_memory(r->error);
+    if (block->start)
         block->start[0] = 0;
     while (status == TM_OK && block->count < rows) {
         status = find_row(r, block, rows);
@@ -321,13 +321,16 @@ static tm_status read_block(reader *r, const char *name)
     tm_block *block = tm_stream_add(r->stream, name);
     if (!block)
         return tm_fail_memory(r->error);
+    size_t rows = 0, limit = 0;
+    tm_status status = find_limit(r, block, &limit);
+    if (status != TM_OK)
+        return status;
     next_line(r);
     if (block->kind == TM_UNKNOWN)
         return read_unknown(r, block);
-    size_t rows = 0;
-    tm_status status = read_header(r, block, &rows);
+    status = read_header(r, block, &rows);
     if (status == TM_OK)
-        status = read_rows(r, block, rows);
+        status = read_rows(r, block, rows, limit);
     if (status == TM_OK)
         trim(block);
     return status;
