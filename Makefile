@@ -1,9 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# termesh. `make` builds the filters into build/bin and the library; `make check` runs
-# all tests, with SAN=1 under the address and undefined-behaviour sanitizers.
+# termesh. Needs GNU make.
+#
+#   make                 the filters in build/bin, the library build/libtermesh.a
+#   make check           all tests; SAN=1: under the address and undefined-behaviour
+#                        sanitizers, in build/san; TM_SEED repeats the random ones
+#   make fuzz            damaged input for every filter; FUZZ_CASES of it, TM_SEED
+#   make bench           all of tests/bench
+#   make lint            what the compiler does not see; make format mends its part
+#   make install         into $(DESTDIR)$(PREFIX); make uninstall
+#   make clean
+#
+# Everything that is made is in BUILD, which may be any folder: make BUILD=/tmp/termesh
 
 VERSION = 0.1.0
 PREFIX = /usr/local
+BINDIR = $(PREFIX)/bin
+MANDIR = $(PREFIX)/share/man
+LIBDIR = $(PREFIX)/lib
+INCLUDEDIR = $(PREFIX)/include
+
 CC = cc
 CXX = c++
 AR = ar
@@ -12,11 +27,16 @@ CXXFLAGS = -O2 -g
 WARNINGS = -Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes -Werror
 LDLIBS = -lgmp -lm -lpthread
 
-ifdef SAN
-BUILD = build/san
-SANITIZE = -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
-else
+FUZZ_CASES = 3000
 BUILD = build
+
+ifneq ($(filter-out 0,$(SAN)),)
+override BUILD := $(BUILD)/san
+SANITIZE = -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+# No exit status of a filter's own.
+export ASAN_OPTIONS ?= exitcode=99
+export UBSAN_OPTIONS ?= exitcode=99:print_stacktrace=1
+export LSAN_OPTIONS ?= exitcode=99
 endif
 
 # -ffp-contract=off: the same bytes on every machine.
@@ -31,12 +51,17 @@ common_objects := $(patsubst %.c,$(BUILD)/%.o,$(wildcard cmd/common/*.c))
 headers := $(wildcard lib/*/*.h)
 unit_tests := $(patsubst tests/unit/%.c,$(BUILD)/tests/%,$(wildcard tests/unit/test_*.c))
 oracles := $(patsubst tests/oracle/%.cc,$(BUILD)/tests/%,$(wildcard tests/oracle/*.cc))
+fuzzer := $(BUILD)/fuzz/fuzz
+benchers := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/*.c))
 generated := $(BUILD)/generated/powers.h
+pages := $(wildcard man/*.[157])
+sources := $(wildcard lib/*/*.[ch] lib/*/*/*.c cmd/*.c cmd/common/*.[ch] tests/*/*.[ch] \
+	tests/*/*.cc examples/*.c)
 
-.PHONY: all check bench fuzz lint format install clean
+.PHONY: all tests check benchers bench fuzz lint format install uninstall clean
 .SECONDARY:
 
-all: $(bin)
+all: $(bin) $(library)
 
 # Programs of the tree that write tables of the library.
 $(BUILD)/generated/%.h: $(BUILD)/generate/%
@@ -65,12 +90,69 @@ $(unit_tests): $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(library)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lcmocka $(LDLIBS)
 
 # C++ programs that compare with the C++ library.
-$(oracles): $(BUILD)/tests/%: tests/oracle/%.cc $(library)
+$(oracles): $(BUILD)/tests/%: tests/oracle/%.cc tests/unit/random.h $(library)
 	@mkdir -p $(@D)
-	$(CXX) -std=c++17 -Wall -Wextra -Werror $(SANITIZE) $(CXXFLAGS) -o $@ $^ $(LDFLAGS) \
-		$(LDLIBS)
+	$(CXX) -std=c++17 -Wall -Wextra -Werror $(SANITIZE) $(CXXFLAGS) -o $@ $< $(library) \
+		$(LDFLAGS) $(LDLIBS)
 
-check: all $(unit_tests) $(oracles)
+$(fuzzer): $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/fuzz/*.c)) $(library)
+	@mkdir -p $(@D)
+	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) $(LDLIBS)
+
+$(benchers): $(BUILD)/bench/%: $(BUILD)/tests/bench/%.o $(library)
+	@mkdir -p $(@D)
+	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) $(LDLIBS)
+
+# What the tests run.
+tests: all $(unit_tests) $(oracles) $(fuzzer)
+
+check: tests
 	sh tests/run.sh $(BUILD)
+
+# Always under the sanitizers.
+ifdef SANITIZE
+fuzz: all $(fuzzer)
+	$(fuzzer) $(BUILD)/bin $(FUZZ_CASES)
+else
+fuzz:
+	$(MAKE) SAN=1 fuzz
+endif
+
+# What the benchmarks run; each is a script that can be run alone.
+benchers: all $(benchers)
+
+bench: benchers
+	for bench in tests/bench/*.sh; do sh "$$bench" || exit; done
+
+lint: $(generated)
+	sh tests/lint.sh $(BUILD)
+
+format:
+	clang-format -i $(sources)
+
+install: all
+	install -d $(DESTDIR)$(BINDIR) $(DESTDIR)$(LIBDIR)/pkgconfig
+	install -m 755 $(bin) $(DESTDIR)$(BINDIR)
+	install -m 644 $(library) $(DESTDIR)$(LIBDIR)
+	for header in $(headers); do \
+		install -D -m 644 $$header $(DESTDIR)$(INCLUDEDIR)/termesh/$${header#lib/} || exit; \
+	done
+	for page in $(pages); do \
+		install -D -m 644 $$page $(DESTDIR)$(MANDIR)/man$${page##*.}/$${page#man/} || exit; \
+	done
+	sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@INCLUDEDIR@|$(INCLUDEDIR)|; \
+		s|@VERSION@|$(VERSION)|; s|@LDLIBS@|$(LDLIBS)|' termesh.pc.in \
+		>$(DESTDIR)$(LIBDIR)/pkgconfig/termesh.pc
+
+uninstall:
+	rm -f $(filters:%=$(DESTDIR)$(BINDIR)/%) $(DESTDIR)$(LIBDIR)/libtermesh.a \
+		$(DESTDIR)$(LIBDIR)/pkgconfig/termesh.pc
+	rm -rf $(DESTDIR)$(INCLUDEDIR)/termesh
+	for page in $(pages); do \
+		rm -f $(DESTDIR)$(MANDIR)/man$${page##*.}/$${page#man/} || exit; \
+	done
+
+clean:
+	rm -rf $(BUILD)
 
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

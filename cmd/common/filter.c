@@ -16,12 +16,11 @@
 enum { THREADS_MAX = 256 };
 
 static const char shared_help[] =
-    "  -o, --output FILE   write to FILE instead of standard output, whole or not at "
-    "all\n"
+    "  -o, --output FILE   write to FILE instead of standard output, whole or not at all\n"
     "  -j, --threads N     use N threads; the output is the same for every N\n"
     "      --json FILE     write a JSON report to FILE\n"
     "      --no-history    do not add a history line\n"
-    "  -q, --quiet         no notes on standard error\n"
+    "  %s --quiet         no notes on standard error\n"
     "  -v, --verbose       more notes\n"
     "  -h, --help          this text\n"
     "  -V, --version       the version\n";
@@ -44,7 +43,8 @@ _Noreturn static void exit_after_text(const filter *f)
 _Noreturn static void help(const filter *f)
 {
     usage(f, stdout);
-    printf("\n%s\n\n%s%s", f->purpose, f->help, shared_help);
+    printf("\n%s\n\n%s", f->purpose, f->help);
+    printf(shared_help, f->q_is_own ? "   " : "-q,");
     exit_after_text(f);
 }
 

@@ -8,8 +8,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Bytes after `end` that may be read (not used): parsers load 8 bytes at a time. */
-enum { TM_LINES_SLACK = 16 };
+/* Bytes after `end` that may be read (not used): rows are looked at through a window. */
+enum { TM_ROW_WINDOW = 48, TM_LINES_SLACK = 2 * TM_ROW_WINDOW };
 
 /* The window holds whole lines: [at, end), and end[-1] is a line feed. Only the last
  * line of a file may lack its own; it is given one. */

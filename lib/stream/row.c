@@ -4,12 +4,16 @@
 #include "row.h"
 
 #include "../base/array.h"
+#include "../base/digits.h"
 #include "../base/number.h"
 #include "block.h"
 
 #include <ctype.h>
 #include <math.h>
 #include <string.h>
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
 
 static bool is_blank(char c)
 {
@@ -51,34 +55,17 @@ static const char *fail_field(tm_row_context *c, const char *at, const char *wha
     return FAIL(c, "row %zu: '%s' is not a %s", row, field(at, text), what);
 }
 
-#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
 /* Reads one to seven digits that a blank or the line's end follows: the usual case.
- * Returns what follows them, or NULL for anything else. The first byte that is no digit
- * is found in a word of eight by its high bit after adding 0x76 to (byte xor '0'). */
+ * Returns what follows them, or NULL for anything else. */
 static inline const char *short_number(const char *at, uint64_t *value)
 {
-    uint64_t word;
-    memcpy(&word, at, sizeof word);
-    word ^= 0x3030303030303030u;
-    uint64_t other = ((word + 0x7676767676767676u) | word) & 0x8080808080808080u;
-    unsigned bits = other ? (unsigned)__builtin_ctzll(other) & ~7u : 64;
-    if (bits == 0 || bits == 64 || (unsigned char)at[bits / 8] > ' ')
+    uint64_t word = tm_word_load(at);
+    int digits = tm_word_digits(word);
+    if (digits == 0 || digits == TM_WORD_BYTES || (unsigned char)at[digits] > ' ')
         return NULL;
-    word <<= 64 - bits; /* the digits last, zeros before them */
-    word = (word * 10) + (word >> 8);
-    word = ((word & 0x000000FF000000FFu) * 0x000F424000000064u +
-            ((word >> 16) & 0x000000FF000000FFu) * 0x0000271000000001u) >>
-           32;
-    *value = word;
-    return at + bits / 8;
+    *value = tm_word_value(word, digits);
+    return at + digits;
 }
-#else
-static const char *short_number(const char *at, uint64_t *value)
-{
-    (void)at, (void)value;
-    return NULL;
-}
-#endif
 
 /* A whole number of any length, after blanks. */
 static inline const char *whole(tm_row_context *c, const char *at, const char *end,
@@ -155,23 +142,31 @@ static const char *reals(tm_row_context *c, const char *at, const char *end, dou
     return at;
 }
 
-/* The fixed integers of a row. */
-static const char *integers(tm_row_context *c, const char *at, const char *end)
+/* The fixed integers of a row of .octant, .root and .facet. */
+static const char *mixed_integers(tm_row_context *c, const char *at, const char *end,
+                                  uint32_t *to, size_t width)
 {
     tm_block_kind kind = c->block->kind;
-    size_t width = tm_block_shape_of(kind)->integers;
-    uint32_t *to = c->block->integer + c->block->count * width;
     unsigned base = c->base;
     for (size_t i = 0; i < width && at; i++) {
-        if (kind == TM_ELE || kind == TM_FACE || kind == TM_EDGE) {
-            at = index_of(c, at, end, &to[i]);
-        } else {
-            bool plain = kind == TM_ROOT || (kind == TM_OCTANT && i < TM_OCTANT_PLAIN);
-            c->base = plain ? 0 : base;
-            at = reference(c, at, end, kind == TM_FACET && i == 1, &to[i]);
-            c->base = base;
-        }
+        bool plain = kind == TM_ROOT || (kind == TM_OCTANT && i < TM_OCTANT_PLAIN);
+        c->base = plain ? 0 : base;
+        at = reference(c, at, end, kind == TM_FACET && i == 1, &to[i]);
+        c->base = base;
     }
+    return at;
+}
+
+/* The fixed integers of a row: of most kinds they are nodes. */
+static inline const char *integers(tm_row_context *c, const char *at, const char *end,
+                                   size_t width)
+{
+    tm_block_kind kind = c->block->kind;
+    uint32_t *to = c->block->integer + c->block->count * width;
+    if (kind != TM_ELE && kind != TM_FACE && kind != TM_EDGE)
+        return mixed_integers(c, at, end, to, width);
+    for (size_t i = 0; i < width && at; i++)
+        at = index_of(c, at, end, &to[i]);
     return at;
 }
 
@@ -229,16 +224,95 @@ static const char *row_number(tm_row_context *c, const char *at, const char *end
     return at;
 }
 
-const char *tm_row_read(tm_row_context *c, const char *at, const char *end)
+/* One bit for each of the TM_ROW_WINDOW bytes at `at` that is no digit, the first lowest;
+ * all higher bits are set. Subtracting '0' as a number without sign leaves digits at
+ * most 9. */
+static inline uint64_t gaps_of(const char *at)
+{
+    uint64_t digits = 0;
+#ifdef __SSE2__
+    const __m128i zero = _mm_set1_epi8('0'), nine = _mm_set1_epi8(9);
+#pragma GCC unroll 3
+    for (int v = 0; v < TM_ROW_WINDOW; v += 16) {
+        __m128i byte = _mm_loadu_si128((const __m128i *)(const void *)(at + v));
+        __m128i value = _mm_sub_epi8(byte, zero);
+        __m128i is_digit = _mm_cmpeq_epi8(_mm_min_epu8(value, nine), value);
+        digits |= (uint64_t)(unsigned)_mm_movemask_epi8(is_digit) << v;
+    }
+#else
+    for (int i = 0; i < TM_ROW_WINDOW; i++)
+        digits |= (uint64_t)((unsigned char)(at[i] - '0') <= 9) << i;
+#endif
+    return ~digits;
+}
+
+/* The place in a row that is being read as plain numbers; `wrong` is not 0 as soon as
+ * something was not as it is written. */
+typedef struct {
+    const char *begin;
+    const char *window;
+    uint64_t gaps;
+    uint64_t wrong;
+} plain_row;
+
+/* The next number, of one to eight digits, that `separator` follows. */
+static inline uint64_t plain_number(plain_row *r, char separator)
+{
+    const char *past = r->window + __builtin_ctzll(r->gaps);
+    unsigned others = TM_WORD_BYTES - (unsigned)(past - r->begin);
+    uint64_t word = tm_word_load(r->begin) - tm_word_of('0');
+    r->gaps &= r->gaps - 1;
+    r->wrong |= (others & ~7u) | (unsigned char)(*past ^ separator);
+    r->begin = past + 1;
+    return tm_word_join(word << (8 * others & 63));
+}
+
+/* Reads a row of .ele, .face or .edge without attributes in the form in which it is
+ * written: short numbers, one blank before each. First all their ends are found, so that
+ * the numbers need not wait for each other. NULL where the row is otherwise: then it is
+ * read with care. */
+static inline const char *read_plain_row(tm_row_context *c, const char *at)
 {
     tm_block *block = c->block;
-    const tm_block_shape *shape = tm_block_shape_of(block->kind);
+    size_t width = c->shape->integers, row = block->count;
+    uint32_t *to = block->integer + row * width;
+    plain_row r = {at, at, gaps_of(at), 0};
+    uint64_t number = plain_number(&r, ' ');
+    r.wrong |= number ^ (row + c->base);
+    for (size_t i = 0; i < width; i++) {
+        bool last = i + 1 == width && !block->markers;
+        uint64_t node = plain_number(&r, last ? '\n' : ' ') - c->base;
+        r.wrong |= node >= c->limit;
+        to[i] = (uint32_t)node;
+    }
+    if (block->markers)
+        block->marker[row] = (int32_t)plain_number(&r, '\n');
+    return r.wrong ? NULL : r.begin;
+}
+
+static bool is_plain(const tm_row_context *c)
+{
+    tm_block_kind kind = c->block->kind;
+    return (kind == TM_ELE || kind == TM_FACE || kind == TM_EDGE) &&
+           c->block->attributes == 0;
+}
+
+const char *tm_row_read(tm_row_context *c, const char *at, const char *end)
+{
+    if (is_plain(c)) {
+        const char *after = read_plain_row(c, at);
+        if (after)
+            return after;
+    }
+
+    tm_block *block = c->block;
+    const tm_block_shape *shape = c->shape;
     size_t row = block->count;
     at = row_number(c, at, end);
     if (at && shape->reals)
         at = reals(c, at, end, block->real + row * shape->reals, shape->reals);
     if (at && shape->integers)
-        at = integers(c, at, end);
+        at = integers(c, at, end, shape->integers);
     if (at && shape->list)
         at = list(c, at, end);
     if (at && block->attributes)
@@ -246,6 +320,8 @@ const char *tm_row_read(tm_row_context *c, const char *at, const char *end)
                    block->attributes);
     if (at && block->markers)
         at = marker(c, at, end);
+    if (at && *at == '\n')
+        return at + 1;
     while (at && is_blank(*at))
         at++;
     if (at && *at != '\n') {

@@ -3,10 +3,12 @@
 #ifndef TM_STREAM_ROW_H
 #define TM_STREAM_ROW_H
 
-#include "stream.h"
+#include "block.h"
+#include "lines.h"
 
 typedef struct tm_row_context {
-    tm_block *block;  /* row block->count is read; it has room for it */
+    tm_block *block; /* row block->count is read; it has room for it */
+    const tm_block_shape *shape;
     unsigned base;    /* of the stream's indices */
     size_t limit;     /* nodes that an index may name */
     size_t item_room; /* of block->item; grows */
