@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Several files as the output of a filter: each is written beside its name first, and
+ * they get their names when all are whole. Before that an error, or SIGINT, SIGTERM or
+ * SIGHUP, leaves none. */
+#ifndef CMD_COMMON_OUTPUT_FILES_H
+#define CMD_COMMON_OUTPUT_FILES_H
+
+#include "../../lib/base/error.h"
+
+#include <stddef.h>
+
+typedef struct output_file {
+    char *name;
+    char *temporary;
+    int fd;
+} output_file;
+
+/* Begins as {0}. */
+typedef struct output_files {
+    size_t count;
+    output_file *file;
+} output_files;
+
+/* Begins a file; *fd is for writing. */
+tm_status output_files_open(output_files *files, const char *name, int *fd,
+                            tm_error *error);
+
+/* Closes all and gives them their names. */
+tm_status output_files_finish(output_files *files, tm_error *error);
+
+/* Removes all that was begun. */
+void output_files_abandon(output_files *files);
+
+#endif

@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* tetgen-export: a stream as TetGen's files. */
+#include "common/filter.h"
+#include "common/output_files.h"
+
+#include "../lib/base/json.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const struct option options[] = {FILTER_OPTIONS};
+
+static filter f = {
+    .name = "tetgen-export",
+    .synopsis = "[options] BASE [FILE]",
+    .purpose = "Write the blocks of a stream as the TetGen files BASE.node, BASE.ele, …",
+    .help = "",
+    .options = options,
+    .letters = FILTER_LETTERS,
+};
+
+static const char *read_operands(void)
+{
+    int c = filter_option(&f);
+    if (c != -1)
+        filter_usage_error(&f, "option -%c is unknown", c);
+    if (f.output)
+        filter_usage_error(&f, "-o: the output is the files BASE.node, BASE.ele, …");
+    if (optind >= f.argc)
+        filter_usage_error(&f, "BASE is missing, the name of the files without suffix");
+    const char *base = f.argv[optind++];
+    filter_operands(&f);
+    return base;
+}
+
+static bool is_tetgen_block(const tm_block *block)
+{
+    return block->kind == TM_NODE || block->kind == TM_ELE || block->kind == TM_FACE ||
+           block->kind == TM_EDGE;
+}
+
+/* BASE.ele, or BASE.surface.face of a part. */
+static tm_status write_block(const tm_stream *stream, const tm_block *block,
+                             const char *base, output_files *files, tm_error *error)
+{
+    tm_text name = {0};
+    int fd;
+    tm_text_format(&name, "%s%s%s", base, block->name[0] == '.' ? "" : ".", block->name);
+    if (name.failed)
+        return tm_fail_memory(error);
+    tm_status status = output_files_open(files, name.byte, &fd, error);
+    if (status == TM_OK) {
+        status = tm_block_write(block, stream->base, fd, f.threads, error);
+        if (status != TM_OK)
+            snprintf(error->file, sizeof error->file, "%s", name.byte);
+    }
+    tm_text_free(&name);
+    return status;
+}
+
+static void write_files(const tm_stream *stream, const char *base, tm_json *json)
+{
+    output_files files = {0};
+    tm_error error;
+    tm_status status = TM_OK;
+    for (size_t b = 0; b < stream->blocks && status == TM_OK; b++)
+        if (is_tetgen_block(&stream->block[b]))
+            status = write_block(stream, &stream->block[b], base, &files, &error);
+        else
+            filter_note(&f, "%s is not written: TetGen has no such file",
+                        stream->block[b].name);
+    if (status == TM_OK && files.count == 0)
+        status = tm_fail_at(&error, TM_ERROR_INPUT, filter_input_name(&f), 0, NULL,
+                            "has no block that TetGen knows (.node, .ele, .face, .edge)");
+    for (size_t i = 0; i < files.count && status == TM_OK; i++)
+        tm_json_string(json, NULL, files.file[i].name);
+    if (status == TM_OK)
+        status = output_files_finish(&files, &error);
+    else
+        output_files_abandon(&files);
+    if (status != TM_OK)
+        filter_fail(&f, &error);
+}
+
+int main(int argc, char **argv)
+{
+    filter_start(&f, argc, argv);
+    const char *base = read_operands();
+    tm_stream stream;
+    filter_read(&f, &stream);
+    tm_text report = {0};
+    tm_json json = {.text = &report};
+    tm_json_open(&json, NULL, '{');
+    tm_json_open(&json, "files", '[');
+    write_files(&stream, base, &json);
+    tm_json_close(&json, ']');
+    tm_json_close(&json, '}');
+    tm_text_string(&report, "\n");
+    if (f.json)
+        filter_write_json(&f, &report);
+    tm_text_free(&report);
+    tm_stream_free(&stream);
+    return filter_finish(&f, EXIT_SUCCESS);
+}

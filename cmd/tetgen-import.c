@@ -1,0 +1,270 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* tetgen-import: TetGen's files as a stream. */
+#include "common/filter.h"
+
+#include "../lib/base/file.h"
+#include "../lib/base/json.h"
+#include "../lib/format/tetgen_orient.h"
+#include "../lib/format/tetgen_rows.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const struct option options[] = {FILTER_OPTIONS};
+
+static filter f = {
+    .name = "tetgen-import",
+    .synopsis = "[options] BASE | FILE…",
+    .purpose =
+        "Read BASE.node, BASE.ele, BASE.face and BASE.edge, or the FILEs, of TetGen.",
+    .help = "",
+    .options = options,
+    .letters = FILTER_LETTERS,
+};
+
+/* In the order in which a stream has them: the nodes first, others refer to them. */
+static const char *const suffixes[] = {".node", ".ele", ".face", ".edge"};
+enum { SUFFIXES = sizeof suffixes / sizeof suffixes[0] };
+
+/* The files that were named. */
+typedef struct {
+    char **file;
+    size_t count;
+    char *stem; /* the first one's, without its suffix */
+} operands;
+
+static tm_error error;
+
+static void succeed(tm_status status)
+{
+    if (status != TM_OK)
+        filter_fail(&f, &error);
+}
+
+/* Which suffix the name ends in, or SUFFIXES. */
+static size_t suffix_of(const char *name)
+{
+    size_t s = 0, size = strlen(name);
+    while (s < SUFFIXES && (size <= strlen(suffixes[s]) ||
+                            strcmp(name + size - strlen(suffixes[s]), suffixes[s]) != 0))
+        s++;
+    return s;
+}
+
+static char *joined(const char *first, size_t size, const char *second)
+{
+    tm_text text = {0};
+    tm_text_append(&text, first, size);
+    tm_text_string(&text, second);
+    if (text.failed)
+        succeed(tm_fail_memory(&error));
+    return text.byte;
+}
+
+/* BASE stands for those of the four files that are there. */
+static void expand_base(const char *base, operands *named)
+{
+    named->stem = joined(base, strlen(base), "");
+    for (size_t s = 0; s < SUFFIXES; s++) {
+        char *name = joined(base, strlen(base), suffixes[s]);
+        if (s == 0 || access(name, F_OK) == 0)
+            named->file[named->count++] = name;
+        else
+            free(name);
+    }
+}
+
+static void read_operands(operands *named)
+{
+    int c = filter_option(&f);
+    if (c != -1)
+        filter_usage_error(&f, "option -%c is unknown", c);
+    int given = f.argc - optind;
+    if (given == 0)
+        filter_usage_error(&f, "BASE or FILE is missing");
+    f.input = f.argv[optind];
+    named->file = calloc((size_t)given + SUFFIXES, sizeof *named->file);
+    if (!named->file)
+        succeed(tm_fail_memory(&error));
+    if (given == 1 && suffix_of(f.input) == SUFFIXES) {
+        expand_base(f.input, named);
+        return;
+    }
+    for (int i = optind; i < f.argc; i++) {
+        if (suffix_of(f.argv[i]) == SUFFIXES)
+            filter_usage_error(&f,
+                               "'%s': the name of a FILE ends in .node, .ele, .face or "
+                               ".edge",
+                               f.argv[i]);
+        named->file[named->count++] = joined(f.argv[i], strlen(f.argv[i]), "");
+    }
+    size_t size = strlen(f.input) - strlen(suffixes[suffix_of(f.input)]);
+    named->stem = joined(f.input, size, "");
+}
+
+/* Letters, digits, '-' and '_', of which no digit is the first, then a suffix. */
+static bool is_name_of_part(const char *name)
+{
+    size_t part = strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                               "0123456789-_");
+    return part > 0 && (*name < '0' || *name > '9') && suffix_of(name) < SUFFIXES &&
+           strcmp(name + part, suffixes[suffix_of(name)]) == 0 &&
+           strlen(name) < TM_BLOCK_NAME;
+}
+
+/* "surface.node" of STEM.surface.node; the suffix alone for the main mesh, and for files
+ * of another stem. */
+static const char *block_name(const operands *named, const char *file)
+{
+    size_t size = strlen(named->stem);
+    const char *rest = file + size;
+    if (strncmp(file, named->stem, size) == 0 && *rest == '.' &&
+        is_name_of_part(rest + 1))
+        return rest + 1;
+    return suffixes[suffix_of(file)];
+}
+
+static void read_block(const char *file, tm_block *block, const tm_block *node,
+                       unsigned *base)
+{
+    tm_text bytes = {0};
+    int fd = open(file, O_RDONLY | O_CLOEXEC);
+    if (fd < 0)
+        succeed(tm_fail_at(&error, TM_ERROR_SYSTEM, file, 0, NULL, "cannot open: %s",
+                           strerror(errno)));
+    succeed(tm_read_all(fd, file, &bytes, &error));
+    close(fd);
+    tm_scan scan;
+    tm_tetgen_begin(&scan, bytes.byte, bytes.size, file);
+    succeed(tm_tetgen_read_rows(block, &scan, base, node ? node->count : 0, &error));
+    if (tm_scan_seek(&scan))
+        succeed(tm_scan_no_more(&scan, "the last row", &error));
+    tm_text_free(&bytes);
+}
+
+/* Reads a file into a new block; the file is then done with. */
+static void read_file(tm_stream *stream, char **file, const char *name, const char *node,
+                      unsigned *base)
+{
+    if (tm_stream_find(stream, name))
+        succeed(tm_fail_at(&error, TM_ERROR_INPUT, *file, 0, name,
+                           "there is a second file for this block (one is right)"));
+    tm_block *block = tm_stream_add(stream, name);
+    if (!block)
+        succeed(tm_fail_memory(&error));
+    read_block(*file, block, node ? tm_stream_find(stream, node) : NULL, base);
+    free(*file);
+    *file = NULL;
+}
+
+/* Reads a .node file and the other files of its part, which may be numbered from
+ * another base than those of other parts. */
+static void read_part(tm_stream *stream, operands *named, size_t node_file)
+{
+    char node[TM_BLOCK_NAME], name[TM_BLOCK_NAME];
+    unsigned base = 1;
+    snprintf(node, sizeof node, "%s", block_name(named, named->file[node_file]));
+    read_file(stream, &named->file[node_file], node, NULL, &base);
+    if (node[0] == '.')
+        stream->base = base;
+    int part = (int)(strlen(node) - strlen(suffixes[0]));
+    for (size_t s = 1; s < SUFFIXES; s++) {
+        snprintf(name, sizeof name, "%.*s%s", part, node, suffixes[s]);
+        for (size_t i = 0; i < named->count; i++)
+            if (named->file[i] && strcmp(block_name(named, named->file[i]), name) == 0)
+                read_file(stream, &named->file[i], name, node, &base);
+    }
+}
+
+/* The main mesh first, then the parts. */
+static void read_files(tm_stream *stream, operands *named)
+{
+    for (int parts = 0; parts < 2; parts++)
+        for (size_t i = 0; i < named->count; i++) {
+            const char *file = named->file[i];
+            if (file && suffix_of(file) == 0 &&
+                (block_name(named, file)[0] != '.') == parts)
+                read_part(stream, named, i);
+        }
+    for (size_t i = 0; i < named->count; i++)
+        if (named->file[i])
+            succeed(tm_fail_at(&error, TM_ERROR_INPUT, named->file[i], 0, NULL,
+                               "its .node file is not among the files"));
+}
+
+static size_t rows(const tm_stream *stream, const char *name)
+{
+    const tm_block *block = tm_stream_find(stream, name);
+    return block ? block->count : 0;
+}
+
+static void orient(const tm_stream *stream, const char *node, const char *ele,
+                   tm_turned *sum)
+{
+    tm_block *tetrahedra = tm_stream_find(stream, ele);
+    if (!tetrahedra)
+        return;
+    tm_turned result = tm_tetgen_orient(tm_stream_find(stream, node), tetrahedra);
+    sum->turned += result.turned;
+    sum->flat += result.flat;
+    if (result.turned > 0)
+        filter_note(&f, "%s: %zu of %zu tetrahedra were turned to be right-hand positive",
+                    ele, result.turned, tetrahedra->count);
+    if (result.flat > 0)
+        filter_note(&f, "%s: %zu of %zu tetrahedra are flat", ele, result.flat,
+                    tetrahedra->count);
+}
+
+static tm_turned orient_all(const tm_stream *stream)
+{
+    tm_turned sum = {0};
+    for (size_t b = 0; b < stream->blocks; b++) {
+        const char *node = stream->block[b].name;
+        if (stream->block[b].kind != TM_NODE)
+            continue;
+        char ele[TM_BLOCK_NAME];
+        snprintf(ele, sizeof ele, "%.*s.ele", (int)(strlen(node) - strlen(suffixes[0])),
+                 node);
+        orient(stream, node, ele, &sum);
+    }
+    return sum;
+}
+
+static void write_json(const tm_stream *stream, const tm_turned *turned)
+{
+    tm_text text = {0};
+    tm_json json = {.text = &text};
+    tm_json_open(&json, NULL, '{');
+    tm_json_integer(&json, "nodes", (int64_t)rows(stream, ".node"));
+    tm_json_integer(&json, "tets", (int64_t)rows(stream, ".ele"));
+    tm_json_integer(&json, "faces", (int64_t)rows(stream, ".face"));
+    tm_json_integer(&json, "edges", (int64_t)rows(stream, ".edge"));
+    tm_json_integer(&json, "turned", (int64_t)turned->turned);
+    tm_json_integer(&json, "flat", (int64_t)turned->flat);
+    tm_json_close(&json, '}');
+    tm_text_string(&text, "\n");
+    filter_write_json(&f, &text);
+    tm_text_free(&text);
+}
+
+int main(int argc, char **argv)
+{
+    operands named = {0};
+    tm_stream stream;
+    filter_start(&f, argc, argv);
+    read_operands(&named);
+    tm_stream_init(&stream);
+    read_files(&stream, &named);
+    tm_turned turned = orient_all(&stream);
+    filter_write(&f, &stream, "%zu nodes, %zu tetrahedra", rows(&stream, ".node"),
+                 rows(&stream, ".ele"));
+    if (f.json)
+        write_json(&stream, &turned);
+    tm_stream_free(&stream);
+    free(named.file);
+    free(named.stem);
+    return filter_finish(&f, EXIT_SUCCESS);
+}

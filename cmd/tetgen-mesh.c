@@ -1,0 +1,264 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* tetgen-mesh: tetrahedra of a surface or of points, made by TetGen. */
+#include "common/filter.h"
+#include "common/surface_input.h"
+#include "common/tetgen_run.h"
+
+#include "../lib/base/json.h"
+#include "../lib/format/surface_defects.h"
+#include "../lib/format/tetgen_orient.h"
+
+#include <float.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { OPTION_SWITCHES = FILTER_OWN, OPTION_TETGEN };
+
+static const struct option options[] = {
+    {"quality", optional_argument, NULL, 'q'},
+    {"max-volume", required_argument, NULL, 'a'},
+    {"keep-surface", no_argument, NULL, 'Y'},
+    {"switches", required_argument, NULL, OPTION_SWITCHES},
+    {"tetgen", required_argument, NULL, OPTION_TETGEN},
+    FILTER_OPTIONS,
+};
+
+static filter f = {
+    .name = "tetgen-mesh",
+    .synopsis = "[-q[RATIO]] [-a VOLUME] [-Y] [--switches S] [--tetgen PROG] [SURFACE]",
+    .purpose = "Fill a surface with tetrahedra, or join points to tetrahedra, by TetGen.",
+    .help = "  -q, --quality[=RATIO]     bound the radius-edge ratio (TetGen's own "
+            "bound: 2)\n"
+            "  -a, --max-volume VOLUME   bound the volume of each tetrahedron\n"
+            "  -Y, --keep-surface        put no new nodes on the surface\n"
+            "      --switches S          more switches for TetGen\n"
+            "      --tetgen PROG         the program to run\n",
+    .options = options,
+    .letters = "q::a:Y" FILTER_LETTERS,
+    .q_is_own = true,
+};
+
+/* Options -------------------------------------------------------------------------- */
+
+static void number_switch(char *to, char letter, double value)
+{
+    *to++ = '-';
+    *to++ = letter;
+    *tm_write_double(to, value) = '\0';
+}
+
+/* Switches under which TetGen would not read or write what is handed to it and back. */
+static void take_switches(tetgen_request *r, tm_text *more, const char *switches)
+{
+    static const char refused[] = "hrINEFo";
+    if (*switches == '-')
+        switches++;
+    const char *wrong = strpbrk(switches, refused);
+    if (wrong)
+        filter_usage_error(&f, "--switches: '%c' is not possible here (nor any of %s)",
+                           *wrong, refused);
+    if (!*switches)
+        filter_usage_error(&f, "--switches: there are none");
+    tm_text_string(more, "-");
+    tm_text_string(more, switches);
+    r->more = more->byte;
+}
+
+static void read_options(tetgen_request *r, tm_text *more)
+{
+    static const double ratio_min = 1, ratio_max = 1000;
+    int c;
+    while ((c = filter_option(&f)) != -1) {
+        switch (c) {
+        case 'q':
+            strcpy(r->quality, "-q");
+            if (optarg)
+                number_switch(r->quality, 'q',
+                              filter_number(&f, "-q", optarg, ratio_min, ratio_max));
+            break;
+        case 'a':
+            number_switch(r->volume, 'a',
+                          filter_number(&f, "-a", optarg, DBL_MIN, DBL_MAX));
+            break;
+        case 'Y':
+            r->keep_surface = true;
+            break;
+        case OPTION_SWITCHES:
+            take_switches(r, more, optarg);
+            break;
+        case OPTION_TETGEN:
+            r->program = optarg;
+            break;
+        default:
+            filter_usage_error(&f, "option -%c is unknown", c);
+        }
+    }
+    filter_operands(&f);
+}
+
+/* What the input lacks ------------------------------------------------------------- */
+
+_Noreturn static void fail_input(const char *format, ...)
+    __attribute__((format(printf, 1, 2)));
+
+_Noreturn static void fail_input(const char *format, ...)
+{
+    tm_error error = {.status = TM_ERROR_INPUT};
+    snprintf(error.file, sizeof error.file, "%s", filter_input_name(&f));
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(error.what, sizeof error.what, format, arguments);
+    va_end(arguments);
+    filter_fail(&f, &error);
+}
+
+/* "edges of one face only: 3, such as that from (0, 0, 1) to (1, 0, 1)" */
+static void describe_open_edges(const tm_polygon_surface *surface,
+                                const tm_surface_defects *defects, tm_text *text)
+{
+    tm_text_format(text, "edges of one face only: %zu, such as that",
+                   defects->open_edges);
+    for (int i = 0; i < 2; i++) {
+        const double *xyz = surface->xyz[defects->open_edge[i]];
+        tm_text_string(text, i == 0 ? " from (" : " to (");
+        for (int k = 0; k < 3; k++) {
+            tm_text_string(text, k == 0 ? "" : ", ");
+            tm_text_double(text, xyz[k]);
+        }
+        tm_text_string(text, ")");
+    }
+}
+
+/* Facets of .poly and .smesh files may meet along parts of edges: there an open edge is
+ * no sign of a gap. */
+static bool edges_must_match(tm_format format)
+{
+    return format != TM_FORMAT_POLY && format != TM_FORMAT_SMESH;
+}
+
+static void check_surface(const tm_polygon_surface *surface,
+                          const tm_surface_defects *defects, tm_format format,
+                          const tetgen_request *r)
+{
+    enum { POINTS_MIN = 4 };
+    size_t points = surface->nodes - defects->duplicate_nodes;
+    if (points < POINTS_MIN)
+        fail_input("%zu different points are too few for a tetrahedron (4)", points);
+    if (defects->flat)
+        fail_input("all points are in one plane (tetrahedra need a volume)");
+    if (surface->facets == 0) {
+        if (*r->quality || *r->volume || r->keep_surface)
+            filter_usage_error(&f, "-q, -a and -Y need a surface, but the input has "
+                                   "points alone");
+        return;
+    }
+    if (defects->duplicate_nodes > 0)
+        filter_note(&f, "nodes in the place of an earlier one, which TetGen joins: %zu",
+                    defects->duplicate_nodes);
+    if (defects->repeated_corners > 0)
+        filter_note(&f, "faces with two corners in the same place: %zu",
+                    defects->repeated_corners);
+    filter_verbose(&f, "edges of more than two faces: %zu; unused nodes: %zu",
+                   defects->crowded_edges, defects->unused_nodes);
+    if (defects->open_edges > 0 && edges_must_match(format)) {
+        tm_text text = {0};
+        describe_open_edges(surface, defects, &text);
+        filter_note(&f, "the surface is not closed: %s", text.byte);
+        tm_text_free(&text);
+    }
+}
+
+_Noreturn static void fail_empty(const tm_polygon_surface *surface,
+                                 const tm_surface_defects *defects)
+{
+    tm_text text = {0};
+    if (defects->open_edges > 0)
+        describe_open_edges(surface, defects, &text);
+    else
+        tm_text_string(&text, "perhaps its holes (part 3 of .poly) leave nothing");
+    fail_input("TetGen made no tetrahedra: the surface encloses no volume (%s)",
+               text.byte);
+}
+
+/* The result ----------------------------------------------------------------------- */
+
+/* Moves the blocks of parts (the surface that came in) and the history behind the new
+ * mesh; other blocks belong to a mesh that is no longer there. */
+static tm_status keep_parts(tm_stream *from, tm_stream *mesh, tm_error *error)
+{
+    for (size_t b = 0; b < from->blocks; b++) {
+        tm_block *old = &from->block[b];
+        if (old->name[0] == '.') {
+            filter_note(&f, "%s of the input is left out: it belongs to another mesh",
+                        old->name);
+            continue;
+        }
+        tm_block *moved = tm_stream_add(mesh, old->name);
+        if (!moved)
+            return tm_fail_memory(error);
+        *moved = *old;
+        *old = (tm_block){.kind = TM_UNKNOWN};
+    }
+    mesh->history = from->history;
+    from->history = (tm_text){0};
+    return TM_OK;
+}
+
+static size_t rows(const tm_stream *stream, const char *name)
+{
+    const tm_block *block = tm_stream_find(stream, name);
+    return block ? block->count : 0;
+}
+
+static void write_json(const tm_stream *mesh)
+{
+    tm_text text = {0};
+    tm_json json = {.text = &text};
+    tm_json_open(&json, NULL, '{');
+    tm_json_integer(&json, "nodes", (int64_t)rows(mesh, ".node"));
+    tm_json_integer(&json, "tets", (int64_t)rows(mesh, ".ele"));
+    tm_json_integer(&json, "faces", (int64_t)rows(mesh, ".face"));
+    tm_json_integer(&json, "edges", (int64_t)rows(mesh, ".edge"));
+    tm_json_close(&json, '}');
+    tm_text_string(&text, "\n");
+    filter_write_json(&f, &text);
+    tm_text_free(&text);
+}
+
+int main(int argc, char **argv)
+{
+    tetgen_request request = {.program = "tetgen"};
+    tm_text more = {0};
+    filter_start(&f, argc, argv);
+    read_options(&request, &more);
+    tm_polygon_surface surface;
+    tm_stream input, mesh;
+    tm_format format = surface_input_read(&f, &surface, &input);
+    tm_surface_defects defects;
+    tm_error error;
+    if (tm_surface_find_defects(&surface, &defects, &error) != TM_OK)
+        filter_fail(&f, &error);
+    check_surface(&surface, &defects, format, &request);
+    tm_stream_init(&mesh);
+    mesh.base = surface.base;
+    if (tetgen_run(&f, &request, &surface, &mesh, &error) != TM_OK)
+        filter_fail(&f, &error);
+    if (rows(&mesh, ".ele") == 0)
+        fail_empty(&surface, &defects);
+    tm_turned turned =
+        tm_tetgen_orient(tm_stream_find(&mesh, ".node"), tm_stream_find(&mesh, ".ele"));
+    if (turned.flat > 0)
+        filter_note(&f, "%zu tetrahedra that TetGen made are flat", turned.flat);
+    if (keep_parts(&input, &mesh, &error) != TM_OK)
+        filter_fail(&f, &error);
+    filter_write(&f, &mesh, "%zu nodes, %zu tetrahedra", rows(&mesh, ".node"),
+                 rows(&mesh, ".ele"));
+    if (f.json)
+        write_json(&mesh);
+    tm_stream_free(&mesh);
+    tm_stream_free(&input);
+    tm_polygon_surface_free(&surface);
+    tm_text_free(&more);
+    return filter_finish(&f, EXIT_SUCCESS);
+}

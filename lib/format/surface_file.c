@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "surface_file.h"
+
+#include "../base/array.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Which capacity belongs to which array. */
+enum {
+    XYZ,
+    START,
+    ITEM,
+    FACET_START,
+    FACET_HOLE_START,
+    FACET_MARKER,
+    FACET_HOLE,
+    HOLE,
+    REGION
+};
+
+void tm_polygon_surface_init(tm_polygon_surface *surface)
+{
+    *surface = (tm_polygon_surface){.base = 1};
+}
+
+void tm_polygon_surface_free(tm_polygon_surface *surface)
+{
+    free(surface->xyz);
+    free(surface->attribute);
+    free(surface->node_marker);
+    free(surface->start);
+    free(surface->item);
+    free(surface->facet_start);
+    free(surface->facet_marker);
+    free(surface->facet_hole);
+    free(surface->facet_hole_start);
+    free(surface->hole);
+    free(surface->region);
+    tm_polygon_surface_init(surface);
+}
+
+/* Makes room for one more item of an array; NULL where memory is out. */
+static void *room(tm_polygon_surface *surface, int which, void *array, size_t count,
+                  size_t size)
+{
+    return tm_grow(array, &surface->capacity[which], count + 1, size);
+}
+
+tm_status tm_polygon_surface_add_node(tm_polygon_surface *surface, const double xyz[3],
+                                      tm_error *error)
+{
+    if (surface->nodes >= UINT32_MAX - 1)
+        return tm_fail(error, TM_ERROR_INPUT, "more than %u nodes", UINT32_MAX - 1);
+    double(*grown)[3] =
+        room(surface, XYZ, surface->xyz, surface->nodes, sizeof *surface->xyz);
+    if (!grown)
+        return tm_fail_memory(error);
+    surface->xyz = grown;
+    memcpy(grown[surface->nodes++], xyz, sizeof *grown);
+    return TM_OK;
+}
+
+tm_status tm_polygon_surface_add_corner(tm_polygon_surface *surface, uint32_t node,
+                                        tm_error *error)
+{
+    uint32_t *grown =
+        room(surface, ITEM, surface->item, surface->corners, sizeof *surface->item);
+    if (!grown)
+        return tm_fail_memory(error);
+    surface->item = grown;
+    grown[surface->corners++] = node;
+    return TM_OK;
+}
+
+/* Appends the end of range number `ranges` to an array of offsets, which begins with 0.
+ * False where memory is out. */
+static bool end_range(tm_polygon_surface *surface, int which, size_t **start,
+                      size_t ranges, size_t end)
+{
+    size_t *grown = room(surface, which, *start, ranges + 1, sizeof *grown);
+    if (!grown)
+        return false;
+    *start = grown;
+    grown[0] = 0;
+    grown[ranges + 1] = end;
+    return true;
+}
+
+tm_status tm_polygon_surface_end_polygon(tm_polygon_surface *surface, tm_error *error)
+{
+    if (!end_range(surface, START, &surface->start, surface->polygons, surface->corners))
+        return tm_fail_memory(error);
+    surface->polygons++;
+    return TM_OK;
+}
+
+tm_status tm_polygon_surface_end_facet(tm_polygon_surface *surface, int32_t marker,
+                                       tm_error *error)
+{
+    size_t f = surface->facets;
+    int32_t *grown = room(surface, FACET_MARKER, surface->facet_marker, f, sizeof *grown);
+    if (grown)
+        surface->facet_marker = grown;
+    if (!grown ||
+        !end_range(surface, FACET_START, &surface->facet_start, f, surface->polygons) ||
+        !end_range(surface, FACET_HOLE_START, &surface->facet_hole_start, f,
+                   surface->facet_holes))
+        return tm_fail_memory(error);
+    grown[f] = marker;
+    surface->facets++;
+    return TM_OK;
+}
+
+tm_status tm_polygon_surface_add_polygon(tm_polygon_surface *surface,
+                                         const uint32_t *node, size_t k, tm_error *error)
+{
+    tm_status status = TM_OK;
+    for (size_t i = 0; i < k && status == TM_OK; i++)
+        status = tm_polygon_surface_add_corner(surface, node[i], error);
+    if (status == TM_OK)
+        status = tm_polygon_surface_end_polygon(surface, error);
+    if (status == TM_OK)
+        status = tm_polygon_surface_end_facet(surface, 0, error);
+    return status;
+}
+
+tm_status tm_polygon_surface_add_facet_hole(tm_polygon_surface *surface,
+                                            const double xyz[3], tm_error *error)
+{
+    double(*grown)[3] = room(surface, FACET_HOLE, surface->facet_hole,
+                             surface->facet_holes, sizeof *grown);
+    if (!grown)
+        return tm_fail_memory(error);
+    surface->facet_hole = grown;
+    memcpy(grown[surface->facet_holes++], xyz, sizeof *grown);
+    return TM_OK;
+}
+
+tm_status tm_polygon_surface_add_hole(tm_polygon_surface *surface, const double xyz[3],
+                                      tm_error *error)
+{
+    double(*grown)[3] = room(surface, HOLE, surface->hole, surface->holes, sizeof *grown);
+    if (!grown)
+        return tm_fail_memory(error);
+    surface->hole = grown;
+    memcpy(grown[surface->holes++], xyz, sizeof *grown);
+    return TM_OK;
+}
+
+tm_status tm_polygon_surface_add_region(tm_polygon_surface *surface,
+                                        const tm_region *region, tm_error *error)
+{
+    tm_region *grown =
+        room(surface, REGION, surface->region, surface->regions, sizeof *grown);
+    if (!grown)
+        return tm_fail_memory(error);
+    surface->region = grown;
+    grown[surface->regions++] = *region;
+    return TM_OK;
+}
+
+tm_status tm_polygon_surface_take_nodes(tm_polygon_surface *surface, tm_block *node,
+                                        tm_error *error)
+{
+    tm_status status = TM_OK;
+    for (size_t v = 0; v < node->count && status == TM_OK; v++)
+        status = tm_polygon_surface_add_node(surface, node->real + 3 * v, error);
+    if (status != TM_OK)
+        return status;
+    surface->attributes = node->attributes;
+    surface->attribute = node->attribute;
+    surface->node_marker = node->marker;
+    node->attributes = 0;
+    node->attribute = NULL;
+    node->markers = false;
+    node->marker = NULL;
+    return TM_OK;
+}
+
+tm_status tm_polygon_surface_add_faces(tm_polygon_surface *surface, const tm_block *face,
+                                       tm_error *error)
+{
+    enum { CORNERS = 3 };
+    surface->has_facet_markers = face->markers;
+    tm_status status = TM_OK;
+    for (size_t f = 0; f < face->count && status == TM_OK; f++) {
+        status = tm_polygon_surface_add_polygon(surface, face->integer + CORNERS * f,
+                                                CORNERS, error);
+        if (status == TM_OK && face->markers)
+            surface->facet_marker[surface->facets - 1] = face->marker[f];
+    }
+    return status;
+}

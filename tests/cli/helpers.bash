@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What several command line tests need: input of their own making, and looks at streams.
+# shellcheck shell=bash
+
+# Prints a closed surface: surface SHAPE FORMAT. SHAPE is cube (12 triangles, side 1),
+# box (6 quadrilaterals) or sphere (radius 1, about 400 triangles); FORMAT off, coff,
+# obj, ply, ply-little, ply-big, stl, stl-binary, mdl, node, poly, smesh or stream.
+# Coordinates are multiples of 1/1024, so that 32-bit floats hold them, and nodes are
+# numbered as they come first in the faces, so that all formats number them alike.
+surface() {
+    python3 - "$@" <<'END'
+import math, struct, sys
+
+def cube(square):
+    v = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
+    quads = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4),
+             (1, 3, 7, 5), (3, 2, 6, 7), (2, 0, 4, 6)]
+    if square:
+        return [[v[i] for i in q] for q in quads]
+    return [[v[i] for i in t] for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
+
+def sphere(around=20, rings=10):
+    def point(r, a):
+        if r in (0, rings):
+            return (0.0, 0.0, 1.0 if r == 0 else -1.0)
+        u, w = math.pi * r / rings, 2 * math.pi * (a % around) / around
+        p = (math.sin(u) * math.cos(w), math.sin(u) * math.sin(w), math.cos(u))
+        return tuple(round(c * 1024) / 1024 + 0.0 for c in p)
+    faces = []
+    for r in range(rings):
+        for a in range(around):
+            p, q = point(r, a), point(r + 1, a)
+            s, t = point(r + 1, a + 1), point(r, a + 1)
+            faces += [f for f in ([p, q, s], [p, s, t]) if len(set(f)) == 3]
+    return faces
+
+shape, form = sys.argv[1:3]
+faces = {'cube': lambda: cube(False), 'box': lambda: cube(True), 'sphere': sphere}[shape]()
+number = {}
+for f in faces:
+    for p in f:
+        number.setdefault(p, len(number))
+nodes = list(number)
+ids = [[number[p] for p in f] for f in faces]
+text = lambda p: ' '.join('%.10g' % c for c in p)
+out = sys.stdout
+
+def off(word, more):
+    print(word)
+    print(len(nodes), len(faces), 0)
+    for p in nodes:
+        print(text(p) + more)
+    for f in ids:
+        print(len(f), *f)
+
+def ply(encoding, order):
+    out.write('ply\nformat %s 1.0\nelement vertex %d\n' % (encoding, len(nodes)))
+    out.write('property float x\nproperty float y\nproperty float z\n')
+    out.write('element face %d\nproperty list uchar int vertex_indices\nend_header\n'
+              % len(ids))
+    if not order:
+        for p in nodes:
+            print(text(p))
+        for f in ids:
+            print(len(f), *f)
+        return
+    out.flush()
+    for p in nodes:
+        out.buffer.write(struct.pack(order + '3f', *p))
+    for f in ids:
+        out.buffer.write(struct.pack(order + 'B%di' % len(f), len(f), *f))
+
+def node_rows():
+    for i, p in enumerate(nodes):
+        print(i + 1, text(p))
+
+if form == 'off':
+    off('OFF', '')
+elif form == 'coff':
+    off('COFF', ' 255 0 0 255')
+elif form == 'obj':
+    for p in nodes:
+        print('v', text(p))
+    for f in ids:
+        print('f', *('%d//1' % (i + 1) for i in f))
+elif form == 'ply':
+    ply('ascii', '')
+elif form == 'ply-little':
+    ply('binary_little_endian', '<')
+elif form == 'ply-big':
+    ply('binary_big_endian', '>')
+elif form == 'stl':
+    print('solid made')
+    for f in faces:
+        print('facet normal 0 0 0\nouter loop')
+        for p in f:
+            print('vertex', text(p))
+        print('endloop\nendfacet')
+    print('endsolid made')
+elif form == 'stl-binary':
+    out.buffer.write(b'solid, but binary'.ljust(80) + struct.pack('<I', len(faces)))
+    for f in faces:
+        out.buffer.write(struct.pack('<12fH', 0, 0, 0, *(c for p in f for c in p), 0))
+elif form == 'mdl':
+    print('[Vertices, ARRAY1<POINT3D>]\n%d\n' % len(nodes))
+    for p in nodes:
+        print(text(p))
+    print('[Triangles, ARRAY1<STRING>]\n%d\n' % len(ids))
+    for f in ids:
+        print(*f, 0, 0, 0)
+elif form in ('node', 'poly', 'smesh'):
+    print(len(nodes), 3, 0, 0)
+    node_rows()
+    if form != 'node':
+        print(len(ids), 0)
+        for f in ids:
+            print(('1 0\n' if form == 'poly' else '') + str(len(f)), *(i + 1 for i in f))
+        print('0\n0')
+elif form == 'stream':
+    print('termesh 1\n# made by hand\nsurface.node')
+    print(len(nodes), 3, 0, 0)
+    node_rows()
+    print('surface.face')
+    print(len(ids), 0)
+    for i, f in enumerate(ids):
+        print(i + 1, *(n + 1 for n in f))
+    print('.end')
+else:
+    sys.exit('surface: no format ' + form)
+END
+}
+
+# Prints the rows of a block: rows BLOCK FILE.
+rows() {
+    awk -v block="$1" '
+        $0 ~ /^[a-z]*\./ { inside = ($1 == block); header = inside; next }
+        inside && header { header = 0; next }
+        inside' "$2"
+}
+
+# Prints a block's header: header BLOCK FILE.
+header() {
+    awk -v block="$1" '$1 == block { getline; print; exit }' "$2"
+}
+
+# Prints for each tetrahedron of a stream its volume, with the sign of its orientation.
+volumes() {
+    { rows .node "$1"; echo; rows .ele "$1"; } | awk '
+        NF == 0 { elements = 1; next }
+        !elements { x[$1] = $2; y[$1] = $3; z[$1] = $4; next }
+        { a = $2; b = $3; c = $4; d = $5
+          px = x[b] - x[a]; py = y[b] - y[a]; pz = z[b] - z[a]
+          qx = x[c] - x[a]; qy = y[c] - y[a]; qz = z[c] - z[a]
+          rx = x[d] - x[a]; ry = y[d] - y[a]; rz = z[d] - z[a]
+          printf "%.12g\n", ((py * qz - pz * qy) * rx + (pz * qx - px * qz) * ry + \
+              (px * qy - py * qx) * rz) / 6 }'
+}
+
+# Succeeds where all tetrahedra of a stream have positive volume and they add up to
+# within 1e-9 of a number: fills FILE VOLUME.
+fills() {
+    volumes "$1" | awk -v right="$2" '
+        $1 <= 0 { print "volume", $1; wrong = 1 }
+        { sum += $1 }
+        END {
+            print NR, "tetrahedra of volume", sum
+            exit wrong || NR == 0 || sum - right > 1e-9 || right - sum > 1e-9
+        }'
+}
+
+# Makes a locale whose decimal sign is a comma and prints the folder for LOCPATH.
+comma_locale() {
+    localedef -i de_DE -f UTF-8 "$BATS_TEST_TMPDIR/comma" >&2
+    echo "$BATS_TEST_TMPDIR"
+}

@@ -1,0 +1,166 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* No input makes a reader of foreign formats crash or return a surface that is not one:
+ * every beginning of a good file, and good files with bytes changed. */
+#include "../../lib/format/tetgen_rows.h"
+#include "format_samples.h"
+#include "random.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+
+#include <cmocka.h>
+
+enum { CHANGED = 3000, CHANGES_MAX = 6 };
+
+static sample samples[SAMPLES];
+
+static void check_ranges(const size_t *start, size_t count, size_t end)
+{
+    assert_true(count == 0 || (start[0] == 0 && start[count] == end));
+    for (size_t i = 0; i < count; i++)
+        assert_true(start[i] <= start[i + 1]);
+}
+
+static void check_surface(const tm_polygon_surface *s)
+{
+    for (size_t v = 0; v < s->nodes; v++)
+        for (int k = 0; k < 3; k++)
+            assert_true(isfinite(s->xyz[v][k]));
+    check_ranges(s->start, s->polygons, s->corners);
+    for (size_t i = 0; i < s->corners; i++)
+        assert_true(s->item[i] < s->nodes);
+    check_ranges(s->facet_start, s->facets, s->polygons);
+    check_ranges(s->facet_hole_start, s->facets, s->facet_holes);
+}
+
+/* The bytes are read where reading one more is an error that a sanitizer sees. */
+static void read_any(const char *bytes, size_t size, tm_format format)
+{
+    char *copy = malloc(size + !size);
+    assert_non_null(copy);
+    memcpy(copy, bytes, size);
+    tm_polygon_surface surface;
+    tm_polygon_surface_init(&surface);
+    tm_error error = {.status = TM_OK};
+    tm_format_of(copy, size, "<stdin>");
+    tm_status status = tm_format_read(&surface, format, copy, size, "file", &error);
+    if (status == TM_OK) {
+        check_surface(&surface);
+    } else {
+        assert_int_equal(status, TM_ERROR_INPUT);
+        assert_int_equal(error.status, status);
+        assert_true(error.what[0] != '\0');
+        assert_int_equal(surface.nodes + surface.polygons + surface.facets, 0);
+    }
+    tm_polygon_surface_free(&surface);
+    free(copy);
+}
+
+static void test_every_beginning(void **state)
+{
+    (void)state;
+    for (int s = 0; s < SAMPLES; s++)
+        for (size_t size = 0; size <= samples[s].size; size++)
+            read_any(samples[s].bytes, size, samples[s].format);
+}
+
+/* Bytes that mean something in these formats are likelier than others. */
+static char random_byte(void)
+{
+    static const char likely[] = "0123456789-+.eE \n\r\t#/\\";
+    return random_below(4) ? likely[random_below(sizeof likely - 1)]
+                           : (char)random_below(256);
+}
+
+static void change(char *bytes, size_t size)
+{
+    for (unsigned n = 1 + random_below(CHANGES_MAX); n > 0; n--)
+        bytes[random_below((unsigned)size)] = random_byte();
+}
+
+static void test_changed_bytes(void **state)
+{
+    (void)state;
+    for (int s = 0; s < SAMPLES; s++)
+        for (int i = 0; i < CHANGED; i++) {
+            char changed[BINARY_MAX];
+            memcpy(changed, samples[s].bytes, samples[s].size);
+            change(changed, samples[s].size);
+            read_any(changed, samples[s].size, samples[s].format);
+        }
+}
+
+/* Every reader on every other format's files. */
+static void test_wrong_reader(void **state)
+{
+    (void)state;
+    for (int s = 0; s < SAMPLES; s++)
+        for (int other = 0; other < SAMPLES; other++)
+            read_any(samples[s].bytes, samples[s].size, samples[other].format);
+}
+
+static void read_rows(const char *bytes, size_t size, const char *name)
+{
+    enum { NODES = 5 };
+    char *copy = malloc(size + !size);
+    assert_non_null(copy);
+    memcpy(copy, bytes, size);
+    tm_stream stream;
+    tm_stream_init(&stream);
+    tm_block *block = tm_stream_add(&stream, name);
+    assert_non_null(block);
+    tm_scan scan;
+    tm_error error = {.status = TM_OK};
+    unsigned base = 1;
+    tm_tetgen_begin(&scan, copy, size, "file");
+    if (tm_tetgen_read_rows(block, &scan, &base, NODES, &error) == TM_OK) {
+        size_t integers = block->count * tm_block_integers(block->kind);
+        for (size_t i = 0; i < integers; i++)
+            assert_true(block->integer[i] < NODES);
+    } else {
+        assert_int_equal(error.status, TM_ERROR_INPUT);
+        assert_int_equal(block->count, 0);
+    }
+    assert_true(base <= 1);
+    tm_stream_free(&stream);
+    free(copy);
+}
+
+static void test_rows(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name, *text;
+    } rows[] = {
+        {".node", "# TetGen\n2 3 2 1\n1 0 1e-3 .5  7 8.5 -1\n2 1 2 3 4 5 6\n"},
+        {".ele", "2 4 1\r\n1 1 2 3 4 2.5\r\n2 5 4 3 2 -1\r\n"},
+        {".face", "2 1\n1 1 2 3 -1 0 -1\n2 3 4 5 0\n# end"},
+        {".edge", "2 1\n0 1 2 1 5\n1 3 4 1"},
+    };
+    for (size_t r = 0; r < sizeof rows / sizeof rows[0]; r++) {
+        size_t length = strlen(rows[r].text);
+        for (size_t size = 0; size <= length; size++)
+            read_rows(rows[r].text, size, rows[r].name);
+        for (int i = 0; i < CHANGED; i++) {
+            char changed[BINARY_MAX];
+            memcpy(changed, rows[r].text, length);
+            change(changed, length);
+            read_rows(changed, length, rows[r].name);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_every_beginning),
+        cmocka_unit_test(test_changed_bytes),
+        cmocka_unit_test(test_wrong_reader),
+        cmocka_unit_test(test_rows),
+    };
+    make_samples(samples);
+    random_start();
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
