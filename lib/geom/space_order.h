@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Items in the order of a space-filling curve (the Z curve of G. M. Morton, 1966): what
+ * is near in space comes near in the order, so that work in this order finds its memory
+ * in the cache. */
+#ifndef TM_GEOM_SPACE_ORDER_H
+#define TM_GEOM_SPACE_ORDER_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* A cube around points, that the curve fills with 1024³ cells. */
+typedef struct tm_space {
+    double low[3];
+    double cells; /* per unit of length */
+} tm_space;
+
+typedef struct tm_placed {
+    uint32_t place; /* on the curve */
+    uint32_t item;
+} tm_placed;
+
+tm_space tm_space_around(const double (*xyz)[3], size_t count);
+
+/* The place of a point on the curve; the nearest end for points outside. */
+uint32_t tm_space_place(const tm_space *space, const double p[3]);
+
+/* Sorts by place, then by item. O(count log count). */
+void tm_space_sort(tm_placed *placed, size_t count);
+
+#endif
