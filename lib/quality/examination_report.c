@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* examination.h as JSON and as text. */
+#include "examination.h"
+
+#include <inttypes.h>
+
+enum { LABEL_WIDTH = 24, NUMBER_WIDTH = 14 };
+
+typedef struct defect_name {
+    const char *key; /* in JSON */
+    const char *label;
+} defect_name;
+
+static const defect_name name[TM_DEFECTS] = {
+    [TM_INVERTED] = {"inverted", "inverted"},
+    [TM_DEGENERATE] = {"degenerate", "degenerate"},
+    [TM_UNMATCHED_FACE] = {"unmatched_faces", "unmatched faces"},
+    [TM_OVERLAPPING_FACE] = {"overlapping_faces", "overlapping faces"},
+    [TM_OPEN_EDGE] = {"open_edges", "open edges"},
+    [TM_NON_MANIFOLD_EDGE] = {"non_manifold_edges", "non-manifold edges"},
+    [TM_NON_MANIFOLD_VERTEX] = {"non_manifold_vertices", "non-manifold vertices"},
+    [TM_DUPLICATE_NODE] = {"duplicate_nodes", "duplicate nodes"},
+    [TM_DANGLING_FACE] = {"dangling_faces", "dangling faces"},
+    [TM_REPEATED_FACE] = {"repeated_faces", "repeated faces"},
+    [TM_DANGLING_EDGE] = {"dangling_edges", "dangling edges"},
+    [TM_REPEATED_EDGE] = {"repeated_edges", "repeated edges"},
+};
+
+static void defect_json(tm_json *json, const tm_examination *found, tm_defect d)
+{
+    tm_json_integer(json, name[d].key, (int64_t)found->defect[d].count);
+}
+
+void tm_examination_json(tm_json *json, const tm_examination *found)
+{
+    tm_json_integer(json, "nodes", (int64_t)found->nodes);
+    tm_json_integer(json, "elements", (int64_t)found->element_count);
+    defect_json(json, found, TM_INVERTED);
+    defect_json(json, found, TM_DEGENERATE);
+    defect_json(json, found, TM_UNMATCHED_FACE);
+    tm_json_integer(json, "boundary_faces", (int64_t)found->boundary_faces);
+    defect_json(json, found, TM_OPEN_EDGE);
+    defect_json(json, found, TM_NON_MANIFOLD_EDGE);
+    defect_json(json, found, TM_NON_MANIFOLD_VERTEX);
+    tm_json_integer(json, "components", (int64_t)found->components);
+    tm_json_integer(json, "euler", found->euler);
+    tm_json_double(json, "volume", found->volume);
+    tm_json_double(json, "area", found->area);
+    tm_json_integer(json, "unused_nodes", (int64_t)found->unused_nodes);
+    defect_json(json, found, TM_DUPLICATE_NODE);
+    defect_json(json, found, TM_OVERLAPPING_FACE);
+    defect_json(json, found, TM_DANGLING_FACE);
+    defect_json(json, found, TM_REPEATED_FACE);
+    defect_json(json, found, TM_DANGLING_EDGE);
+    defect_json(json, found, TM_REPEATED_EDGE);
+}
+
+static void integer_row(tm_text *text, const char *label, int64_t value)
+{
+    tm_text_format(text, "%-*s%*" PRId64 "\n", LABEL_WIDTH, label, NUMBER_WIDTH, value);
+}
+
+static void real_row(tm_text *text, const char *label, double value)
+{
+    tm_text_format(text, "%-*s%*.9g\n", LABEL_WIDTH, label, NUMBER_WIDTH, value);
+}
+
+static void sizes(tm_text *text, const tm_examination *found)
+{
+    integer_row(text, "nodes", (int64_t)found->nodes);
+    integer_row(text, found->elements, (int64_t)found->element_count);
+    integer_row(text, "components", (int64_t)found->components);
+    integer_row(text, "Euler number", found->euler);
+    real_row(text, "volume", found->volume);
+    integer_row(text, "boundary faces", (int64_t)found->boundary_faces);
+    real_row(text, "boundary area", found->area);
+    integer_row(text, "unused nodes", (int64_t)found->unused_nodes);
+}
+
+/* One defect in a sentence. */
+static void place_text(tm_text *text, const tm_examination *found, tm_defect d,
+                       const uint32_t place[TM_PLACE_NUMBERS], unsigned base)
+{
+    const char *one = found->element, *many = found->elements;
+    const uint32_t a = place[0] + base, b = place[1] + base, c = place[2] + base;
+    switch (d) {
+    case TM_INVERTED:
+        tm_text_format(text, "%s %u is inverted", one, a);
+        break;
+    case TM_DEGENERATE:
+        if (place[1] == TM_NONE)
+            tm_text_format(text, "%s %u is flat", one, a);
+        else
+            tm_text_format(text, "%s %u names node %u twice", one, a, b);
+        break;
+    case TM_UNMATCHED_FACE:
+        tm_text_format(text, "face %u %u %u belongs to %u %s", a, b, c, place[3], many);
+        break;
+    case TM_OVERLAPPING_FACE:
+        tm_text_format(text, "%s %u and %u are on the same side of their common face",
+                       many, a, b);
+        break;
+    case TM_OPEN_EDGE:
+    case TM_NON_MANIFOLD_EDGE:
+        tm_text_format(text, "edge %u %u belongs to %u boundary face%s", a, b, place[2],
+                       place[2] == 1 ? "" : "s");
+        break;
+    case TM_NON_MANIFOLD_VERTEX:
+        tm_text_format(text, "node %u joins %u fans of boundary faces", a, place[1]);
+        break;
+    case TM_DUPLICATE_NODE:
+        tm_text_format(text, "node %u is at the place of node %u", a, b);
+        break;
+    case TM_DANGLING_FACE:
+        tm_text_format(text, "row %u of .face is no face of a %s", a, one);
+        break;
+    case TM_REPEATED_FACE:
+        tm_text_format(text, "row %u of .face repeats row %u", a, b);
+        break;
+    case TM_DANGLING_EDGE:
+        tm_text_format(text, "row %u of .edge is no edge of a %s", a, one);
+        break;
+    case TM_REPEATED_EDGE:
+        tm_text_format(text, "row %u of .edge repeats row %u", a, b);
+        break;
+    case TM_DEFECTS:
+        break;
+    }
+}
+
+static void defect_text(tm_text *text, const tm_examination *found, tm_defect d,
+                        unsigned base)
+{
+    const tm_defect_list *list = &found->defect[d];
+    if (list->count == 0)
+        return;
+    integer_row(text, name[d].label, (int64_t)list->count);
+    for (size_t i = 0; i < list->count && i < TM_PLACES; i++) {
+        tm_text_string(text, "  ");
+        place_text(text, found, d, list->place[i], base);
+        tm_text_string(text, "\n");
+    }
+    if (list->count > TM_PLACES)
+        tm_text_format(text, "  and %zu more\n", list->count - TM_PLACES);
+}
+
+void tm_examination_text(tm_text *text, const tm_examination *found, unsigned base)
+{
+    sizes(text, found);
+    tm_text_string(text, "\n");
+    if (tm_examination_is_good(found))
+        tm_text_string(text, "nothing is wrong\n");
+    for (int d = 0; d < TM_DEFECTS; d++)
+        defect_text(text, found, (tm_defect)d, base);
+}

@@ -1,0 +1,390 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# mesh-check: the report, JSON, exit statuses.
+# shellcheck disable=SC2154 # run sets stderr
+
+bats_require_minimum_version 1.5.0
+
+setup() {
+    load helpers
+    cd "$BATS_TEST_TMPDIR" || exit
+    # A unit cube in six tetrahedra, counted from 0, with a row of .face and of .edge.
+    cat >cube.tm <<'END'
+termesh 1
+# made by hand
+.node
+8 3 0 0
+0 0 0 0
+1 1 0 0
+2 0 1 0
+3 1 1 0
+4 0 0 1
+5 1 0 1
+6 0 1 1
+7 1 1 1
+.ele
+6 4 0
+0 0 1 3 7
+1 0 2 6 7
+2 0 4 5 7
+3 0 3 2 7
+4 0 5 1 7
+5 0 6 4 7
+.face
+1 1
+0 0 1 3 5
+.edge
+1 1
+0 7 0 2
+.end
+END
+    # Counted from 1: two tetrahedra that touch in an edge, the second inverted.
+    cat >touching.tm <<'END'
+termesh 1
+.node
+6 3 0 0
+1 0 0 0
+2 1 0 0
+3 0 1 0
+4 0 0 1
+5 0 -1 0
+6 0 0 -1
+.ele
+2 4 0
+1 1 2 3 4
+2 1 2 6 5
+.end
+END
+    printf 'termesh 1\n.node\n0 3 0 0\n.ele\n0 4 0\n.end\n' >none.tm
+}
+
+# Prints the value of a key in JSON: json FILE KEY.
+json() {
+    python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))[sys.argv[2]])' "$@"
+}
+
+# Many tetrahedra, wrong in many ways: pieces of work for several threads.
+many() {
+    awk 'BEGIN {
+        nodes = 3000; tets = 30000; seed = 7
+        print "termesh 1\n.node\n" nodes " 3 0 0"
+        for (v = 0; v < nodes; v++) {
+            line = v
+            for (i = 0; i < 3; i++) {
+                seed = (seed * 16807) % 2147483647
+                line = line " " seed % 10007 / 10007
+            }
+            print line
+        }
+        print ".ele\n" tets " 4 0"
+        for (t = 0; t < tets; t++) {
+            line = t
+            first = (t * 7919) % nodes
+            for (i = 0; i < 4; i++)
+                line = line " " (first + i * (1 + t % 700)) % nodes
+            print line
+        }
+        print ".end"
+    }'
+}
+
+@test "a good mesh: the table, and exit 0" {
+    run -0 --separate-stderr mesh-check cube.tm
+    [ "$stderr" = "" ]
+    diff - <(echo "$output") <<'END'
+nodes                                8
+tetrahedra                           6
+components                           1
+Euler number                         1
+volume                               1
+boundary faces                      12
+boundary area                        6
+unused nodes                         0
+
+nothing is wrong
+END
+    [ "$(mesh-check <cube.tm)" = "$output" ]
+    [ "$(mesh-check - <cube.tm)" = "$output" ]
+}
+
+@test "a wrong mesh: what and where, in the stream's numbers, and exit 1" {
+    run -1 --separate-stderr mesh-check touching.tm
+    [ "$stderr" = "" ]
+    diff - <(echo "$output") <<'END'
+nodes                                6
+tetrahedra                           2
+components                           2
+Euler number                         1
+volume                               0
+boundary faces                       8
+boundary area               4.73205081
+unused nodes                         0
+
+inverted                             1
+  tetrahedron 2 is inverted
+non-manifold edges                   1
+  edge 1 2 belongs to 4 boundary faces
+END
+}
+
+@test "every kind of defect has its sentence" {
+    cat >wrong.tm <<'END'
+termesh 1
+.node
+13 3 0 0
+0 0 0 0
+1 1 0 0
+2 0 1 0
+3 0 0 1
+4 1 1 1
+5 2 2 2
+6 9 9 9
+7 8 9 9
+8 9 8 9
+9 9 9 8
+10 0 0 1
+11 1 1 0
+12 20 0 0
+.ele
+9 4 0
+0 0 1 2 3
+1 1 2 3 4
+2 1 2 3 5
+3 6 7 8 9
+4 6 7 8 10
+5 6 7 8 8
+6 0 1 2 11
+7 12 6 9 10
+8 12 6 9 5
+.face
+4 0
+0 0 1 3
+1 0 5 6
+2 3 1 0
+3 12 12 11
+.edge
+4 0
+0 0 1
+1 1 0
+2 0 12
+3 12 12
+.end
+END
+    run -1 --separate-stderr mesh-check wrong.tm
+    [ "$stderr" = "" ]
+    diff - <(echo "$output" | sed -n '/^$/,$p') <<'END'
+
+inverted                             2
+  tetrahedron 3 is inverted
+  tetrahedron 4 is inverted
+degenerate                           2
+  tetrahedron 5 names node 8 twice
+  tetrahedron 6 is flat
+unmatched faces                      1
+  face 1 2 3 belongs to 3 tetrahedra
+overlapping faces                    2
+  tetrahedra 3 and 4 are on the same side of their common face
+  tetrahedra 7 and 8 are on the same side of their common face
+open edges                           3
+  edge 1 2 belongs to 3 boundary faces
+  edge 1 3 belongs to 3 boundary faces
+  edge 2 3 belongs to 3 boundary faces
+non-manifold edges                   5
+  edge 1 2 belongs to 3 boundary faces
+  edge 1 3 belongs to 3 boundary faces
+  edge 2 3 belongs to 3 boundary faces
+  edge 6 9 belongs to 4 boundary faces
+  edge 6 10 belongs to 4 boundary faces
+non-manifold vertices                1
+  node 5 joins 2 fans of boundary faces
+duplicate nodes                      1
+  node 10 is at the place of node 3
+dangling faces                       2
+  row 1 of .face is no face of a tetrahedron
+  row 3 of .face is no face of a tetrahedron
+repeated faces                       1
+  row 2 of .face repeats row 0
+dangling edges                       2
+  row 2 of .edge is no edge of a tetrahedron
+  row 3 of .edge is no edge of a tetrahedron
+repeated edges                       1
+  row 1 of .edge repeats row 0
+END
+}
+
+@test "of many defects of a kind the first five are shown" {
+    awk '/^\.ele/ { inside = 1; print; next }
+         inside && NF == 5 { print $1, $3, $2, $4, $5; next }
+         { print }' cube.tm >turned.tm
+    run -1 mesh-check turned.tm
+    diff - <(echo "$output" | sed -n '/^$/,$p') <<'END'
+
+inverted                             6
+  tetrahedron 0 is inverted
+  tetrahedron 1 is inverted
+  tetrahedron 2 is inverted
+  tetrahedron 3 is inverted
+  tetrahedron 4 is inverted
+  and 1 more
+END
+    [[ "${lines[4]}" =~ ^volume\ +-1$ ]]
+}
+
+@test "unused nodes and several components are no defects" {
+    sed 's/^8 3 0 0/10 3 0 0/; s/^7 1 1 1/&\n8 5 5 5\n9 6 6 6/' cube.tm >unused.tm
+    run -0 mesh-check unused.tm
+    [[ "$output" =~ unused\ nodes\ +2 ]]
+    cat >pieces.tm <<'END'
+termesh 1
+.node
+8 3 0 0
+1 0 0 0
+2 1 0 0
+3 0 1 0
+4 0 0 1
+5 5 0 0
+6 6 0 0
+7 5 1 0
+8 5 0 1
+.ele
+2 4 0
+1 1 2 3 4
+2 5 6 7 8
+.end
+END
+    run -0 mesh-check pieces.tm
+    [[ "$output" =~ components\ +2 ]]
+    [[ "$output" =~ Euler\ number\ +2 ]]
+}
+
+@test "--json has the documented keys, in a file or on standard output" {
+    run -1 mesh-check --json out.json touching.tm
+    [[ "$output" =~ inverted ]]
+    run -1 mesh-check --json - touching.tm
+    [ "$output" = "$(cat out.json)" ]
+    python3 - out.json <<'END'
+import json, sys
+mesh = json.load(open(sys.argv[1]))
+assert list(mesh) == [
+    "nodes", "elements", "inverted", "degenerate", "unmatched_faces", "boundary_faces",
+    "open_edges", "non_manifold_edges", "non_manifold_vertices", "components", "euler",
+    "volume", "area", "unused_nodes", "duplicate_nodes", "overlapping_faces",
+    "dangling_faces", "repeated_faces", "dangling_edges", "repeated_edges"]
+assert (mesh["nodes"], mesh["elements"], mesh["inverted"]) == (6, 2, 1)
+assert (mesh["non_manifold_edges"], mesh["components"], mesh["euler"]) == (1, 2, 1)
+assert mesh["volume"] == 0 and abs(mesh["area"] - 3 - 3 ** 0.5) < 1e-14
+END
+    mesh-check --json - -o table cube.tm >out.json
+    [ "$(json out.json volume)" = 1 ]
+    grep -q '^nothing is wrong$' table
+}
+
+@test "-q prints nothing, and the exit status tells" {
+    run -0 mesh-check -q cube.tm
+    [ "$output" = "" ]
+    run -1 mesh-check --quiet --json out.json touching.tm
+    [ "$output" = "" ]
+    [ "$(json out.json inverted)" = 1 ]
+}
+
+@test "a mesh without tetrahedra, or without any block, is good" {
+    printf 'termesh 1\n.end\n' >empty.tm
+    for mesh in none.tm empty.tm; do
+        run -0 mesh-check --json out.json $mesh
+        [[ "$output" =~ tetrahedra\ +0 ]]
+        [[ "$output" =~ "nothing is wrong" ]]
+        [ "$(json out.json euler)" = 0 ]
+        [ "$(json out.json area)" = 0 ]
+    done
+}
+
+@test "a stream of other elements only: exit 3" {
+    printf 'termesh 1\n.node\n1 3 0 0\n1 0 0 0\n.mix\n0 0\n.end\n' >mixed.tm
+    run -3 --separate-stderr mesh-check mixed.tm
+    [ "$output" = "" ]
+    [ "$stderr" = "mesh-check: mixed.tm: .mix: mesh-check reads tetrahedra (.ele)" ]
+    printf 'termesh 1\n.node\n0 3 0 0\n.facet\n0 0\n.cell\n0 0\n.end\n' >cells.tm
+    run -3 --separate-stderr mesh-check - <cells.tm
+    [ "$stderr" = "mesh-check: <stdin>: .cell: mesh-check reads tetrahedra (.ele)" ]
+    # Beside tetrahedra they are passed over, and the user is told.
+    sed 's/^\.end/.mix\n0 0\n.end/' cube.tm >both.tm
+    run -0 --separate-stderr mesh-check both.tm
+    [ "$stderr" = "mesh-check: both.tm: .mix is not examined, only .ele" ]
+    [ "$output" = "$(mesh-check cube.tm)" ]
+}
+
+@test "-j 2 gives the bytes of -j 1" {
+    many >many.tm
+    for threads in 1 2 5; do
+        run -1 mesh-check -j $threads --json $threads.json -o $threads.table many.tm
+    done
+    [ "$(json 1.json inverted)" -gt 5 ]
+    cmp 1.json 2.json
+    cmp 1.json 5.json
+    cmp 1.table 2.table
+    cmp 1.table 5.table
+}
+
+@test "what the other filters make of a cube is good" {
+    surface cube off | tetgen-mesh -q -a 0.01 >made.tm
+    lepp-improve -q made.tm >better.tm
+    for mesh in made.tm better.tm; do
+        run -0 mesh-check --json out.json $mesh
+        [ "$(json out.json euler)" = 1 ]
+        [ "$(json out.json elements)" -gt 100 ]
+        python3 - <<'END'
+import json
+cube = json.load(open("out.json"))
+assert abs(cube["volume"] - 1) < 1e-12 and abs(cube["area"] - 6) < 1e-12
+END
+    done
+}
+
+@test "usage errors: exit 2" {
+    run -2 mesh-check --no-such-option cube.tm
+    run -2 mesh-check cube.tm cube.tm
+    run -2 mesh-check -j 0 cube.tm
+    run -2 mesh-check --json
+}
+
+@test "bad input: exit 3 with file and line, and nothing on standard output" {
+    head -n 14 cube.tm >cut.tm
+    run -3 --separate-stderr mesh-check cut.tm
+    [ "$output" = "" ]
+    [[ "$stderr" =~ ^mesh-check:\ cut\.tm:[0-9]+: ]]
+    run -3 --separate-stderr mesh-check <cut.tm
+    [[ "$stderr" =~ ^mesh-check:\ \<stdin\>:[0-9]+: ]]
+    sed 's/^5 0 6 4 7/5 0 6 4 8/' cube.tm >range.tm
+    run -3 --separate-stderr mesh-check range.tm
+    [[ "$stderr" =~ ^mesh-check:\ range\.tm:20:\ \.ele:\  ]]
+}
+
+@test "what cannot be read or written: exit 4" {
+    run -4 mesh-check no-such-file.tm
+    run -4 mesh-check -o /no-such-folder/out cube.tm
+    run -4 mesh-check --json /no-such-folder/out.json cube.tm
+    if [ -e /dev/full ]; then
+        run -4 sh -c 'mesh-check cube.tm >/dev/full'
+        run -4 sh -c 'mesh-check touching.tm >/dev/full'
+        run -4 sh -c 'mesh-check --json - cube.tm >/dev/full'
+        run -4 mesh-check --json /dev/full cube.tm
+    fi
+    run -4 sh -c 'mesh-check cube.tm >&-'
+}
+
+@test "a reader that stops early is no error" {
+    mkfifo pipe
+    run --separate-stderr bash -c 'true <pipe & exec 3>pipe; wait
+        mesh-check cube.tm >&3'
+    [ "$stderr" = "" ]
+    [ "$status" -eq 141 ] # ended by SIGPIPE, as a shell reports it
+}
+
+@test "-o leaves the report whole or not at all" {
+    echo old >report
+    run -1 mesh-check -o report touching.tm
+    [ "$output" = "" ]
+    [ "$(head -n 1 report)" = "$(mesh-check cube.tm | sed -n '1s/8$/6/p')" ]
+    cp report before
+    run -3 mesh-check -o report /dev/null
+    cmp report before
+}
