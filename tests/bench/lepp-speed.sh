@@ -1,0 +1,90 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Speed and memory of lepp-improve -a selective -m 1.1: the whole process with its text,
+# beside Gmsh's default optimiser alone on the same mesh (femur.off as $1 or in $TM_DATA,
+# else a generated surface), and on 20 000 and 200 000 random points. Medians of CPU
+# seconds. Needs python3-gmsh for the peer.
+set -eu
+cd "$(dirname "$0")/../.."
+make -s benchers
+PATH=$PWD/build/bin:$PWD/build/bench:$PATH
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+surface=${1:-${TM_DATA:+$TM_DATA/femur.off}}
+runs=${RUNS:-5}
+
+# A torus with bumps, some eight thousand triangles.
+torus() {
+    awk 'BEGIN {
+        n = 100; m = 40; turn = 8 * atan2(1, 1)
+        print "OFF"; print n * m, 2 * n * m, 0
+        for (i = 0; i < n; i++) for (j = 0; j < m; j++) {
+            a = turn * i / n; b = turn * j / m
+            r = 1 + 0.1 * cos(7 * a) * cos(5 * b)
+            print (4 + r * cos(b)) * cos(a), (4 + r * cos(b)) * sin(a), r * sin(b)
+        }
+        for (i = 0; i < n; i++) for (j = 0; j < m; j++) {
+            p = i * m + j; q = (i + 1) % n * m + j
+            r = i * m + (j + 1) % m; s = (i + 1) % n * m + (j + 1) % m
+            print 3, p, q, s; print 3, p, s, r
+        }
+    }'
+}
+
+points() {
+    awk -v n="$1" 'BEGIN {
+        srand(1)
+        print n, 3, 0, 0
+        for (i = 1; i <= n; i++)
+            printf "%d %.17g %.17g %.17g\n", i, rand(), rand(), rand()
+    }'
+}
+
+tets_of() {
+    sed -n '/^\.ele/{n;p;q;}' "$1" | cut -d ' ' -f 1
+}
+
+if [ -z "$surface" ] || [ ! -r "$surface" ]; then
+    surface=$work/torus.off
+    torus >"$surface"
+fi
+tetgen-mesh -q4 "$surface" >"$work/surface.tm"
+echo "$(basename "$surface"), tetgen -pq4: $(tets_of "$work/surface.tm") tetrahedra"
+ours=$(cpu "$runs" lepp-improve -q -a selective -m 1.1 "$work/surface.tm" | cut -d ' ' -f 1)
+printf 'lepp-improve, whole process  %7.3f s\n' "$ours"
+if python3 -c 'import gmsh' 2>/dev/null; then
+    python=python3
+else
+    python=/usr/bin/python3
+fi
+if $python -c 'import gmsh' 2>/dev/null; then
+    i=0
+    while [ "$i" -lt "$runs" ]; do
+        $python tests/bench/gmsh-optimize.py "$work/surface.tm"
+        i=$((i + 1))
+    done | cut -d ' ' -f 2 | sort -n | awk -v ours="$ours" '{ t[NR] = $1 } END {
+        peer = t[int((NR + 1) / 2)]
+        printf "Gmsh, default optimiser alone  %5.3f s\n", peer
+        printf "ratio                        %7.3f (at most 0.2)\n", ours / peer
+    }'
+else
+    echo 'Gmsh: needs the package python3-gmsh'
+fi
+
+echo
+for n in 20000 200000; do
+    points $n >"$work/points.node"
+    tetgen-mesh "$work/points.node" >"$work/$n.tm"
+    before=$(tets_of "$work/$n.tm")
+    lepp-improve -q -a selective -m 1.1 "$work/$n.tm" >"$work/out.tm"
+    after=$(tets_of "$work/out.tm")
+    cpu 3 lepp-improve -q -a selective -m 1.1 "$work/$n.tm" |
+        awk -v n="$n" -v b="$before" -v a="$after" '{
+            printf "%6d points, %7d -> %7d tetrahedra: %7.3f s, %.2f us per input " \
+                "tetrahedron, %.0f bytes per output tetrahedron (at most 160)\n", \
+                n, b, a, $1, 1e6 * $1 / b, 1024 * $2 / a
+            print $1 / b >"/dev/stderr"
+        }' 2>"$work/per-tet.$n"
+done
+paste "$work/per-tet.20000" "$work/per-tet.200000" |
+    awk '{ printf "CPU per tetrahedron, 200 000 points to 20 000: %.2f (at most 1.5)\n", $2 / $1 }'
