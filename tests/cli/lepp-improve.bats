@@ -1,0 +1,352 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# lepp-improve: what it must keep, where it ends, what it says.
+# shellcheck disable=SC2154 # run sets stderr
+
+bats_require_minimum_version 1.5.0
+
+setup_file() {
+    load helpers
+    cd "$BATS_FILE_TMPDIR" || exit
+    # Random points; two boxes, one on the other, as two regions with marked facets; a
+    # sphere with a surface of its own.
+    awk 'BEGIN {
+        srand(7)
+        print 300, 3, 1, 0
+        for (i = 0; i < 300; i++) {
+            x = rand(); y = rand(); z = rand()
+            print i, x, y, z, 1 + x - 2 * y + 3 * z
+        }
+    }' >points.node
+    two_boxes >boxes.poly
+    tetgen-mesh --no-history points.node >points.tm
+    tetgen-mesh --no-history -q1.6 -a 0.03 --switches A boxes.poly >boxes.tm
+    surface sphere off | tetgen-mesh --no-history -q >sphere.tm
+}
+
+setup() {
+    load helpers
+    cd "$BATS_FILE_TMPDIR" || exit
+    out=$BATS_TEST_TMPDIR
+}
+
+# Two unit cubes, one on the other; facet i has marker 10 + i, the one between them 20;
+# the upper one is region 7, the lower one region 3.
+two_boxes() {
+    awk 'BEGIN {
+        print 12, 3, 0, 1
+        for (z = 0; z < 3; z++) for (y = 0; y < 2; y++) for (x = 0; x < 2; x++)
+            print ++n, x, y, z, 100 + z
+        print 11, 1
+        split("1 2 4 3 5 6 8 7 9 10 12 11", v)
+        m[1] = 11; m[2] = 20; m[3] = 12
+        for (i = 0; i < 3; i++)
+            print "1 0", m[i + 1] "\n4", v[4*i+1], v[4*i+2], v[4*i+3], v[4*i+4]
+        split("1 2 6 5 2 4 8 6 4 3 7 8 3 1 5 7 5 6 10 9 6 8 12 10 8 7 11 12 7 5 9 11", w)
+        for (i = 0; i < 8; i++)
+            print "1 0", 13 + i % 4 "\n4", w[4*i+1], w[4*i+2], w[4*i+3], w[4*i+4]
+        print 0
+        print 2
+        print 1, 0.5, 0.5, 0.5, 3
+        print 2, 0.5, 0.5, 1.5, 7
+    }'
+}
+
+# Prints what may not change: volume by region, area by marker, length by edge marker,
+# what the attribute 1 + x - 2y + 3z is off by, where the mesh has such attributes.
+invariants() {
+    python3 - "$1" <<'END'
+import collections, math, sys
+lines = iter(open(sys.argv[1]))
+blocks = {}
+for line in lines:
+    if line[0].isalpha() or line[0] == '.':
+        name = line.strip()
+        if name in ('.end', 'termesh 1'):
+            continue
+        head = [int(x) for x in next(lines).split()]
+        blocks[name] = head, [[float(x) for x in next(lines).split()]
+                              for _ in range(head[0])]
+head, nodes = blocks['.node']
+base = int(nodes[0][0])
+xyz = [row[1:4] for row in nodes]
+def sub(a, b): return [p - q for p, q in zip(a, b)]
+def cross(a, b): return [a[1]*b[2]-a[2]*b[1], a[2]*b[0]-a[0]*b[2], a[0]*b[1]-a[1]*b[0]]
+def dot(a, b): return sum(p * q for p, q in zip(a, b))
+def of(row, n): return [xyz[int(i) - base] for i in row[1:1 + n]]
+volume, area, length = (collections.defaultdict(float) for _ in range(3))
+for row in blocks['.ele'][1]:
+    a, b, c, d = of(row, 4)
+    volume[tuple(row[5:])] += dot(cross(sub(b, a), sub(c, a)), sub(d, a)) / 6
+for row in blocks.get('.face', ((), ()))[1]:
+    a, b, c = of(row, 3)
+    n = cross(sub(b, a), sub(c, a))
+    area[tuple(row[4:])] += math.sqrt(dot(n, n)) / 2
+for row in blocks.get('.edge', ((), ()))[1]:
+    a, b = of(row, 2)
+    length[tuple(row[3:])] += math.dist(a, b)
+for name, sums in ('volume', volume), ('area', area), ('length', length):
+    for key in sorted(sums):
+        print(name, key, '%.9f' % sums[key])
+if head[2]:
+    worst = max(abs(r[4] - (1 + r[1] - 2 * r[2] + 3 * r[3])) for r in nodes)
+    print('attribute', '%.9f' % worst)
+END
+}
+
+# Prints a value of a JSON file: json FILE KEY…
+json() {
+    python3 -c 'import json, sys
+value = json.load(open(sys.argv[1]))
+for key in sys.argv[2:]:
+    value = value[key]
+print(value)' "$@"
+}
+
+@test "invariants: every algorithm, measure and stop keeps volume, area, markers" {
+    local mesh options
+    for mesh in points boxes sphere; do
+        invariants "$mesh.tm" >"$out/before"
+        while read -r options; do
+            # shellcheck disable=SC2086
+            lepp-improve -q $options "$mesh.tm" >"$out/improved.tm"
+            invariants "$out/improved.tm" >"$out/after"
+            diff "$out/before" "$out/after"
+            mesh-check -q "$out/improved.tm"
+        done <<'END'
+-a selective
+-a selective -m 1 -s original
+-m 1.05 -s 2 -t 20
+-Q volume -m 1.2
+-a swap-centroid
+-a swap-centroid -s 2 -Q volume -t 15
+END
+    done
+}
+
+@test "topology: mesh-check finds the same boundary and Euler number" {
+    local mesh key
+    for mesh in points boxes sphere; do
+        mesh-check --json "$out/before" "$mesh.tm" >"$out/text"
+        lepp-improve -q -m 1 "$mesh.tm" | mesh-check --json "$out/after" >"$out/text"
+        for key in euler components open_edges non_manifold_edges inverted degenerate; do
+            [ "$(json "$out/before" $key)" = "$(json "$out/after" $key)" ]
+        done
+    done
+}
+
+@test "nodes of the input stay where they are, and keep marker and attributes" {
+    lepp-improve -q -m 1 boxes.tm >"$out/improved.tm"
+    rows .node boxes.tm >"$out/before"
+    rows .node "$out/improved.tm" | head -n "$(wc -l <"$out/before")" >"$out/after"
+    cmp "$out/before" "$out/after"
+    [ "$(rows .node "$out/improved.tm" | wc -l)" -gt "$(wc -l <"$out/before")" ]
+}
+
+@test "new boundary nodes have the marker of their facet, inner ones 0" {
+    lepp-improve -q -a swap-centroid -s 2 -t 45 boxes.tm >"$out/improved.tm"
+    rows .node "$out/improved.tm" | awk -v old="$(rows .node boxes.tm | wc -l)" '
+        NR <= old { next }
+        # In the plane between the boxes: 20; strictly inside a box: 0.
+        $4 == 1 && $2 > 0 && $2 < 1 && $3 > 0 && $3 < 1 { plane++; if ($5 != 20) bad++ }
+        $4 != 1 && $2 > 0 && $2 < 1 && $3 > 0 && $3 < 1 && $4 > 0 && $4 < 2 {
+            inside++; if ($5 != 0) bad++
+        }
+        $4 == 0 && $2 > 0 && $2 < 1 && $3 > 0 && $3 < 1 { if ($5 != 11) bad++ }
+        END { print plane + 0, inside + 0, bad + 0; exit bad > 0 || inside == 0 }'
+}
+
+@test "selective: better, and a second run on the output changes nothing and says so" {
+    local mesh
+    for mesh in points boxes sphere; do
+        lepp-improve --json "$out/json" "$mesh.tm" >"$out/1.tm" 2>"$out/err"
+        python3 - "$out/json" "$mesh" <<'END'
+import json, sys
+run = json.load(open(sys.argv[1]))
+before, after = run["before"], run["after"]
+assert after["bad_percent"] <= before["bad_percent"]
+assert after["bad_percent"] < before["bad_percent"] or sys.argv[2] != "points"
+assert after["min_dihedral"] >= before["min_dihedral"] - 1e-9
+END
+        lepp-improve --no-history "$out/1.tm" >"$out/2.tm" 2>"$out/err"
+        cmp "$out/1.tm" "$out/2.tm"
+        grep -q '^lepp-improve: nothing to improve: ' "$out/err"
+    done
+}
+
+@test "swap-centroid: all of the original bad tetrahedra are gone" {
+    lepp-improve -q -a swap-centroid --json "$out/json" points.tm >"$out/improved.tm"
+    tet-stats --list points.tm | awk '$2 < 30 || $3 > 150 { print $1 }' >"$out/bad"
+    rows .ele points.tm | awk 'NR == FNR { bad[$1]; next } $1 in bad' "$out/bad" - |
+        awk '{ split($0, v, " "); n = 0; for (i = 2; i <= 5; i++) a[i] = v[i] + 0
+               for (i = 2; i <= 5; i++) for (j = i + 1; j <= 5; j++) if (a[j] < a[i]) {
+                   t = a[i]; a[i] = a[j]; a[j] = t }
+               print a[2], a[3], a[4], a[5] }' | sort >"$out/bad.nodes"
+    rows .ele "$out/improved.tm" |
+        awk '{ for (i = 2; i <= 5; i++) a[i] = $i + 0
+               for (i = 2; i <= 5; i++) for (j = i + 1; j <= 5; j++) if (a[j] < a[i]) {
+                   t = a[i]; a[i] = a[j]; a[j] = t }
+               print a[2], a[3], a[4], a[5] }' | sort >"$out/nodes"
+    [ -s "$out/bad.nodes" ]
+    [ "$(comm -12 "$out/bad.nodes" "$out/nodes" | wc -l)" -eq 0 ]
+}
+
+@test "the same bytes for one thread and for two, and for a pipe" {
+    lepp-improve -q --no-history -j 1 boxes.tm >"$out/1.tm"
+    lepp-improve -q --no-history -j 2 boxes.tm >"$out/2.tm"
+    lepp-improve -q --no-history <boxes.tm | cat >"$out/3.tm"
+    cmp "$out/1.tm" "$out/2.tm"
+    cmp "$out/1.tm" "$out/3.tm"
+}
+
+@test "a larger factor makes a smaller mesh" {
+    local m size last=1000000
+    for m in 1 1.1 1.5; do
+        size=$(lepp-improve -q -m $m points.tm | header .ele /dev/stdin | cut -d ' ' -f 1)
+        [ "$size" -lt "$last" ]
+        last=$size
+    done
+}
+
+@test "TetGen reads the result: the same tetrahedra, and the same boundary" {
+    lepp-improve -q points.tm >"$out/improved.tm"
+    tetgen-export "$out/improved" "$out/improved.tm"
+    mesh-check --json "$out/json" "$out/improved.tm" >"$out/text"
+    run tetgen -rNEF "$out/improved.ele"
+    [ "$status" -eq 0 ]
+    [[ $output == *"Mesh tetrahedra: $(json "$out/json" elements)"$'\n'* ]]
+    [[ $output == *"Mesh points: $(json "$out/json" nodes)"$'\n'* ]]
+}
+
+@test "the history tells what was done; parts pass, unknown blocks of the main mesh go" {
+    sed '$d' points.tm >"$out/in.tm"
+    cat >>"$out/in.tm" <<'END'
+surface.node
+1 3 0 0
+0 1 2 3
+.neighbours
+0 1 2 3 4
+.end
+END
+    run --separate-stderr lepp-improve -m 1.05 "$out/in.tm"
+    [ "$status" -eq 0 ]
+    [[ ${lines[1]} == "# lepp-improve "*" -m1.05 $out/in.tm: "*"% bad; "* ]]
+    [[ $output == *surface.node* ]]
+    [[ $output != *.neighbours* ]]
+    [[ $stderr == *".neighbours is dropped"* ]]
+    # Where nothing changes, nothing goes.
+    run --separate-stderr lepp-improve -t 0 "$out/in.tm"
+    [[ $output == *.neighbours* ]]
+}
+
+@test "JSON: operations and stars add up" {
+    lepp-improve -q --json "$out/json" points.tm >"$out/improved.tm"
+    python3 - "$out/json" <<'END'
+import json, sys
+run = json.load(open(sys.argv[1]))
+stars, done = run["stars"], run["operations"]
+refused = stars["refused"]
+assert sum(stars["sizes"]["closed"]) == stars["closed"] > 0
+assert sum(stars["sizes"]["open"]) == stars["open"] > 0
+assert sum(done.values()) + refused["closed"] + refused["open"] \
+    == stars["closed"] + stars["open"]
+assert sum(stars["visited"]) == run["targets"]
+assert sum(stars["sizes"]["swapped"]) == done["edge_removals"] > 0
+assert run["seconds"] >= 0 and run["passes"] >= 1
+assert set(run["before"]) == set(run["after"])
+END
+    run --separate-stderr lepp-improve -q --json - points.tm
+    [ "${stderr:0:1}" = '{' ]
+    [ "${lines[0]}" = 'termesh 1' ]
+}
+
+@test "degenerate: none, one, flat, left-handed, duplicate and unused nodes" {
+    printf 'termesh 1\n.end\n' | lepp-improve -q --no-history >"$out/none"
+    [ "$(cat "$out/none")" = "$(printf 'termesh 1\n.end')" ]
+    cat >"$out/one.tm" <<'END'
+termesh 1
+.node
+7 3 0 0
+1 0 0 0
+2 9 0 0
+3 0 1 0
+4 0 0 1
+5 5 5 5
+6 0 0 0
+7 9 0 0
+.ele
+1 4 0
+1 1 2 3 4
+.end
+END
+    lepp-improve -q --no-history "$out/one.tm" | cmp - "$out/one.tm"
+    sed 's/^1 1 2 3 4/1 1 3 2 4/' "$out/one.tm" >"$out/left.tm"
+    run --separate-stderr lepp-improve --no-history "$out/left.tm"
+    [ "$status" -eq 0 ]
+    [[ $stderr == *"1 tetrahedra were left-handed and are turned"* ]]
+    [[ $output == *"1 1 3 4 2"* ]]
+    sed 's/^4 0 0 1/4 1 1 0/' "$out/one.tm" >"$out/flat.tm"
+    run --separate-stderr lepp-improve --no-history "$out/flat.tm"
+    [ "$status" -eq 0 ]
+    [[ $stderr == *"1 tetrahedra are flat"* ]]
+    [[ $output == *"1 1 2 3 4"* ]]
+}
+
+@test "wrong meshes are exit 3, with the block and the numbers of the file" {
+    local head='termesh 1\n.node\n5 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n4 1 1 1\n'
+    printf "$head.ele\n2 4 0\n0 0 1 2 3\n1 0 1 2 4\n.end\n" >"$out/overlap.tm"
+    run --separate-stderr lepp-improve "$out/overlap.tm"
+    [ "$status" -eq 3 ]
+    [ -z "$output" ]
+    [[ $stderr == "lepp-improve: $out/overlap.tm: .ele: tetrahedra 0 and 1 overlap"* ]]
+    printf "$head.ele\n1 4 0\n0 0 1 2 2\n.end\n" | {
+        run --separate-stderr lepp-improve
+        [ "$status" -eq 3 ]
+        [[ $stderr == "lepp-improve: <stdin>: .ele: tetrahedron 0 names a node twice" ]]
+    }
+    printf "$head.ele\n1 4 0\n0 0 1 2 9\n.end\n" | {
+        run --separate-stderr lepp-improve
+        [ "$status" -eq 3 ]
+        [[ $stderr == "lepp-improve: <stdin>:11: .ele: node 9 is out of range (0..4)" ]]
+    }
+}
+
+@test "usage errors are exit 2 and say what would be right" {
+    local options
+    while read -r options; do
+        # shellcheck disable=SC2086
+        run --separate-stderr lepp-improve $options points.tm
+        [ "$status" -eq 2 ]
+        [ -z "$output" ]
+        [[ ${stderr_lines[0]} == lepp-improve:* ]]
+    done <<'END'
+-a nonsense
+-m 0.9
+-m x
+-t 91
+-Q shape
+-s sometimes
+-s 0
+-a swap-centroid -s converged
+-a swap-centroid -m 1.1
+-j 0
+--nonsense
+points.tm
+END
+}
+
+@test "exit 4 for a missing file and a full disk, and -o leaves nothing half done" {
+    run --separate-stderr lepp-improve "$out/missing.tm"
+    [ "$status" -eq 4 ]
+    [[ $stderr == *"missing.tm: cannot open"* ]]
+    if [ -w /dev/full ]; then
+        run --separate-stderr bash -c 'lepp-improve -q points.tm >/dev/full'
+        [ "$status" -eq 4 ]
+    fi
+    run lepp-improve -o "$out/new.tm" "$out/missing.tm"
+    [ ! -e "$out/new.tm" ]
+    lepp-improve -q -o "$out/new.tm" points.tm
+    [ "$(tail -n 1 "$out/new.tm")" = .end ]
+    [ "$(find "$out" -name 'new.tm*' | wc -l)" -eq 1 ]
+    lepp-improve -q --no-history -o "$out/new.tm" "$out/new.tm"
+    [ "$(tail -n 1 "$out/new.tm")" = .end ]
+}
