@@ -208,7 +208,7 @@ static tm_status check_sides(const tm_tet_mesh *mesh, unsigned base, tm_error *e
  * a star walk sees only a part of the tetrahedra. */
 static tm_status lock_edges(tm_tet_mesh *mesh, tm_error *error)
 {
-    tm_edge_map faces_at = {.with_values = true};
+    tm_edge_map faces_at = {0};
     tm_status status = TM_OK;
     for (size_t f = 0; f < mesh->faces; f++) {
         const tm_kept_face *face = &mesh->face[f];
@@ -220,8 +220,9 @@ static tm_status lock_edges(tm_tet_mesh *mesh, tm_error *error)
             break;
         }
         for (int i = 0; i < 3; i++) {
-            uint32_t a = face->node[i], b = face->node[(i + 1) % 3], count = 0;
-            tm_edge_map_get(&faces_at, a, b, &count);
+            uint32_t a = face->node[i], b = face->node[(i + 1) % 3];
+            const uint32_t *counted = tm_edge_map_get(&faces_at, a, b);
+            uint32_t count = counted ? *counted : 0;
             tm_edge_map_put(&faces_at, a, b, count + 1);
             if (count == 2)
                 tm_edge_map_put(&mesh->locked, a, b, 0);

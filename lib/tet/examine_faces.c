@@ -91,11 +91,11 @@ static bool list_edges(walk *w)
         return false;
     for (uint32_t e = 0; e < mesh->edges; e++) {
         const uint32_t a = mesh->edge[e][0], b = mesh->edge[e][1];
-        uint32_t earlier;
+        const uint32_t *earlier = tm_edge_map_get(&w->listed, a, b);
         if (a == b)
             add_defect(w, TM_DANGLING_EDGE, e, 0);
-        else if (tm_edge_map_get(&w->listed, a, b, &earlier))
-            add_defect(w, TM_REPEATED_EDGE, e, earlier);
+        else if (earlier)
+            add_defect(w, TM_REPEATED_EDGE, e, *earlier);
         else
             tm_edge_map_put(&w->listed, a, b, e);
     }
@@ -274,9 +274,9 @@ static tm_status walk_nodes(walk *w, tm_error *error)
 /* The rows of .edge that no edge was found for. */
 static void report_edges(walk *w)
 {
-    for (size_t slot = 0; slot < w->listed.room; slot++)
-        if (w->listed.key[slot] != 0)
-            add_defect(w, TM_DANGLING_EDGE, w->listed.value[slot], 0);
+    for (size_t s = 0; s < w->listed.room; s++)
+        if (w->listed.slot[s].key != 0)
+            add_defect(w, TM_DANGLING_EDGE, w->listed.slot[s].value, 0);
 }
 
 static void report(walk *w)
@@ -294,11 +294,7 @@ tm_status tm_tet_examine_faces(tm_examination *found, const tm_tet_arrays *mesh,
                                const int8_t *sign, tm_boundary_faces *boundary,
                                tm_error *error)
 {
-    walk w = {.mesh = mesh,
-              .sign = sign,
-              .found = found,
-              .boundary = boundary,
-              .listed = {.with_values = true}};
+    walk w = {.mesh = mesh, .sign = sign, .found = found, .boundary = boundary};
     tm_status status = tm_face_order_init(&w.order, mesh->tet, mesh->tets, mesh->face,
                                           mesh->faces, mesh->nodes, error);
     if (status == TM_OK && (!list_top_edges(&w) || !list_edges(&w) || !allocate(&w)))

@@ -235,7 +235,6 @@ tm_status tm_lepp_improve(tm_tet_mesh *mesh, const tm_lepp_options *options,
                         .report = report,
                         .error = error,
                         .bad_below = tm_bad_sine2(options->angle),
-                        .refused.with_values = true,
                         .mark_room = mesh->slots,
                         .quality_room = mesh->slots};
     tm_status status = TM_OK;

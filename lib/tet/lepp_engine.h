@@ -59,8 +59,8 @@ tm_status tm_lepp_process_star(tm_lepp_engine *e, const tm_star *star, size_t vi
 
 static inline bool tm_lepp_is_blocked(const tm_lepp_engine *e, uint32_t a, uint32_t b)
 {
-    uint32_t round;
-    return tm_edge_map_get(&e->refused, a, b, &round) && round == e->round;
+    const uint32_t *round = tm_edge_map_get(&e->refused, a, b);
+    return round && *round == e->round;
 }
 
 /* Where a value is counted in a histogram whose last bin is for all larger ones. */

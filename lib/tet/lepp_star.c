@@ -87,7 +87,7 @@ static operation choose(tm_lepp_engine *e, const tm_star *star, bool may_swap,
                         double p[3])
 {
     const tm_tet_mesh *mesh = e->mesh;
-    if (tm_edge_map_has(&mesh->locked, star->a, star->b) ||
+    if (tm_edge_map_get(&mesh->locked, star->a, star->b) ||
         !tm_star_is_simple(mesh, star)) {
         e->report->locked++;
         return REFUSE;
@@ -188,7 +188,7 @@ tm_status tm_lepp_process_star(tm_lepp_engine *e, const tm_star *star, size_t vi
     uint32_t a = star->a, b = star->b;
     bool may_swap =
         e->options->algorithm == TM_LEPP_SELECTIVE || visited <= SWAPS_PER_TARGET;
-    if (!tm_edge_map_has(&e->refused, a, b)) {
+    if (!tm_edge_map_get(&e->refused, a, b)) {
         operation chosen = choose(e, star, may_swap, p);
         count_star(e, star, chosen);
         if (chosen != REFUSE)

@@ -17,7 +17,7 @@ void tm_tet_mesh_free(tm_tet_mesh *mesh)
     free(mesh->edge);
     tm_edge_map_free(&mesh->edge_of);
     tm_edge_map_free(&mesh->locked);
-    *mesh = (tm_tet_mesh){.first_dead = TM_NONE, .edge_of.with_values = true};
+    *mesh = (tm_tet_mesh){.first_dead = TM_NONE};
 }
 
 /* Grows one array to hold `needed` items; *room is left alone. */
@@ -112,8 +112,8 @@ void tm_tet_mesh_delete_tet(tm_tet_mesh *mesh, uint32_t t)
 
 tm_marked_edge *tm_tet_mesh_edge(const tm_tet_mesh *mesh, uint32_t a, uint32_t b)
 {
-    uint32_t e;
-    return tm_edge_map_get(&mesh->edge_of, a, b, &e) ? &mesh->edge[e] : NULL;
+    const uint32_t *e = tm_edge_map_get(&mesh->edge_of, a, b);
+    return e ? &mesh->edge[*e] : NULL;
 }
 
 void tm_tet_mesh_forget_edge(tm_tet_mesh *mesh, uint32_t a, uint32_t b)

@@ -78,7 +78,7 @@ static tm_status take_edges(tm_tet_mesh *mesh, tm_block *block, unsigned base,
 
 tm_status tm_tet_mesh_take(tm_tet_mesh *mesh, tm_stream *stream, tm_error *error)
 {
-    *mesh = (tm_tet_mesh){.first_dead = TM_NONE, .edge_of.with_values = true};
+    *mesh = (tm_tet_mesh){.first_dead = TM_NONE};
     tm_block *node = tm_stream_find(stream, ".node");
     tm_block *ele = tm_stream_find(stream, ".ele");
     tm_block *face = tm_stream_find(stream, ".face");
