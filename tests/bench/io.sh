@@ -2,14 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The stream's reader and writer on a million nodes and six million tetrahedra, beside
 # wc -l, getline + strtod/strtol and printf %.17g/%d: medians of CPU seconds.
-set -eu
-cd "$(dirname "$0")/../.."
-make -s benchers
-PATH=$PWD/build/bin:$PWD/build/bench:$PATH
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+# shellcheck source-path=SCRIPTDIR source=common.inc
+. "$(dirname "$0")/common.inc"
 cells=${CELLS:-102}
-runs=${RUNS:-5}
 io make "$cells" >"$work/grid.tm"
 ls -l "$work/grid.tm" | awk '{ printf "stream of %d bytes, ", $5 }'
 sed -n '3p' "$work/grid.tm" | awk '{ printf "%d nodes\n", $1 }'

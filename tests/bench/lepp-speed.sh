@@ -4,14 +4,8 @@
 # beside Gmsh's default optimiser alone on the same mesh (femur.off as $1 or in $TM_DATA,
 # else a generated surface), and on 20 000 and 200 000 random points. Medians of CPU
 # seconds. Needs python3-gmsh for the peer.
-set -eu
-cd "$(dirname "$0")/../.."
-make -s benchers
-PATH=$PWD/build/bin:$PWD/build/bench:$PATH
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-surface=${1:-${TM_DATA:+$TM_DATA/femur.off}}
-runs=${RUNS:-5}
+# shellcheck source-path=SCRIPTDIR source=common.inc
+. "$(dirname "$0")/common.inc"
 
 # A torus with bumps, some eight thousand triangles.
 torus() {
@@ -31,20 +25,7 @@ torus() {
     }'
 }
 
-points() {
-    awk -v n="$1" 'BEGIN {
-        srand(1)
-        print n, 3, 0, 0
-        for (i = 1; i <= n; i++)
-            printf "%d %.17g %.17g %.17g\n", i, rand(), rand(), rand()
-    }'
-}
-
-tets_of() {
-    sed -n '/^\.ele/{n;p;q;}' "$1" | cut -d ' ' -f 1
-}
-
-if [ -z "$surface" ] || [ ! -r "$surface" ]; then
+if [ -z "$surface" ]; then
     surface=$work/torus.off
     torus >"$surface"
 fi
@@ -73,7 +54,7 @@ fi
 
 echo
 for n in 20000 200000; do
-    points $n >"$work/points.node"
+    points $n 1 >"$work/points.node"
     tetgen-mesh "$work/points.node" >"$work/$n.tm"
     before=$(tets_of "$work/$n.tm")
     lepp-improve -q -a selective -m 1.1 "$work/$n.tm" >"$work/out.tm"

@@ -4,23 +4,9 @@
 # points through TetGen, swap-centroid and selective, medians beside the published row.
 # With the file femur.off (or another surface) as $1 or in $TM_DATA: tables 7.9 and 7.10
 # for `tetgen -pq4` of it.
-set -eu
-cd "$(dirname "$0")/../.."
-make -s benchers
-PATH=$PWD/build/bin:$PWD/build/bench:$PATH
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-surface=${1:-${TM_DATA:+$TM_DATA/femur.off}}
+# shellcheck source-path=SCRIPTDIR source=common.inc
+. "$(dirname "$0")/common.inc"
 seeds=${SEEDS:-1 2 3 4 5}
-
-points() {
-    awk -v n="$1" -v seed="$2" 'BEGIN {
-        srand(seed)
-        print n, 3, 0, 0
-        for (i = 1; i <= n; i++)
-            printf "%d %.17g %.17g %.17g\n", i, rand(), rand(), rand()
-    }'
-}
 
 # One line of figures of a run: ratio, bad %, the ten shares of angles, CPU seconds.
 figures() {
@@ -46,7 +32,7 @@ print(" ".join("%.2f" % statistics.median(c) for c in zip(*rows)))'
 row() {
     printf '%-19s' "$1"
     shift
-    # shellcheck disable=SC2086
+    # shellcheck disable=SC2086,SC2048 # words
     printf ' %6s' $*
     echo
 }
@@ -57,7 +43,7 @@ table() {
     row "" ratio 'bad%' '<5' '<10' '<15' '<20' '<25' '<30' '>150' '>160' '>170' '>175' s
     while IFS='|' read -r name options published; do
         for stream in "$@"; do
-            # shellcheck disable=SC2086
+            # shellcheck disable=SC2086,SC2048 # words
             figures $options "$stream"
         done >"$work/rows"
         row "$name" "$(medians <"$work/rows")"
@@ -85,11 +71,9 @@ m = 1.20|-m 1.2|1.62 35.53 0.74 1.50 2.42 3.82 5.98 9.42 1.89 1.15 0.57 0.32 22.
 END
 
 [ -n "$surface" ] || exit 0
-[ -r "$surface" ] || { echo "thesis-lepp.sh: no $surface" >&2; exit 0; }
 tetgen-mesh -q4 --no-history "$surface" >"$work/surface.tm"
 echo
-echo "$(basename "$surface"), tetgen -pq4: $(sed -n '/^\.ele/{n;p;}' "$work/surface.tm" |
-    cut -d ' ' -f 1) tetrahedra (thesis: another femur, 52848)"
+echo "$(basename "$surface"), tetgen -pq4: $(tets_of "$work/surface.tm") tetrahedra (thesis: another femur, 52848)"
 table "$work/surface.tm" <<'END'
 swap-centroid|-a swap-centroid|5.12 18.22 0.02 0.09 0.23 0.50 1.14 2.48 0.27 0.11 0.03 0.01 61.4
 m = 1.00|-m 1|3.55 10.08 0.00 0.02 0.06 0.16 0.62 2.05 0.08 0.02 0.00 0.00 141

@@ -173,3 +173,39 @@ comma_locale() {
     localedef -i de_DE -f UTF-8 "$BATS_TEST_TMPDIR/comma" >&2
     echo "$BATS_TEST_TMPDIR"
 }
+
+# Prints the value at a path of keys in JSON: json FILE key…
+json() {
+    python3 -c '
+import json, sys
+value = json.load(open(sys.argv[1]))
+for key in sys.argv[2:]:
+    value = value[int(key) if isinstance(value, list) else key]
+print(json.dumps(value))' "$@"
+}
+
+# Prints a stream of random-looking tetrahedra, wrong in many ways, for more than one
+# chunk of work: many [TETRAHEDRA].
+many() {
+    awk -v tets="${1:-20000}" 'BEGIN {
+        nodes = 3000; seed = 7
+        print "termesh 1\n.node\n" nodes " 3 0 0"
+        for (v = 0; v < nodes; v++) {
+            line = v
+            for (i = 0; i < 3; i++) {
+                seed = (seed * 16807) % 2147483647
+                line = line " " seed % 10007 / 10007
+            }
+            print line
+        }
+        print ".ele\n" tets " 4 0"
+        for (t = 0; t < tets; t++) {
+            line = t
+            first = (t * 7919) % nodes
+            for (i = 0; i < 4; i++)
+                line = line " " (first + i * (1 + t % 700)) % nodes
+            print line
+        }
+        print ".end"
+    }'
+}

@@ -93,15 +93,6 @@ if head[2]:
 END
 }
 
-# Prints a value of a JSON file: json FILE KEY…
-json() {
-    python3 -c 'import json, sys
-value = json.load(open(sys.argv[1]))
-for key in sys.argv[2:]:
-    value = value[key]
-print(value)' "$@"
-}
-
 @test "invariants: every algorithm, measure and stop keeps volume, area, markers" {
     local mesh options
     for mesh in points boxes sphere; do

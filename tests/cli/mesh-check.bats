@@ -57,36 +57,6 @@ END
     printf 'termesh 1\n.node\n0 3 0 0\n.ele\n0 4 0\n.end\n' >none.tm
 }
 
-# Prints the value of a key in JSON: json FILE KEY.
-json() {
-    python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))[sys.argv[2]])' "$@"
-}
-
-# Many tetrahedra, wrong in many ways: pieces of work for several threads.
-many() {
-    awk 'BEGIN {
-        nodes = 3000; tets = 30000; seed = 7
-        print "termesh 1\n.node\n" nodes " 3 0 0"
-        for (v = 0; v < nodes; v++) {
-            line = v
-            for (i = 0; i < 3; i++) {
-                seed = (seed * 16807) % 2147483647
-                line = line " " seed % 10007 / 10007
-            }
-            print line
-        }
-        print ".ele\n" tets " 4 0"
-        for (t = 0; t < tets; t++) {
-            line = t
-            first = (t * 7919) % nodes
-            for (i = 0; i < 4; i++)
-                line = line " " (first + i * (1 + t % 700)) % nodes
-            print line
-        }
-        print ".end"
-    }'
-}
-
 @test "a good mesh: the table, and exit 0" {
     run -0 --separate-stderr mesh-check cube.tm
     [ "$stderr" = "" ]
@@ -313,7 +283,7 @@ END
 }
 
 @test "-j 2 gives the bytes of -j 1" {
-    many >many.tm
+    many 30000 >many.tm
     for threads in 1 2 5; do
         run -1 mesh-check -j $threads --json $threads.json -o $threads.table many.tm
     done

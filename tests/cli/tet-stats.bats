@@ -5,6 +5,7 @@
 bats_require_minimum_version 1.5.0
 
 setup() {
+    load helpers
     cd "$BATS_TEST_TMPDIR" || exit
     # A regular tetrahedron of side sqrt(8), and the corner of a unit cube.
     cat >two.tm <<'END'
@@ -42,41 +43,6 @@ termesh 1
 .end
 END
     printf 'termesh 1\n.node\n0 3 0 0\n.ele\n0 4 0\n.end\n' >none.tm
-}
-
-# Prints the value at a path of keys in JSON: json FILE key…
-json() {
-    python3 -c '
-import json, sys
-value = json.load(open(sys.argv[1]))
-for key in sys.argv[2:]:
-    value = value[int(key) if isinstance(value, list) else key]
-print(json.dumps(value))' "$@"
-}
-
-# A ball of random-looking tetrahedra around the origin, for more than one chunk of work.
-many() {
-    awk 'BEGIN {
-        nodes = 3000; tets = 20000; seed = 7
-        print "termesh 1\n.node\n" nodes " 3 0 0"
-        for (v = 0; v < nodes; v++) {
-            line = v
-            for (i = 0; i < 3; i++) {
-                seed = (seed * 16807) % 2147483647
-                line = line " " seed % 10007 / 10007
-            }
-            print line
-        }
-        print ".ele\n" tets " 4 0"
-        for (t = 0; t < tets; t++) {
-            line = t
-            first = (t * 7919) % nodes
-            for (i = 0; i < 4; i++)
-                line = line " " (first + i * (1 + t % 700)) % nodes
-            print line
-        }
-        print ".end"
-    }'
 }
 
 @test "the tables of two known tetrahedra" {
