@@ -27,7 +27,7 @@ CXXFLAGS = -O2 -g
 WARNINGS = -Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes -Werror
 LDLIBS = -lgmp -lm -lpthread
 
-FUZZ_CASES = 3000
+FUZZ_CASES = 20000
 BUILD = build
 
 ifneq ($(filter-out 0,$(SAN)),)
@@ -140,8 +140,9 @@ install: all
 	for page in $(pages); do \
 		install -D -m 644 $$page $(DESTDIR)$(MANDIR)/man$${page##*.}/$${page#man/} || exit; \
 	done
-	sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@INCLUDEDIR@|$(INCLUDEDIR)|; \
-		s|@VERSION@|$(VERSION)|; s|@LDLIBS@|$(LDLIBS)|' termesh.pc.in \
+	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@LIBDIR@|$(LIBDIR)|' \
+		-e 's|@INCLUDEDIR@|$(INCLUDEDIR)|' -e 's|@VERSION@|$(VERSION)|' \
+		-e 's|@LDLIBS@|$(LDLIBS)|' termesh.pc.in \
 		>$(DESTDIR)$(LIBDIR)/pkgconfig/termesh.pc
 
 uninstall:

@@ -16,7 +16,8 @@
 enum { THREADS_MAX = 256 };
 
 static const char shared_help[] =
-    "  -o, --output FILE   write to FILE instead of standard output, whole or not at all\n"
+    "  -o, --output FILE   write to FILE instead of standard output, whole or not at "
+    "all\n"
     "  -j, --threads N     use N threads; the output is the same for every N\n"
     "      --json FILE     write a JSON report to FILE\n"
     "      --no-history    do not add a history line\n"

@@ -14,8 +14,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-extern char **environ;
-
 /* An unnamed file that holds the script, at its beginning; -1 with errno. A file and not
  * a pipe, so that gnuplot and we never wait for each other. */
 static int script_file(const tm_text *script, tm_error *error)
@@ -46,6 +44,9 @@ static int script_file(const tm_text *script, tm_error *error)
 static int start(int input, int output, pid_t *child)
 {
     char *const arguments[] = {"gnuplot", "-d", NULL};
+    /* In the C locale gnuplot complains that it cannot write a degree sign. */
+    if (setenv("LC_ALL", "C.UTF-8", 1) != 0)
+        return errno;
     posix_spawn_file_actions_t actions;
     int reason = posix_spawn_file_actions_init(&actions);
     if (reason != 0)
@@ -74,7 +75,7 @@ static tm_status run(int script, tm_text *figure, tm_error *error)
     int end[2];
     if (pipe2(end, O_CLOEXEC) != 0)
         return tm_fail(error, TM_ERROR_SYSTEM, "cannot run gnuplot: %s", strerror(errno));
-    pid_t child;
+    pid_t child = -1;
     const int reason = start(script, end[1], &child);
     close(end[1]);
     tm_status status = TM_OK;

@@ -1,0 +1,16 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# All tests, from nothing: installs what is missing on Debian 12, builds, and runs them.
+# The last line is "N passed, N failed"; exit status 0 if none failed. With SAN=1 in the
+# environment, under the sanitizers.
+set -eu
+cd "$(dirname "$0")/.."
+# shellcheck source=tests/packages.sh
+. tests/packages.sh
+# shellcheck disable=SC2086 # lists of words
+install_packages $build_packages $run_packages $test_packages
+
+build=build
+[ "${SAN:-0}" = 0 ] || build=build/san
+make -s -j "$(nproc)" tests
+exec sh tests/run.sh "$build"

@@ -1,0 +1,127 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What the compiler does not see: format, suspicious code, scripts, man pages, and the
+# rules of the house. Used by make lint, with the build folder for the generated headers;
+# exit status 1 if anything was found.
+set -u
+build=${1:-build}
+cd "$(dirname "$0")/.." || exit 1
+failed=0
+
+c_files=$(find lib cmd tests examples -name '*.[ch]')
+cxx_sources=$(find tests -name '*.cc')
+scripts="$(find tests examples -name '*.sh') $(find tests -name '*.bats' -o -name '*.bash')
+.ci/run"
+pages=$(find man -name '*.[157]')
+
+need() {
+    command -v "$1" >/dev/null && return
+    echo "make lint needs $1: install the Debian package $2" >&2
+    exit 1
+}
+
+# step WHAT COMMAND… : runs it; its output is shown if it fails.
+step() {
+    what=$1
+    shift
+    if output=$("$@" 2>&1); then
+        echo "ok      $what"
+    else
+        echo "FAILED  $what"
+        printf '%s\n' "$output"
+        failed=1
+    fi
+}
+
+format() {
+    # shellcheck disable=SC2086 # a list of files
+    clang-format --dry-run -Werror $c_files $cxx_sources
+}
+
+tidy() {
+    export build
+    # shellcheck disable=SC2016 # expanded by the inner shell
+    find lib cmd tests/unit tests/fuzz -name '*.c' -print0 | xargs -0 -P "$(nproc)" -n 4 sh -c 'clang-tidy --quiet "$@" -- \
+        -std=c17 -D_GNU_SOURCE "-DTM_VERSION=\"lint\"" "-I$build/generated" 2>/dev/null' sh
+}
+
+# The suppressions are wrong alarms of cppcheck: it does not follow a pointer into the
+# block that keeps it, nor an array that a loop has filled, nor see that filter_fail()
+# does not return.
+suspicious() {
+    cppcheck -j "$(nproc)" --quiet --std=c11 --enable=warning,performance,portability \
+        --inline-suppr --error-exitcode=1 -D_GNU_SOURCE '-DTM_VERSION="lint"' \
+        "-I$build/generated" --suppress=memleak:lib/stream/reader.c \
+        --suppress=uninitvar --suppress=nullPointerRedundantCheck lib cmd tests
+}
+
+shell() {
+    # shellcheck disable=SC2086 # a list of files
+    shellcheck -x $scripts
+}
+
+manual() {
+    # shellcheck disable=SC2086 # a list of files
+    mandoc -Tlint -Wwarning $pages
+}
+
+# A file says its license; nothing is left to do.
+notices() {
+    found=0
+    for file in Makefile $c_files $cxx_sources $scripts $pages; do
+        head -n 3 "$file" | grep -q 'SPDX-License-Identifier: GPL-3.0-or-later' || {
+            echo "$file: has no line SPDX-License-Identifier: GPL-3.0-or-later"
+            found=1
+        }
+    done
+    # shellcheck disable=SC2086 # a list of files
+    grep -nE 'TO[D]O|FIX[M]E' $c_files $cxx_sources $scripts $pages && found=1
+    return "$found"
+}
+
+floor() {
+    case $1 in
+    base) echo 0 ;;
+    geom | stream) echo 1 ;;
+    quality | surface | format) echo 2 ;;
+    tet | poly | octree) echo 3 ;;
+    *) echo unknown ;;
+    esac
+}
+
+# No folder of lib/ includes from a higher floor.
+floors() {
+    found=0
+    for folder in lib/*/; do
+        from=$(basename "$folder")
+        [ "$(floor "$from")" != unknown ] || {
+            echo "lib/$from: is on no floor"
+            found=1
+            continue
+        }
+        higher=$(sed -n 's|^#include "\.\./\([a-z]*\)/.*|\1|p' "$folder"*.[ch] | sort -u |
+            while read -r to; do
+                [ "$(floor "$to")" -le "$(floor "$from")" ] || echo "lib/$to"
+            done)
+        [ -z "$higher" ] || {
+            echo "lib/$from includes from a higher floor:" "$higher"
+            found=1
+        }
+    done
+    return "$found"
+}
+
+need clang-format clang-format
+need clang-tidy clang-tidy
+need cppcheck cppcheck
+need shellcheck shellcheck
+need mandoc mandoc
+
+step "clang-format" format
+step "cppcheck" suspicious
+step "shellcheck" shell
+step "mandoc" manual
+step "notices" notices
+step "floors of lib/" floors
+step "clang-tidy" tidy
+exit "$failed"
