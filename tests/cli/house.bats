@@ -1,0 +1,322 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What every filter does alike, its man page, and what make install puts in place.
+# shellcheck disable=SC2154 # run sets stderr
+
+bats_require_minimum_version 1.5.0
+
+setup_file() {
+    root=$(cd "$BATS_TEST_DIRNAME/../.." && pwd)
+    filters=$(cd "$root/cmd" && for file in *.c; do echo "${file%.c}"; done)
+    export root filters
+}
+
+setup() {
+    cd "$BATS_TEST_TMPDIR" || exit
+    cat >corner.tm <<'END'
+termesh 1
+.node
+4 3 0 0
+1 0 0 0
+2 1 0 0
+3 0 1 0
+4 0 0 1
+.ele
+1 4 0
+1 1 2 3 4
+.face
+4 0
+1 1 3 2
+2 1 2 4
+3 2 3 4
+4 1 4 3
+.end
+END
+    sed -n '/^.node/,/^.ele/p' corner.tm | sed '1d; $d' >corner.node
+    sed 's/^\.node/surface.node/; s/^\.face/surface.face/; /^\.ele/,/^1 1 2/d' \
+        corner.tm >surface.tm
+}
+
+# The operands with which a filter reads the file $2; for tetgen-import, a .node file.
+operands() {
+    case $1 in
+    tetgen-export) echo "out $2" ;;
+    *) echo "$2" ;;
+    esac
+}
+
+# A good input for a filter.
+input() {
+    case $1 in
+    tetgen-import) echo corner.node ;;
+    tetgen-mesh) echo surface.tm ;;
+    *) echo corner.tm ;;
+    esac
+}
+
+# Runs the function $1 with each filter. (bats shows which one where it fails.)
+for_each_filter() {
+    for filter in $filters; do
+        echo "$filter"
+        "$1" "$filter"
+    done
+}
+
+teardown() {
+    echo "status '${status:-}', output '${output:-}', standard error '${stderr:-}'"
+}
+
+@test "--help and --version: on standard output, exit 0" {
+    asks() {
+        run -0 --separate-stderr "$1" --help
+        [ "$stderr" = "" ]
+        [[ "${lines[0]}" == "usage: $1 "* ]]
+        [ "$output" = "$("$1" -h)" ]
+        run -0 --separate-stderr "$1" --version
+        [ "$stderr" = "" ]
+        [[ "$output" =~ ^$1\ \(termesh\)\ [0-9.]+$ ]]
+        [ "$output" = "$("$1" -V)" ]
+    }
+    for_each_filter asks
+}
+
+@test "a good input: exit 0" {
+    reads() {
+        # shellcheck disable=SC2046 # words
+        run -0 "$1" $(operands "$1" "$(input "$1")")
+    }
+    for_each_filter reads
+}
+
+@test "standard input, no operand or -, is as the file" {
+    reads_standard_input() {
+        # tetgen-import reads several files, tetgen-export writes them.
+        case $1 in tetgen-import | tetgen-export) return 0 ;; esac
+        "$1" --no-history "$(input "$1")" >from-file
+        "$1" --no-history <"$(input "$1")" >from-pipe
+        "$1" --no-history - <"$(input "$1")" >from-dash
+        cmp from-file from-dash
+        cmp from-file from-pipe
+    }
+    for_each_filter reads_standard_input
+}
+
+@test "an unknown option: exit 2 and how it is called" {
+    refuses() {
+        run -2 --separate-stderr "$1" --no-such-option corner.tm
+        [ "$output" = "" ]
+        [[ "$stderr" == "$1: option '--no-such-option' is unknown"* ]]
+        [[ "$stderr" == *"usage: $1 "* ]]
+    }
+    for_each_filter refuses
+}
+
+@test "an empty input: exit 3, one line, nothing on standard output" {
+    refuses_nothing() {
+        : >empty.node
+        # shellcheck disable=SC2046 # words
+        run -3 --separate-stderr "$1" $(operands "$1" empty.node)
+        [ "$output" = "" ]
+        [ "${#stderr_lines[@]}" -eq 1 ]
+        [[ "$stderr" == "$1: empty.node"* ]]
+    }
+    for_each_filter refuses_nothing
+}
+
+@test "a file that is not there: exit 4" {
+    misses() {
+        # shellcheck disable=SC2046 # words
+        run -4 --separate-stderr "$1" $(operands "$1" nowhere.node)
+        [[ "$stderr" == "$1: nowhere.node: "* ]]
+    }
+    for_each_filter misses
+}
+
+@test "a full disk: exit 4" {
+    [ -e /dev/full ] || skip "there is no /dev/full"
+    fills() {
+        [ "$1" != tetgen-export ] || return 0 # its output is files
+        run -4 --separate-stderr sh -c "$1 '$(input "$1")' >/dev/full"
+        [[ "$stderr" == *"No space left on device"* ]]
+    }
+    for_each_filter fills
+}
+
+@test "-o FILE is standard output's bytes, and stays as it was where the filter fails" {
+    writes() {
+        [ "$1" != tetgen-export ] || return 0
+        "$1" --no-history "$(input "$1")" >expected
+        echo old >file
+        "$1" --no-history -o file "$(input "$1")"
+        cmp file expected
+        echo old >file
+        : >empty.node
+        run -3 "$1" -o file empty.node
+        [ "$(cat file)" = old ]
+        [ -z "$(find . -name 'file?*')" ]
+    }
+    for_each_filter writes
+}
+
+@test "a reader that goes away is no error to speak of" {
+    awk 'BEGIN {
+        print "termesh 1\n.node\n20000 3 0 0"
+        for (v = 1; v <= 20000; v++)
+            print v, v % 27, v % 29, v % 31
+        print ".ele\n20000 4 0"
+        for (t = 1; t <= 20000; t++)
+            print t, 1, 2, 3, 4
+        print ".end"
+    }' >many.tm
+    sed -n '/^.node/,/^.ele/p' many.tm | sed '1d; $d' >many.node
+    sed '/^.ele/,/^20000 1/d' many.tm >many-nodes.tm
+    closes() {
+        case $1 in
+        tet-stats) command="tet-stats --list many.tm" ;;
+        lepp-improve) command="lepp-improve -q many-nodes.tm" ;;
+        tetgen-import) command="tetgen-import many.node" ;;
+        tetgen-mesh) command="tetgen-mesh --quiet many.node" ;;
+        *) return 0 ;; # writes less than a pipe holds
+        esac
+        run -0 --separate-stderr bash -c "{ $command; echo \$? >status; } | head -n 1"
+        [ "$stderr" = "" ]
+        [ "${#lines[@]}" -eq 1 ]
+        [ "$(cat status)" -eq 141 ]
+    }
+    for_each_filter closes
+}
+
+@test "a terminal as standard input: usage, exit 2" {
+    command -v script >/dev/null || skip "there is no script(1)"
+    script -qec true /dev/null </dev/null >/dev/null || skip "script(1) has no terminal"
+    asks_for_input() {
+        run -2 script -qec "$1 $(operands "$1" '')" /dev/null </dev/null
+        [[ "$output" == *"usage: $1 "* ]]
+    }
+    for_each_filter asks_for_input
+}
+
+# The page as plain text; mandoc makes letters bold by printing them twice.
+page() {
+    mandoc -Tascii "$root/man/$1.1" | sed 's/.\x08//g'
+}
+
+@test "every filter has a man page with exactly the options that it has" {
+    documented() {
+        [ -f "$root/man/$1.1" ]
+        "$1" --help | grep -oE '^ +(-[A-Za-z], )?--[a-z-]+' | grep -oE -- '--[a-z-]+' |
+            sort >help
+        page "$1" | grep -oE '^ +(-[A-Za-z][^ ]*, )?--[a-z-]+' | grep -oE -- '--[a-z-]+' |
+            sort >described
+        run -0 diff help described
+    }
+    for_each_filter documented
+}
+
+# The commands of a page's EXAMPLES: its literal blocks and its .Dl lines. (What they
+# print stands in unfilled blocks.)
+examples() {
+    sed -n '/^\.Sh EXAMPLES/,/^\.Sh [^E]/p' "$1" |
+        sed -n '/^\.Bd -literal/,/^\.Ed/{/^\.Bd/d; /^\.Ed/d; p}; s/^\.Dl //p' |
+        sed 's/\\&//g; s/\\e/\\/g; s/\\(aq/'\''/g'
+}
+
+@test "the examples of all man pages run" {
+    command -v tetgen >/dev/null || skip "there is no tetgen"
+    command -v gnuplot >/dev/null || skip "there is no gnuplot"
+    for page in "$root"/man/*.[157]; do
+        folder=$(basename "$page").examples
+        mkdir "$folder"
+        examples "$page" >"$folder/commands"
+        [ -s "$folder/commands" ]
+        # That a mesh is not good is an answer, no failure.
+        echo 'mesh-check() { command mesh-check "$@" || [ $? -eq 1 ]; }' >"$folder/all"
+        cat "$folder/commands" >>"$folder/all"
+        echo "$page"
+        run -0 bash -euc "cd '$folder' && . ./all"
+    done
+}
+
+@test "make install: filters, man pages, headers and library, and uninstall removes them" {
+    variables=(BUILD="$TM_BUILD" PREFIX=/usr DESTDIR="$PWD/to")
+    case ${TM_BUILD:?} in
+    */san) variables=(SAN=1 BUILD="${TM_BUILD%/san}" "${variables[@]:1}") ;;
+    esac
+    run -0 make -s -C "$root" "${variables[@]}" install
+    [ "$output" = "" ]
+    [ "$(to/usr/bin/tet-stats --list corner.tm)" = "$(tet-stats --list corner.tm)" ]
+    for filter in $filters; do
+        [ -x "to/usr/bin/$filter" ]
+        [ -f "to/usr/share/man/man1/$filter.1" ]
+    done
+    [ -f to/usr/share/man/man5/termesh-stream.5 ]
+    [ -f to/usr/share/man/man7/termesh.7 ]
+    make -s -C "$root" "${variables[@]}" uninstall
+    run -0 find to -type f
+    [ "$output" = "" ]
+}
+
+@test "a program of another project uses the installed library by pkg-config" {
+    case ${TM_BUILD:?} in */san) skip "the library is built for the sanitizers" ;; esac
+    command -v pkg-config >/dev/null || skip "there is no pkg-config"
+    make -s -C "$root" BUILD="$TM_BUILD" PREFIX="$PWD/usr" install
+    cat >program.c <<'END'
+#include <stdio.h>
+#include <termesh/tet/mesh.h>
+int main(void)
+{
+    tm_stream stream;
+    tm_tet_mesh mesh;
+    tm_error error;
+    tm_stream_init(&stream);
+    if (tm_stream_read(&stream, 0, "input", &error) != TM_OK ||
+        tm_tet_mesh_take(&mesh, &stream, &error) != TM_OK)
+        return error.status;
+    printf("%zu nodes, %zu tetrahedra\n", mesh.nodes, mesh.tets);
+    tm_tet_mesh_free(&mesh);
+    tm_stream_free(&stream);
+    return 0;
+}
+END
+    export PKG_CONFIG_PATH=$PWD/usr/lib/pkgconfig
+    # shellcheck disable=SC2046 # words
+    cc -Wall -Wextra -Werror -pedantic -o program program.c \
+        $(pkg-config --static --cflags --libs termesh)
+    [ "$(./program <corner.tm)" = "4 nodes, 1 tetrahedra" ]
+    [ "$(pkg-config --modversion termesh)" = \
+        "$(tet-stats --version | sed 's/.* //')" ]
+}
+
+@test "every installed header stands alone" {
+    for header in "$root"/lib/*/*.h; do
+        echo "#include \"$header\"" >header.c
+        cc -std=c17 -D_GNU_SOURCE -Wall -Wextra -Werror -Wno-unused-function \
+            -fsyntax-only header.c
+    done
+}
+
+@test "the figures in README.md are what its pipeline gives" {
+    command -v tetgen >/dev/null || skip "there is no tetgen"
+    LC_ALL=C awk -f "$root/examples/knot.awk" >knot.off
+    tetgen-mesh -q -o mesh.tm knot.off
+    grep -qF "$(sed -n 2p mesh.tm)" "$root/README.md" || skip "TetGen is another version"
+    lepp-improve mesh.tm >better.tm 2>message
+    grep -qxFf message "$root/README.md"
+    tet-stats mesh.tm better.tm | head -n 6 >table
+    diff table <(grep -A 5 '^ *before *after$' "$root/README.md")
+    command -v gnuplot >/dev/null || skip "there is no gnuplot"
+    tet-stats -o table --plot figure.svg mesh.tm better.tm
+    diff <(grep -o 'after: [^<]*' figure.svg) \
+        <(grep -o 'after: [^<]*' "$root/examples/quickstart.svg")
+}
+
+@test "the pipelines of examples/Makefile run, each from what it builds" {
+    command -v tetgen >/dev/null || skip "there is no tetgen"
+    command -v gnuplot >/dev/null || skip "there is no gnuplot"
+    run -0 make -s -C "$root/examples" build="$TM_BUILD" to="$PWD/made"
+    for model in knot bar gear; do
+        [ -s "made/$model.txt" ]
+        [ -s "made/$model.svg" ]
+    done
+    run -0 make -C "$root/examples" build="$TM_BUILD" to="$PWD/made"
+    [[ "$output" != *lepp-improve* ]]
+}

@@ -1,0 +1,333 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Damaged streams for the library and for every filter:
+ *
+ *     fuzz FOLDER CASES
+ *
+ * FOLDER holds the filters. Each case is read by the library; what it reads as a stream
+ * must be written and read back alike, and as a mesh must stay valid when it is improved.
+ * Every FILTER_EVERY-th case goes through the filters: no signal, no report of a
+ * sanitizer, no other exit status than 0, 1 and 3. No case may take longer than SECONDS.
+ * TM_SEED repeats a run. The first case that fails is kept in a file. */
+#include "../../lib/tet/lepp.h"
+#include "../unit/random.h"
+#include "damage.h"
+
+#include <dirent.h>
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { FILTER_EVERY = 50, SECONDS = 20 };
+
+typedef struct {
+    const char *name;
+    const char *arguments[8];
+    bool may_fail; /* also exit status 4: a program that it runs fails */
+} command;
+
+/* INPUT is the damaged stream; BASE the beginning of names of files beside it. */
+#define INPUT "input.tm"
+#define BASE  "base"
+
+static const command commands[] = {
+    {"tet-stats", {"--list", INPUT}, false},
+    {"tet-stats", {INPUT, INPUT}, false},
+    {"lepp-improve", {INPUT}, false},
+    {"lepp-improve", {"-Q", "volume", "-m", "1", INPUT}, false},
+    {"mesh-check", {INPUT}, false},
+    {"tetgen-export", {"out", INPUT}, false},
+    {"tetgen-import", {BASE}, false},
+    {"tetgen-mesh", {"--tetgen", "false", INPUT}, true},
+};
+enum { COMMANDS = sizeof commands / sizeof commands[0] };
+
+static const char *folder;
+static char work[] = "/tmp/termesh-fuzz.XXXXXX";
+
+_Noreturn static void give_up(const char *what)
+{
+    perror(what);
+    exit(EXIT_FAILURE);
+}
+
+static void require(bool holds, const char *what)
+{
+    if (holds)
+        return;
+    fprintf(stderr, "fuzz: %s\n", what);
+    abort();
+}
+
+/* The library ---------------------------------------------------------------------- */
+
+static tm_status read_bytes(tm_stream *stream, const char *bytes, size_t size,
+                            tm_error *error)
+{
+    int fd = memfd_create("fuzz", MFD_CLOEXEC);
+    if (fd < 0 || write(fd, bytes, size) != (ssize_t)size || lseek(fd, 0, SEEK_SET) != 0)
+        give_up("memfd_create");
+    tm_stream_init(stream);
+    tm_status status = tm_stream_read(stream, fd, "case", error);
+    close(fd);
+    return status;
+}
+
+static void write_bytes(const tm_stream *stream, tm_text *text)
+{
+    tm_error error;
+    int fd = memfd_create("fuzz", MFD_CLOEXEC);
+    require(tm_stream_write(stream, fd, 1, &error) == TM_OK, "a stream is not written");
+    lseek(fd, 0, SEEK_SET);
+    struct stat status;
+    fstat(fd, &status);
+    char *bytes = malloc((size_t)status.st_size + 1);
+    if (!bytes || read(fd, bytes, (size_t)status.st_size) != status.st_size)
+        give_up("read");
+    tm_text_append(text, bytes, (size_t)status.st_size);
+    free(bytes);
+    close(fd);
+}
+
+/* What was read is written; that is read again, and written as the same bytes. */
+static void check_round_trip(const tm_stream *stream)
+{
+    tm_text first = {0}, second = {0};
+    tm_stream again;
+    tm_error error;
+    write_bytes(stream, &first);
+    require(read_bytes(&again, first.byte, first.size, &error) == TM_OK,
+            "what was written is not read");
+    write_bytes(&again, &second);
+    require(first.size == second.size && memcmp(first.byte, second.byte, first.size) == 0,
+            "written, read and written again it is other bytes");
+    tm_stream_free(&again);
+    tm_text_free(&first);
+    tm_text_free(&second);
+}
+
+/* Whether swap-centroid ends soon: needles it cuts into millions. */
+static bool is_compact(const tm_tet_mesh *mesh)
+{
+    static const double most = 100, steps = 16;
+    for (size_t v = 0; v < mesh->nodes; v++)
+        for (int i = 0; i < 3; i++) {
+            double x = mesh->xyz[v][i];
+            if (fabs(x) > most || x * steps != floor(x * steps))
+                return false;
+        }
+    return true;
+}
+
+/* An improved mesh is a mesh. */
+static void check_improvement(tm_stream *stream)
+{
+    static const double factor = 1.1, angle = 30;
+    tm_tet_mesh mesh;
+    tm_error error;
+    tm_lepp_report report;
+    tm_lepp_options options = {.algorithm = TM_LEPP_SELECTIVE,
+                               .factor = factor,
+                               .angle = angle,
+                               .measure = random_below(2) ? TM_MEASURE_DIHEDRAL
+                                                          : TM_MEASURE_VOLUME,
+                               .stop = TM_LEPP_PASSES,
+                               .passes = 2};
+    tm_status status = tm_tet_mesh_take(&mesh, stream, &error);
+    if (status == TM_OK) {
+        require(tm_tet_mesh_check(&mesh, &error) == TM_OK, "a mesh that is none");
+        if (random_below(2) && is_compact(&mesh))
+            options.algorithm = TM_LEPP_SWAP_CENTROID;
+        status = tm_lepp_improve(&mesh, &options, &report, &error);
+        require(status == TM_OK, "the improvement fails");
+        if (tm_tet_mesh_check(&mesh, &error) != TM_OK)
+            require(false, error.what);
+        require(tm_tet_mesh_give(&mesh, stream, &error) == TM_OK, "the mesh is kept");
+        check_round_trip(stream);
+    } else {
+        require(status == TM_ERROR_INPUT && error.what[0], "no mesh, but no reason");
+        tm_tet_mesh_free(&mesh);
+    }
+}
+
+static void check_library(const tm_text *text)
+{
+    tm_stream stream;
+    tm_error error;
+    if (read_bytes(&stream, text->byte ? text->byte : "", text->size, &error) == TM_OK) {
+        check_round_trip(&stream);
+        check_improvement(&stream);
+        tm_stream_free(&stream);
+    } else {
+        require(error.status == TM_ERROR_INPUT && error.what[0],
+                "not read, but no reason");
+    }
+}
+
+/* The filters ---------------------------------------------------------------------- */
+
+static void write_file(const char *name, const char *bytes, size_t size)
+{
+    FILE *file = fopen(name, "w");
+    if (!file || fwrite(bytes, 1, size, file) != size || fclose(file) != 0)
+        give_up(name);
+}
+
+/* The blocks that TetGen knows as files. */
+static void write_tetgen_files(const tm_text *text)
+{
+    static const char *const suffixes[] = {".node", ".ele", ".face", ".edge"};
+    for (size_t s = 0; s < sizeof suffixes / sizeof suffixes[0]; s++) {
+        char line[16], name[32];
+        snprintf(line, sizeof line, "\n%s\n", suffixes[s]);
+        snprintf(name, sizeof name, BASE "%s", suffixes[s]);
+        const char *begin = text->byte ? strstr(text->byte, line) : NULL;
+        begin = begin ? begin + strlen(line) : "";
+        const char *end = strstr(begin, "\n.");
+        write_file(name, begin, end ? (size_t)(end - begin) : strlen(begin));
+    }
+}
+
+/* Runs a filter in the work folder. Returns wait()'s status. */
+static int run(const command *c)
+{
+    char program[PATH_MAX];
+    char *arguments[sizeof c->arguments / sizeof c->arguments[0] + 2] = {program};
+    snprintf(program, sizeof program, "%s/%s", folder, c->name);
+    memcpy(arguments + 1, c->arguments, sizeof c->arguments);
+    pid_t child = fork();
+    if (child < 0)
+        give_up("fork");
+    if (child == 0) {
+        alarm(SECONDS);
+        if (!freopen("/dev/null", "r", stdin) || !freopen("/dev/null", "w", stdout) ||
+            !freopen("messages", "w", stderr))
+            _exit(SECONDS);
+        execv(program, arguments);
+        _exit(127);
+    }
+    int status;
+    waitpid(child, &status, 0);
+    return status;
+}
+
+static void show_messages(void)
+{
+    char line[512];
+    FILE *file = fopen("messages", "r");
+    while (file && fgets(line, sizeof line, file))
+        fputs(line, stderr);
+    if (file)
+        fclose(file);
+}
+
+static void check_filters(const tm_text *text)
+{
+    write_file(INPUT, text->byte ? text->byte : "", text->size);
+    write_tetgen_files(text);
+    for (size_t c = 0; c < COMMANDS; c++) {
+        int status = run(&commands[c]), code = WEXITSTATUS(status);
+        if (WIFEXITED(status) && (code == 0 || code == 1 || code == TM_ERROR_INPUT ||
+                                  (code == TM_ERROR_SYSTEM && commands[c].may_fail)))
+            continue;
+        show_messages();
+        if (WIFEXITED(status))
+            fprintf(stderr, "fuzz: %s: exit status %d\n", commands[c].name, code);
+        else
+            fprintf(stderr, "fuzz: %s: %s\n", commands[c].name,
+                    strsignal(WTERMSIG(status)));
+        abort();
+    }
+}
+
+/* ---------------------------------------------------------------------------------- */
+
+/* The cases from *current on, which tells the parent where a crash was. */
+static void run_cases(uint64_t seed, uint64_t cases, volatile uint64_t *current)
+{
+    for (; *current < cases; ++*current) {
+        tm_text text = {0};
+        make_damaged(&text, seed, *current);
+        alarm(SECONDS);
+        check_library(&text);
+        alarm(0);
+        if (*current % FILTER_EVERY == 0)
+            check_filters(&text);
+        tm_text_free(&text);
+    }
+}
+
+/* Every filter of the folder has a command above. */
+static void require_all_filters(int filters, char **filter)
+{
+    for (int i = 0; i < filters; i++) {
+        bool found = false;
+        for (size_t c = 0; c < COMMANDS && !found; c++)
+            found = strcmp(commands[c].name, filter[i]) == 0;
+        if (!found) {
+            fprintf(stderr, "fuzz: no command for %s\n", filter[i]);
+            exit(EXIT_FAILURE);
+        }
+    }
+}
+
+/* Keeps the case in the work folder and says how to have it again. */
+static void report_failure(uint64_t seed, uint64_t number, int status)
+{
+    tm_text text = {0};
+    make_damaged(&text, seed, number);
+    write_file(INPUT, text.byte ? text.byte : "", text.size);
+    fprintf(stderr, "fuzz: case %" PRIu64 " of TM_SEED=%" PRIu64 ": %s; it is %s/%s\n",
+            number, seed,
+            WIFSIGNALED(status) ? strsignal(WTERMSIG(status)) : "a sanitizer's report",
+            work, INPUT);
+}
+
+static void remove_work(void)
+{
+    DIR *entries = opendir(".");
+    const struct dirent *entry;
+    while (entries && (entry = readdir(entries)))
+        unlink(entry->d_name);
+    if (entries)
+        closedir(entries);
+    rmdir(work);
+}
+
+int main(int argc, char **argv)
+{
+    if (argc < 3) {
+        fprintf(stderr, "usage: fuzz FOLDER CASES [FILTER…]\n");
+        return 2;
+    }
+    char resolved[PATH_MAX];
+    folder = realpath(argv[1], resolved);
+    uint64_t cases = strtoull(argv[2], NULL, 10);
+    require_all_filters(argc - 3, argv + 3);
+    random_start();
+    fflush(stdout);
+    const uint64_t seed = random_state;
+    volatile uint64_t *current = mmap(NULL, sizeof *current, PROT_READ | PROT_WRITE,
+                                      MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (!folder || current == MAP_FAILED || !mkdtemp(work) || chdir(work) != 0)
+        give_up(work);
+    pid_t child = fork();
+    if (child < 0)
+        give_up("fork");
+    if (child == 0) {
+        run_cases(seed, cases, current);
+        return 0;
+    }
+    int status;
+    waitpid(child, &status, 0);
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+        report_failure(seed, *current, status);
+        return EXIT_FAILURE;
+    }
+    remove_work();
+    printf("%" PRIu64 " cases\n", cases);
+    return 0;
+}
