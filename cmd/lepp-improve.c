@@ -10,38 +10,49 @@
 #include <string.h>
 #include <time.h>
 
+enum { MAX_STAR = FILTER_OWN };
+
 static const struct option options[] = {{"algorithm", required_argument, NULL, 'a'},
                                         {"factor", required_argument, NULL, 'm'},
                                         {"angle", required_argument, NULL, 't'},
                                         {"quality", required_argument, NULL, 'Q'},
                                         {"stop", required_argument, NULL, 's'},
+                                        {"max-star", required_argument, NULL, MAX_STAR},
                                         FILTER_OPTIONS};
 
 static const char synopsis[] = "[-a ALGORITHM] [-m FACTOR] [-t DEG] [-Q dihedral|volume] "
-                               "[-s original|N|converged] [FILE]";
+                               "[-s original|N|converged] [--max-star N] [FILE]";
 
 static const char own_help[] =
     "  -a, --algorithm A   selective (default): change a terminal star only where that\n"
-    "                      makes it better; swap-centroid: change every one\n"
+    "                      makes it better; swap-centroid, centroid, wcentroid,\n"
+    "                      bisection: change every one\n"
     "  -m, --factor M      selective: how many times better, 1 or more (default 1.1)\n"
     "  -t, --angle DEG     bad: a dihedral angle below DEG or above 180 - DEG (30)\n"
     "  -Q, --quality Q     compare stars by dihedral (default) or volume\n"
     "  -s, --stop WHEN     original: the bad tetrahedra of the input, once (default of\n"
-    "                      swap-centroid); N: so many passes over the bad ones;\n"
-    "                      converged: until nothing can be done (default of selective)\n";
+    "                      all but selective); N: so many passes over the bad ones;\n"
+    "                      converged: until nothing can be done (default of selective)\n"
+    "      --max-star N    leave stars of more than N tetrahedra alone\n";
 
 static const double default_factor = 1.1, most_factor = 100;
 static const double default_angle = 30, right_angle = 90;
 
+/* In the order of tm_lepp_algorithm. */
+static const char *const algorithms[] = {"bisection", "centroid", "wcentroid",
+                                         "swap-centroid", "selective"};
+
 static void set_algorithm(const filter *f, tm_lepp_options *o, const char *name)
 {
-    if (strcmp(name, "selective") == 0)
-        o->algorithm = TM_LEPP_SELECTIVE;
-    else if (strcmp(name, "swap-centroid") == 0)
-        o->algorithm = TM_LEPP_SWAP_CENTROID;
-    else
-        filter_usage_error(f, "-a: '%s' is not an algorithm (selective, swap-centroid)",
-                           name);
+    for (size_t a = 0; a < sizeof algorithms / sizeof algorithms[0]; a++)
+        if (strcmp(name, algorithms[a]) == 0) {
+            o->algorithm = (tm_lepp_algorithm)a;
+            return;
+        }
+    filter_usage_error(f,
+                       "-a: '%s' is not an algorithm (bisection, centroid, wcentroid, "
+                       "swap-centroid, selective)",
+                       name);
 }
 
 static void set_measure(const filter *f, tm_lepp_options *o, const char *name)
@@ -86,6 +97,8 @@ static tm_lepp_options read_options(filter *f)
             set_measure(f, &o, optarg);
         else if (c == 's')
             set_stop(f, &o, optarg);
+        else if (c == MAX_STAR)
+            o.max_star = (size_t)filter_integer(f, "--max-star", optarg, 1, INT32_MAX);
         has_stop |= c == 's';
         has_factor |= c == 'm';
     }
@@ -93,9 +106,11 @@ static tm_lepp_options read_options(filter *f)
     if (!has_stop)
         o.stop = selective ? TM_LEPP_CONVERGED : TM_LEPP_ORIGINAL;
     if (!selective && has_factor)
-        filter_usage_error(f, "-m is for selective: swap-centroid changes every star");
+        filter_usage_error(f, "-m is for selective: %s changes every star",
+                           algorithms[o.algorithm]);
     if (!selective && o.stop == TM_LEPP_CONVERGED)
-        filter_usage_error(f, "swap-centroid does not converge: -s original or -s N");
+        filter_usage_error(f, "%s does not converge: -s original or -s N",
+                           algorithms[o.algorithm]);
     return o;
 }
 
@@ -159,6 +174,7 @@ static void stars_json(tm_json *json, const tm_lepp_report *r)
     tm_json_integer(json, "closed", (int64_t)r->refused_closed);
     tm_json_integer(json, "open", (int64_t)r->refused_open);
     tm_json_integer(json, "locked", (int64_t)r->locked);
+    tm_json_integer(json, "above_max_star", (int64_t)r->above_max);
     tm_json_close(json, '}');
     tm_json_open(json, "invalid_centroids", '{');
     tm_json_integer(json, "outside", (int64_t)r->outside);

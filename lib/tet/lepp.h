@@ -12,9 +12,13 @@
 #include "../quality/tet_measure.h"
 #include "mesh.h"
 
+/* What is done with a terminal star. All but the last change every one. */
 typedef enum tm_lepp_algorithm {
-    TM_LEPP_SWAP_CENTROID, /* section 6.1: every terminal star is changed */
-    TM_LEPP_SELECTIVE      /* section 6.2: only where that makes it better by a factor */
+    TM_LEPP_BISECTION,     /* section 2.7.1: insert the midpoint of the edge */
+    TM_LEPP_CENTROID,      /* 2.7.2: insert the mean of the star's nodes */
+    TM_LEPP_WCENTROID,     /* 2.7.2: insert the mean of its tetrahedra's centroids */
+    TM_LEPP_SWAP_CENTROID, /* 6.1: that of the nodes, or remove the edge, if better */
+    TM_LEPP_SELECTIVE      /* 6.2: the same, where it makes the star better by a factor */
 } tm_lepp_algorithm;
 
 /* When to stop, by the set S of bad tetrahedra (section 6.2.8). */
@@ -30,7 +34,8 @@ typedef struct tm_lepp_options {
     double angle;  /* degrees; bad: a dihedral angle below it, or above 180 - it */
     tm_tet_measure measure; /* by which stars are compared */
     tm_lepp_stop stop;
-    size_t passes; /* for TM_LEPP_PASSES */
+    size_t passes;   /* for TM_LEPP_PASSES */
+    size_t max_star; /* stars of more tetrahedra are left alone; 0: none is */
 } tm_lepp_options;
 
 /* selective asks for this relative gain at least: with a factor of 1 and rounded
@@ -53,6 +58,7 @@ typedef struct tm_lepp_report {
     size_t outside,
         tangled;         /* centroids outside of their star, or not seeing all of it */
     size_t locked;       /* stars where the mesh is not manifold, or flat twice */
+    size_t above_max;    /* stars left alone because of max_star */
     size_t too_large;    /* closed stars too large for an edge removal */
     size_t most_visited; /* stars for one target */
     size_t closed_size[TM_LEPP_SIZES], open_size[TM_LEPP_SIZES];

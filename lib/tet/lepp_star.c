@@ -54,7 +54,7 @@ void tm_lepp_measure(tm_lepp_engine *e, uint32_t t)
 /* How good the tetrahedra must be that replace the star. */
 static double least_quality(const tm_lepp_engine *e, const tm_star *star)
 {
-    if (e->options->algorithm == TM_LEPP_SWAP_CENTROID)
+    if (e->options->algorithm != TM_LEPP_SELECTIVE)
         return DBL_MIN;
     double worst = HUGE_VAL;
     for (size_t i = 0; i < star->size; i++)
@@ -69,8 +69,11 @@ static double least_quality(const tm_lepp_engine *e, const tm_star *star)
 static operation choose_point(tm_lepp_engine *e, const tm_star *star, double p[3])
 {
     const tm_tet_mesh *mesh = e->mesh;
-    if (tm_star_is_free(mesh, star)) {
-        tm_star_centroid(mesh, star, p);
+    if (e->options->algorithm != TM_LEPP_BISECTION && tm_star_is_free(mesh, star)) {
+        if (e->options->algorithm == TM_LEPP_WCENTROID)
+            tm_star_wcentroid(mesh, star, p);
+        else
+            tm_star_centroid(mesh, star, p);
         if (tm_star_sees(mesh, star, p))
             return INSERT_CENTROID;
         if (tm_star_contains(mesh, star, p))
@@ -90,6 +93,10 @@ static operation choose(tm_lepp_engine *e, const tm_star *star, bool may_swap,
     if (tm_edge_map_get(&mesh->locked, star->a, star->b) ||
         !tm_star_is_simple(mesh, star)) {
         e->report->locked++;
+        return REFUSE;
+    }
+    if (e->options->max_star > 0 && star->size > e->options->max_star) {
+        e->report->above_max++;
         return REFUSE;
     }
     double least = least_quality(e, star), inserted = 0;
@@ -186,8 +193,9 @@ tm_status tm_lepp_process_star(tm_lepp_engine *e, const tm_star *star, size_t vi
 {
     double p[3];
     uint32_t a = star->a, b = star->b;
-    bool may_swap =
-        e->options->algorithm == TM_LEPP_SELECTIVE || visited <= SWAPS_PER_TARGET;
+    tm_lepp_algorithm algorithm = e->options->algorithm;
+    bool may_swap = algorithm == TM_LEPP_SELECTIVE ||
+                    (algorithm == TM_LEPP_SWAP_CENTROID && visited <= SWAPS_PER_TARGET);
     if (!tm_edge_map_get(&e->refused, a, b)) {
         operation chosen = choose(e, star, may_swap, p);
         count_star(e, star, chosen);

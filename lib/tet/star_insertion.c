@@ -17,6 +17,19 @@ void tm_star_centroid(const tm_tet_mesh *mesh, const tm_star *star, double p[3])
     }
 }
 
+void tm_star_wcentroid(const tm_tet_mesh *mesh, const tm_star *star, double p[3])
+{
+    const double *a = mesh->xyz[star->a], *b = mesh->xyz[star->b];
+    for (int k = 0; k < 3; k++) {
+        double sum = 0;
+        for (size_t i = 0; i < star->size; i++)
+            sum += (a[k] + b[k] + mesh->xyz[star->ring[i]][k] +
+                    mesh->xyz[star->ring[i + 1]][k]) /
+                   4;
+        p[k] = sum / (double)star->size;
+    }
+}
+
 void tm_star_midpoint(const tm_tet_mesh *mesh, const tm_star *star, double p[3])
 {
     for (int k = 0; k < 3; k++)

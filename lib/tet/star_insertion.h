@@ -10,6 +10,9 @@
 /* The mean of the star's nodes. */
 void tm_star_centroid(const tm_tet_mesh *mesh, const tm_star *star, double p[3]);
 
+/* The mean of the centroids of the star's tetrahedra. */
+void tm_star_wcentroid(const tm_tet_mesh *mesh, const tm_star *star, double p[3]);
+
 /* The midpoint of the edge. */
 void tm_star_midpoint(const tm_tet_mesh *mesh, const tm_star *star, double p[3]);
 

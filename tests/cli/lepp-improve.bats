@@ -110,6 +110,10 @@ END
 -Q volume -m 1.2
 -a swap-centroid
 -a swap-centroid -s 2 -Q volume -t 15
+-a bisection -t 20
+-a centroid -t 25
+-a wcentroid -t 25 -s 2
+--max-star 5
 END
     done
 }
@@ -319,6 +323,8 @@ END
 -s 0
 -a swap-centroid -s converged
 -a swap-centroid -m 1.1
+-a bisection -s converged
+--max-star 0
 -j 0
 --nonsense
 points.tm

@@ -103,22 +103,26 @@ static void test_all_options(void **state)
                 o.passes = 1 + random_below(3);
                 check_run(&o, regions);
             }
-            o.algorithm = TM_LEPP_SWAP_CENTROID;
-            o.stop = TM_LEPP_ORIGINAL;
+            for (int a = TM_LEPP_BISECTION; a < TM_LEPP_SELECTIVE; a++) {
+                o.algorithm = (tm_lepp_algorithm)a;
+                o.stop = TM_LEPP_ORIGINAL;
+                check_run(&o, regions);
+            }
+            o.algorithm = TM_LEPP_SELECTIVE;
+            o.max_star = 3 + random_below(3);
             check_run(&o, regions);
         }
 }
 
-/* swap-centroid leaves none of the original bad tetrahedra. */
-static void test_swap_centroid_removes_all(void **state)
+/* Algorithms that change every star leave none of the original bad tetrahedra. */
+static void check_removes_all(tm_lepp_algorithm algorithm)
 {
-    (void)state;
     enum { MOST = 6 * 27 };
     tm_stream stream;
     tm_tet_mesh mesh;
     make_mesh(&mesh, &stream, 3, 0.9, false);
     tm_lepp_options o = usual;
-    o.algorithm = TM_LEPP_SWAP_CENTROID;
+    o.algorithm = algorithm;
     o.stop = TM_LEPP_ORIGINAL;
     uint32_t bad[MOST][4];
     size_t count = 0;
@@ -133,6 +137,42 @@ static void test_swap_centroid_removes_all(void **state)
     for (uint32_t t = 0; t < mesh.slots; t++)
         for (size_t b = 0; b < count && tm_tet_lives(&mesh, t); b++)
             assert_int_not_equal(memcmp(mesh.tet[t], bad[b], sizeof bad[0]), 0);
+    tm_tet_mesh_free(&mesh);
+    tm_stream_free(&stream);
+}
+
+static void test_remove_all(void **state)
+{
+    (void)state;
+    for (int a = TM_LEPP_BISECTION; a < TM_LEPP_SELECTIVE; a++)
+        check_removes_all((tm_lepp_algorithm)a);
+}
+
+/* bisection only halves edges; max_star leaves larger stars alone. */
+static void test_what_is_done(void **state)
+{
+    (void)state;
+    enum { MAX_STAR = 4 };
+    tm_stream stream;
+    tm_tet_mesh mesh;
+    tm_lepp_options o = usual;
+    make_mesh(&mesh, &stream, 3, 0.9, false);
+    o.max_star = MAX_STAR;
+    tm_lepp_report report = improve(&mesh, &o);
+    for (int size = MAX_STAR + 1; size < TM_LEPP_SIZES; size++)
+        assert_int_equal(report.swap_size[size] + report.insertion_size[size], 0);
+    assert_true(report.above_max > 0);
+    o.max_star = 0;
+    o.algorithm = TM_LEPP_BISECTION;
+    o.stop = TM_LEPP_ORIGINAL;
+    report = improve(&mesh, &o);
+    assert_true(report.midpoints > 0);
+    assert_int_equal(report.swaps + report.centroids + report.outside + report.tangled,
+                     0);
+    o.algorithm = TM_LEPP_WCENTROID;
+    report = improve(&mesh, &o);
+    assert_true(report.centroids > 0);
+    assert_int_equal(report.swaps, 0);
     tm_tet_mesh_free(&mesh);
     tm_stream_free(&stream);
 }
@@ -326,13 +366,11 @@ static void test_listed_faces_and_edges(void **state)
 int main(void)
 {
     random_start();
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_all_options),
-                                       cmocka_unit_test(test_swap_centroid_removes_all),
-                                       cmocka_unit_test(test_degenerate),
-                                       cmocka_unit_test(test_touching_edge),
-                                       cmocka_unit_test(test_flat),
-                                       cmocka_unit_test(test_duplicate_nodes),
-                                       cmocka_unit_test(test_no_meshes),
-                                       cmocka_unit_test(test_listed_faces_and_edges)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_all_options),           cmocka_unit_test(test_remove_all),
+        cmocka_unit_test(test_what_is_done),          cmocka_unit_test(test_degenerate),
+        cmocka_unit_test(test_touching_edge),         cmocka_unit_test(test_flat),
+        cmocka_unit_test(test_duplicate_nodes),       cmocka_unit_test(test_no_meshes),
+        cmocka_unit_test(test_listed_faces_and_edges)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
