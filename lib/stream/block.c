@@ -6,7 +6,6 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
 
 static const tm_block_shape shapes[] = {
     [TM_NODE] = {".node", {3, TM_HEADER_ATTRIBUTES, TM_HEADER_MARKERS}, 3, 3, 0, false},
@@ -99,26 +98,6 @@ bool tm_block_resize(tm_block *block, size_t rows)
     block->attribute = attribute;
     block->marker = marker;
     return done;
-}
-
-/* The whole large pages of an array, if it has some. */
-static void use_large_pages(void *array, size_t count, size_t width, size_t size)
-{
-    const uintptr_t page = (uintptr_t)1 << 21;
-    uintptr_t from = ((uintptr_t)array + page - 1) & ~(page - 1);
-    uintptr_t to = ((uintptr_t)array + count * width * size) & ~(page - 1);
-    if (array && to > from)
-        madvise((void *)from, to - from, MADV_HUGEPAGE); /* only a wish */
-}
-
-void tm_block_use_large_pages(const tm_block *block, size_t rows)
-{
-    const tm_block_shape *shape = &shapes[block->kind];
-    use_large_pages(block->real, rows, shape->reals, sizeof *block->real);
-    use_large_pages(block->integer, rows, shape->integers, sizeof *block->integer);
-    use_large_pages(block->start, rows, shape->list, sizeof *block->start);
-    use_large_pages(block->attribute, rows, block->attributes, sizeof *block->attribute);
-    use_large_pages(block->marker, rows, block->markers, sizeof *block->marker);
 }
 
 /* memset() that takes the NULL of an array that a kind does not have. */

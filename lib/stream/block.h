@@ -28,10 +28,6 @@ const tm_block_shape *tm_block_shape_of(tm_block_kind kind);
  * their contents. False where memory is out; the block is then still consistent. */
 bool tm_block_resize(tm_block *block, size_t rows);
 
-/* Asks the system for large pages behind the arrays, which are about to be filled: half
- * of the time that the kernel takes to give memory. */
-void tm_block_use_large_pages(const tm_block *block, size_t rows);
-
 /* Frees the arrays; name, kind, attributes and markers stay. */
 void tm_block_clear(tm_block *block);
 

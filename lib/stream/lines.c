@@ -6,7 +6,6 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 /* Fits the second-level cache, so that what was read is parsed there. */
 enum { WINDOW = 1 << 17 };
@@ -19,9 +18,6 @@ tm_status tm_lines_open(tm_lines *lines, int fd, const char *name, tm_error *err
         return tm_fail_memory(error);
     memset(lines->buffer, 0, WINDOW + TM_LINES_SLACK);
     lines->at = lines->end = lines->filled = lines->buffer;
-    struct stat file;
-    if (fstat(fd, &file) == 0 && S_ISREG(file.st_mode))
-        lines->unread = (size_t)file.st_size;
     return TM_OK;
 }
 
@@ -67,7 +63,6 @@ static tm_status read_more(tm_lines *lines, tm_error *error)
         lines->end = lines->filled;
         return TM_OK;
     }
-    lines->unread -= (size_t)got < lines->unread ? (size_t)got : lines->unread;
     char *last = memrchr(lines->filled, '\n', (size_t)got);
     lines->filled += got;
     if (last)

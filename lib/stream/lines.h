@@ -23,8 +23,7 @@ typedef struct tm_lines {
     char *filled;    /* past the last byte that was read */
     bool at_end;     /* the file has no more */
     bool ended_without_line_feed;
-    size_t line;   /* number of the line at `at`, from 1 */
-    size_t unread; /* bytes of a regular file that were not read yet; else 0 */
+    size_t line; /* number of the line at `at`, from 1 */
 } tm_lines;
 
 tm_status tm_lines_open(tm_lines *lines, int fd, const char *name, tm_error *error);

@@ -212,33 +212,17 @@ static tm_status missing_row(reader *r, const tm_block *block, size_t row, size_
                 quote(r->lines.at, text));
 }
 
-/* How many rows the rest of a regular file can hold: a number and a blank or line feed
- * take two bytes. 0 where that is not known. */
-static size_t rows_left(const reader *r, const tm_block *block)
-{
-    const tm_block_shape *shape = tm_block_shape_of(block->kind);
-    size_t numbers = 1 + shape->reals + shape->integers + shape->list +
-                     block->attributes + block->markers;
-    return (r->lines.unread + (size_t)(r->lines.filled - r->lines.at)) / (2 * numbers);
-}
-
-/* Room for one more row. A regular file gets at once what its length allows, a pipe
- * twice what it had; neither more than the header claims. */
-static bool reserve_row(const reader *r, tm_block *block, size_t rows, size_t *room)
+/* Room for one more row; it doubles, up to what the header claims. */
+static bool reserve_row(tm_block *block, size_t row, size_t rows, size_t *room)
 {
     enum { FIRST = 1024 };
-    if (block->count < *room)
+    if (row < *room)
         return true;
-    size_t wanted = 2 * *room + FIRST, left = r->lines.unread ? rows_left(r, block) : 0;
-    bool at_once = *room == 0 && left > wanted;
-    if (at_once)
-        wanted = left;
+    size_t wanted = 2 * *room + FIRST;
     if (wanted > rows)
         wanted = rows;
     if (!tm_block_resize(block, wanted))
         return false;
-    if (at_once)
-        tm_block_use_large_pages(block, wanted);
     *room = wanted;
     return true;
 }
@@ -288,7 +272,7 @@ static tm_status read_rows(reader *r, tm_block *block, size_t rows, size_t limit
         status = find_row(r, block, rows);
         if (status == TM_OK && !r->base_known)
             status = read_base(r, block);
-        if (status == TM_OK && !reserve_row(r, block, rows, &room))
+        if (status == TM_OK && !reserve_row(block, block->count, rows, &room))
             status = tm_fail_memory(r->error);
         if (status != TM_OK)
             return status;
