@@ -9,6 +9,9 @@
 /* A word of text bytes holds the first of them in its low byte. */
 enum { TM_WORD_BYTES = 8 };
 
+/* The numbers that eight digits can stand for. */
+enum { TM_WORD_NUMBERS = 100000000 };
+
 /* 10^n for 0 <= n < 20. */
 extern const uint64_t tm_integer_powers[20];
 
@@ -106,6 +109,16 @@ static inline uint64_t tm_digits_word(uint32_t number)
     uint64_t pairs = (fours << 16) - hundreds * ((100 << 16) - 1);
     uint64_t tens = (pairs * 103) >> 10 & UINT64_C(0x000f000f000f000f);
     return (pairs << 8) - tens * ((10 << 8) - 1);
+}
+
+/* Writes number < TM_WORD_NUMBERS without leading zeros, and up to 7 bytes more. */
+static inline char *tm_write_short(char *text, uint32_t number)
+{
+    uint64_t word = tm_digits_word(number);
+    /* Zeros before the last digit; that one is written also if it is 0. */
+    int zeros = __builtin_ctzll(word | UINT64_C(1) << 56) / 8;
+    tm_word_store(text, (word + tm_word_of('0')) >> (8 * zeros));
+    return text + TM_WORD_BYTES - zeros;
 }
 
 /* The number of decimal digits of number; 1 for 0. 1233/2^12 is log10(2) from above, so

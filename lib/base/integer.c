@@ -8,7 +8,7 @@
 
 /* Every number of so many digits fits into 64 bits, with or without a sign. */
 enum { SAFE_DIGITS = 18 };
-enum { BLOCK = 100000000 }; /* the numbers of a word of digits */
+enum { BLOCK = TM_WORD_NUMBERS };
 
 const uint64_t tm_integer_powers[20] = {
     UINT64_C(1),
@@ -74,16 +74,6 @@ const char *tm_read_int64(const char *text, const char *end, int64_t *value)
     return text + count;
 }
 
-/* Writes number < 10^8 without leading zeros, and up to 7 bytes more. */
-static char *write_short(char *text, uint32_t number)
-{
-    uint64_t word = tm_digits_word(number);
-    /* Zeros before the last digit; that one is written also if it is 0. */
-    int zeros = __builtin_ctzll(word | UINT64_C(1) << 56) / 8;
-    tm_word_store(text, (word + tm_word_of('0')) >> (8 * zeros));
-    return text + TM_WORD_BYTES - zeros;
-}
-
 /* Writes number < 10^8 with leading zeros. */
 static char *write_block(char *text, uint32_t number)
 {
@@ -99,12 +89,12 @@ char *tm_write_int64(char *text, int64_t value)
         number = -number;
     }
     if (number < BLOCK)
-        return write_short(text, (uint32_t)number);
+        return tm_write_short(text, (uint32_t)number);
     uint64_t upper = number / BLOCK;
     if (upper < BLOCK) {
-        text = write_short(text, (uint32_t)upper);
+        text = tm_write_short(text, (uint32_t)upper);
     } else {
-        text = write_short(text, (uint32_t)(upper / BLOCK));
+        text = tm_write_short(text, (uint32_t)(upper / BLOCK));
         text = write_block(text, (uint32_t)(upper % BLOCK));
     }
     return write_block(text, (uint32_t)(number % BLOCK));
@@ -113,7 +103,7 @@ char *tm_write_int64(char *text, int64_t value)
 char *tm_write_uint32(char *text, uint32_t value)
 {
     if (value < BLOCK)
-        return write_short(text, value);
-    text = write_short(text, value / BLOCK);
+        return tm_write_short(text, value);
+    text = tm_write_short(text, value / BLOCK);
     return write_block(text, value % BLOCK);
 }

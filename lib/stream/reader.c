@@ -277,6 +277,11 @@ static tm_status read_rows(reader *r, tm_block *block, size_t rows, size_t limit
         if (status != TM_OK)
             return status;
         context.base = r->stream->base;
+        size_t before = block->count;
+        r->lines.at = tm_row_read_plain(&context, r->lines.at, r->lines.end, room);
+        r->lines.line += block->count - before;
+        if (block->count > before)
+            continue;
         const char *after = tm_row_read(&context, r->lines.at, r->lines.end);
         if (!after)
             return context.problem.status == TM_ERROR_SYSTEM

@@ -267,43 +267,62 @@ static inline uint64_t plain_number(plain_row *r, char separator)
     return tm_word_join(word << (8 * others & 63));
 }
 
-/* Reads a row of .ele, .face or .edge without attributes in the form in which it is
- * written: short numbers, one blank before each. First all their ends are found, so that
- * the numbers need not wait for each other. NULL where the row is otherwise: then it is
- * read with care. */
-static inline const char *read_plain_row(tm_row_context *c, const char *at)
+/* Reads a row in the form in which it is written: short numbers, one blank before each.
+ * First all their ends are found, so that the numbers need not wait for each other. NULL
+ * where the row is otherwise: then it is read with care. */
+static inline const char *plain_row_read(const char *at, size_t row, uint32_t base,
+                                         size_t limit, uint32_t *to, size_t width,
+                                         int32_t *marker_to)
 {
-    tm_block *block = c->block;
-    size_t width = c->shape->integers, row = block->count;
-    uint32_t *to = block->integer + row * width;
     plain_row r = {at, at, gaps_of(at), 0};
     uint64_t number = plain_number(&r, ' ');
-    r.wrong |= number ^ (row + c->base);
+    r.wrong |= number ^ (row + base);
+#pragma GCC unroll 4
     for (size_t i = 0; i < width; i++) {
-        bool last = i + 1 == width && !block->markers;
-        uint64_t node = plain_number(&r, last ? '\n' : ' ') - c->base;
-        r.wrong |= node >= c->limit;
+        bool last = i + 1 == width && !marker_to;
+        uint64_t node = plain_number(&r, last ? '\n' : ' ') - base;
+        r.wrong |= node >= limit;
         to[i] = (uint32_t)node;
     }
-    if (block->markers)
-        block->marker[row] = (int32_t)plain_number(&r, '\n');
+    if (marker_to)
+        *marker_to = (int32_t)plain_number(&r, '\n');
     return r.wrong ? NULL : r.begin;
 }
 
-static bool is_plain(const tm_row_context *c)
+/* Inlined for the widths that the compiler is told, so that its loops are unrolled. */
+static inline const char *plain_rows(const tm_row_context *c, const char *at,
+                                     const char *end, size_t most, size_t width,
+                                     int32_t *marker_to)
 {
-    tm_block_kind kind = c->block->kind;
-    return (kind == TM_ELE || kind == TM_FACE || kind == TM_EDGE) &&
-           c->block->attributes == 0;
+    size_t row = c->block->count, limit = c->limit;
+    uint32_t base = c->base, *to = c->block->integer;
+    while (row < most && at < end) {
+        const char *after = plain_row_read(at, row, base, limit, to + row * width, width,
+                                           marker_to ? marker_to + row : NULL);
+        if (!after)
+            break;
+        at = after;
+        row++;
+    }
+    c->block->count = row;
+    return at;
+}
+
+const char *tm_row_read_plain(tm_row_context *c, const char *at, const char *end,
+                              size_t most)
+{
+    tm_block *block = c->block;
+    bool of_nodes =
+        block->kind == TM_ELE || block->kind == TM_FACE || block->kind == TM_EDGE;
+    if (!of_nodes || block->attributes > 0)
+        return at;
+    if (block->kind == TM_ELE)
+        return plain_rows(c, at, end, most, 4, NULL);
+    return plain_rows(c, at, end, most, c->shape->integers, block->marker);
 }
 
 const char *tm_row_read(tm_row_context *c, const char *at, const char *end)
 {
-    if (is_plain(c)) {
-        const char *after = read_plain_row(c, at);
-        if (after)
-            return after;
-    }
 
     tm_block *block = c->block;
     const tm_block_shape *shape = c->shape;

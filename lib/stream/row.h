@@ -23,6 +23,12 @@ bool tm_row_begins(const char *at);
  * NULL with the cause in context->problem. */
 const char *tm_row_read(tm_row_context *context, const char *at, const char *end);
 
+/* Reads rows of .ele, .face and .edge, up to row `most`, as long as they are in the form
+ * in which the writer writes them and before end. Counts them in block->count. Returns
+ * the begin of the first line that was not read, which may be `at`. */
+const char *tm_row_read_plain(tm_row_context *context, const char *at, const char *end,
+                              size_t most);
+
 /* What is between blocks: elements of octants, facets of cells, cells of facets. */
 tm_status tm_stream_check_references(const tm_stream *stream, const char *name,
                                      tm_error *error);

@@ -3,6 +3,7 @@
  * be, and written in order. */
 #include "stream.h"
 
+#include "../base/digits.h"
 #include "../base/file.h"
 #include "../base/number.h"
 #include "../base/parallel.h"
@@ -30,25 +31,33 @@ static char *put_reals(char *to, const double *real, size_t count)
     return to;
 }
 
-static char *put_indices(char *to, const uint32_t *index, size_t count, uint32_t base)
+/* Nearly all indices are below TM_WORD_NUMBERS. */
+static inline char *put_index(char *to, uint32_t index, uint32_t base)
+{
+    if (index < TM_WORD_NUMBERS - 1)
+        return tm_write_short(to, index + base);
+    if (index != TM_NONE)
+        return tm_write_int64(to, (int64_t)index + base);
+    memcpy(to, "-1", 2);
+    return to + 2;
+}
+
+static inline char *put_indices(char *to, const uint32_t *index, size_t count,
+                                uint32_t base)
 {
     for (size_t i = 0; i < count; i++) {
         *to++ = ' ';
-        if (index[i] == TM_NONE) {
-            memcpy(to, "-1", 2);
-            to += 2;
-        } else {
-            to = tm_write_uint32(to, index[i] + base);
-        }
+        to = put_index(to, index[i], base);
     }
     return to;
 }
 
 /* The fixed integers of a row: level x y z of an octant and the level of a root are
  * counts, all others are indices. */
-static char *put_integers(char *to, const tm_block *block, size_t row, uint32_t base)
+static char *put_integers(char *to, const tm_block *block, size_t width, size_t row,
+                          uint32_t base)
 {
-    size_t width = tm_block_integers(block->kind), plain = 0;
+    size_t plain = 0;
     const uint32_t *integer = block->integer + row * width;
     if (block->kind == TM_OCTANT)
         plain = TM_OCTANT_PLAIN;
@@ -58,12 +67,12 @@ static char *put_integers(char *to, const tm_block *block, size_t row, uint32_t 
     return put_indices(to, integer + plain, width - plain, base);
 }
 
-static char *put_row(char *to, const tm_block *block, size_t row, uint32_t base)
+static char *put_row(char *to, const tm_block *block, const tm_block_shape *shape,
+                     size_t row, uint32_t base)
 {
-    size_t reals = tm_block_reals(block->kind);
-    to = tm_write_int64(to, (int64_t)(row + base));
-    to = put_reals(to, block->real + row * reals, reals);
-    to = put_integers(to, block, row, base);
+    to = put_index(to, (uint32_t)row, base);
+    to = put_reals(to, block->real + row * shape->reals, shape->reals);
+    to = put_integers(to, block, shape->integers, row, base);
     if (block->start) {
         size_t begin = block->start[row], count = block->start[row + 1] - begin;
         *to++ = ' ';
@@ -106,9 +115,10 @@ static void format_chunk(void *context, size_t chunk)
     }
     if (text->failed)
         return;
+    const tm_block_shape *shape = tm_block_shape_of(b->block->kind);
     char *end = text->byte;
     for (size_t row = from; row < to; row++)
-        end = put_row(end, b->block, row, b->base);
+        end = put_row(end, b->block, shape, row, b->base);
     text->size = (size_t)(end - text->byte);
 }
 
