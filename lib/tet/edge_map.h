@@ -48,12 +48,11 @@ static inline tm_edge_slot *tm_edge_map_slot(const tm_edge_map *map, uint64_t ke
 }
 
 /* The value of an edge, or NULL where it is not there. */
-static inline const uint32_t *tm_edge_map_get(const tm_edge_map *map, uint32_t a,
-                                              uint32_t b)
+static inline uint32_t *tm_edge_map_get(const tm_edge_map *map, uint32_t a, uint32_t b)
 {
     if (map->count == 0)
         return NULL;
-    const tm_edge_slot *slot = tm_edge_map_slot(map, tm_edge_key(a, b));
+    tm_edge_slot *slot = tm_edge_map_slot(map, tm_edge_key(a, b));
     return slot->key != 0 ? &slot->value : NULL;
 }
 

@@ -5,14 +5,6 @@
 
 #include <string.h>
 
-bool tm_edge_is_removable(const tm_tet_mesh *mesh, const tm_star *star)
-{
-    if (!star->closed || star->kept_face || star->size < 3 || star->size > TM_REMOVAL_MAX)
-        return false;
-    const tm_marked_edge *edge = tm_tet_mesh_edge(mesh, star->a, star->b);
-    return !(edge && edge->marker != 0) && tm_star_is_simple(mesh, star);
-}
-
 /* The worse of the two tetrahedra on triangle i k j; 0 as soon as one is below least. */
 static double triangle_quality(const tm_tet_mesh *mesh, const tm_star *star,
                                tm_tet_measure measure, size_t i, size_t k, size_t j,

@@ -20,9 +20,12 @@ typedef struct tm_edge_removal {
     double best[TM_REMOVAL_MAX][TM_REMOVAL_MAX];  /* of the polygon i … j */
 } tm_edge_removal;
 
-/* Whether the edge may be removed: closed star of 3 … TM_REMOVAL_MAX tetrahedra, no kept
- * face at it, no edge marker. */
-bool tm_edge_is_removable(const tm_tet_mesh *mesh, const tm_star *star);
+/* Whether the edge of a star that tm_star_is_free() and tm_star_is_simple() may be
+ * removed: 3 … TM_REMOVAL_MAX tetrahedra. */
+static inline bool tm_edge_is_removable(const tm_star *star)
+{
+    return star->size >= 3 && star->size <= TM_REMOVAL_MAX;
+}
 
 /* Finds the best triangulation whose tetrahedra are all at least `least` (> 0) good and
  * exactly positive. False where there is none. O(n³) for n tetrahedra. */

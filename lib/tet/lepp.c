@@ -200,12 +200,11 @@ static tm_status run_passes(tm_lepp_engine *e)
  * that is still blocked. So a second run on the output finds nothing to do. */
 static tm_status run_until_converged(tm_lepp_engine *e)
 {
-    tm_status status = TM_OK;
     size_t fresh, before;
+    tm_status status = find_targets(e);
     do {
         fresh = tm_lepp_operations(e->report);
         e->round++;
-        status = find_targets(e);
         do {
             before = tm_lepp_operations(e->report);
             if (status == TM_OK)

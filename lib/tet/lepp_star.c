@@ -66,10 +66,11 @@ static double least_quality(const tm_lepp_engine *e, const tm_star *star)
 
 /* Chooses the point to insert: the centroid where it is allowed and valid, else the
  * midpoint. REFUSE where that is not valid either. */
-static operation choose_point(tm_lepp_engine *e, const tm_star *star, double p[3])
+static operation choose_point(tm_lepp_engine *e, const tm_star *star, bool is_free,
+                              double p[3])
 {
     const tm_tet_mesh *mesh = e->mesh;
-    if (e->options->algorithm != TM_LEPP_BISECTION && tm_star_is_free(mesh, star)) {
+    if (e->options->algorithm != TM_LEPP_BISECTION && is_free) {
         if (e->options->algorithm == TM_LEPP_WCENTROID)
             tm_star_wcentroid(mesh, star, p);
         else
@@ -86,8 +87,8 @@ static operation choose_point(tm_lepp_engine *e, const tm_star *star, double p[3
 }
 
 /* The better of the best edge removal and the insertion, if it is good enough. */
-static operation choose(tm_lepp_engine *e, const tm_star *star, bool may_swap,
-                        double p[3])
+static operation choose(tm_lepp_engine *e, const tm_star *star, bool is_free,
+                        bool may_swap, double p[3])
 {
     const tm_tet_mesh *mesh = e->mesh;
     if (tm_edge_map_get(&mesh->locked, star->a, star->b) ||
@@ -102,22 +103,22 @@ static operation choose(tm_lepp_engine *e, const tm_star *star, bool may_swap,
     double least = least_quality(e, star), inserted = 0;
     if (least == HUGE_VAL)
         return REFUSE;
-    operation insertion = choose_point(e, star, p);
+    operation insertion = choose_point(e, star, is_free, p);
     if (insertion != REFUSE)
         inserted = tm_star_insertion_quality(mesh, star, p, e->options->measure, least);
     e->report->too_large += star->closed && star->size > TM_REMOVAL_MAX;
-    if (may_swap && tm_edge_is_removable(mesh, star) &&
+    if (may_swap && is_free && tm_edge_is_removable(star) &&
         tm_edge_removal_plan(mesh, star, e->options->measure, fmax(least, inserted),
                              &e->removal))
         return REMOVE_EDGE;
     return inserted >= least ? insertion : REFUSE;
 }
 
-static void count_star(tm_lepp_engine *e, const tm_star *star, operation chosen)
+static void count_star(tm_lepp_engine *e, const tm_star *star, bool is_free,
+                       operation chosen)
 {
     tm_lepp_report *r = e->report;
     size_t size = tm_lepp_bin(star->size, TM_LEPP_SIZES);
-    bool is_free = tm_star_is_free(e->mesh, star);
     r->closed += star->closed;
     r->open += !star->closed;
     if (star->closed)
@@ -196,12 +197,16 @@ tm_status tm_lepp_process_star(tm_lepp_engine *e, const tm_star *star, size_t vi
     tm_lepp_algorithm algorithm = e->options->algorithm;
     bool may_swap = algorithm == TM_LEPP_SELECTIVE ||
                     (algorithm == TM_LEPP_SWAP_CENTROID && visited <= SWAPS_PER_TARGET);
-    if (!tm_edge_map_get(&e->refused, a, b)) {
-        operation chosen = choose(e, star, may_swap, p);
-        count_star(e, star, chosen);
-        if (chosen != REFUSE)
-            return change(e, star, chosen, p);
+    uint32_t *round = tm_edge_map_get(&e->refused, a, b);
+    if (round) {
+        *round = e->round;
+        return TM_OK;
     }
+    bool is_free = tm_star_is_free(e->mesh, star);
+    operation chosen = choose(e, star, is_free, may_swap, p);
+    count_star(e, star, is_free, chosen);
+    if (chosen != REFUSE)
+        return change(e, star, chosen, p);
     if (!tm_edge_map_reserve(&e->refused, 1))
         return tm_fail_memory(e->error);
     tm_edge_map_put(&e->refused, a, b, e->round);

@@ -54,6 +54,8 @@ static int walk(const tm_tet_mesh *mesh, uint32_t t, uint32_t behind, tm_star *s
         uint32_t u = across / 4, ahead = across % 4;
         if (u == first)
             return 1;
+        /* The corners of u say which neighbour is next: do not wait for both in turn. */
+        __builtin_prefetch(mesh->neighbour[u]);
         if (!reserve(star, star->size + 2))
             return -1;
         star->tet[star->size++] = u;
@@ -111,4 +113,12 @@ bool tm_star_is_simple(const tm_tet_mesh *mesh, const tm_star *star)
             if (star->ring[i] == star->ring[j])
                 return false;
     return true;
+}
+
+bool tm_star_is_free(const tm_tet_mesh *mesh, const tm_star *star)
+{
+    if (!star->closed || star->kept_face)
+        return false;
+    const tm_marked_edge *edge = tm_tet_mesh_edge(mesh, star->a, star->b);
+    return !(edge && edge->marker != 0);
 }

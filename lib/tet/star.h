@@ -29,6 +29,10 @@ extern const uint8_t tm_edge_corner[6][4];
  * star is closed. False where memory is out. O(size). */
 bool tm_star_around(const tm_tet_mesh *mesh, uint32_t t, unsigned e, tm_star *star);
 
+/* Whether the edge may go: the star is closed, no face at the edge has to stay and the
+ * edge has no marker. */
+bool tm_star_is_free(const tm_tet_mesh *mesh, const tm_star *star);
+
 /* Whether the ring has no node twice, as flat tetrahedra on top of each other may make
  * it: such a star is not to be changed. */
 bool tm_star_is_simple(const tm_tet_mesh *mesh, const tm_star *star);

@@ -59,14 +59,6 @@ bool tm_star_contains(const tm_tet_mesh *mesh, const tm_star *star, const double
     return false;
 }
 
-bool tm_star_is_free(const tm_tet_mesh *mesh, const tm_star *star)
-{
-    if (!star->closed || star->kept_face)
-        return false;
-    const tm_marked_edge *edge = tm_tet_mesh_edge(mesh, star->a, star->b);
-    return !(edge && edge->marker != 0);
-}
-
 double tm_star_insertion_quality(const tm_tet_mesh *mesh, const tm_star *star,
                                  const double p[3], tm_tet_measure measure, double least)
 {

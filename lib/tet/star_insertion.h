@@ -23,10 +23,6 @@ bool tm_star_sees(const tm_tet_mesh *mesh, const tm_star *star, const double p[3
 /* Whether p is in one of the star's tetrahedra. O(n). */
 bool tm_star_contains(const tm_tet_mesh *mesh, const tm_star *star, const double p[3]);
 
-/* Whether points other than the edge's midpoint may be inserted: the star is closed, no
- * face at the edge has to stay and the edge has no marker. */
-bool tm_star_is_free(const tm_tet_mesh *mesh, const tm_star *star);
-
 /* The quality of the worst tetrahedron that the insertion of p would make; 0 where that
  * is below `least`. O(n). */
 double tm_star_insertion_quality(const tm_tet_mesh *mesh, const tm_star *star,

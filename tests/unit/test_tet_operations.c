@@ -55,7 +55,7 @@ static bool operate(tm_tet_mesh *mesh, tm_star *star, tm_edge_removal *removal,
     assert_true(tm_star_around(mesh, t, random_below(EDGES), star));
     check_star(mesh, star);
     bool is_free = tm_star_is_free(mesh, star);
-    if (random_below(2) && tm_edge_is_removable(mesh, star)) {
+    if (random_below(2) && is_free && tm_edge_is_removable(star)) {
         if (!tm_edge_removal_plan(mesh, star, TM_MEASURE_DIHEDRAL, 1e-6, removal))
             return false;
         size_t before = mesh->tets;
