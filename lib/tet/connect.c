@@ -204,32 +204,50 @@ static tm_status check_sides(const tm_tet_mesh *mesh, unsigned base, tm_error *e
     return TM_OK;
 }
 
-/* Locks the edges with more than two boundary faces: there the mesh touches itself, and
- * a star walk sees only a part of the tetrahedra. */
-static tm_status lock_edges(tm_tet_mesh *mesh, tm_error *error)
+static bool is_on_boundary(const tm_kept_face *face)
 {
-    tm_edge_map faces_at = {0};
-    tm_status status = TM_OK;
+    return (face->side[0] == TM_NONE) != (face->side[1] == TM_NONE);
+}
+
+/* Counts the boundary faces at each of their edges. */
+static bool count_faces_at_edges(const tm_tet_mesh *mesh, tm_edge_map *faces_at)
+{
     for (size_t f = 0; f < mesh->faces; f++) {
         const tm_kept_face *face = &mesh->face[f];
-        if ((face->side[0] == TM_NONE) == (face->side[1] == TM_NONE))
+        if (!is_on_boundary(face))
             continue;
-        if (!tm_edge_map_reserve(&faces_at, 3) ||
-            !tm_edge_map_reserve(&mesh->locked, 3)) {
-            status = tm_fail_memory(error);
-            break;
-        }
+        if (!tm_edge_map_reserve(faces_at, 3))
+            return false;
         for (int i = 0; i < 3; i++) {
             uint32_t a = face->node[i], b = face->node[(i + 1) % 3];
-            const uint32_t *counted = tm_edge_map_get(&faces_at, a, b);
-            uint32_t count = counted ? *counted : 0;
-            tm_edge_map_put(&faces_at, a, b, count + 1);
-            if (count == 2)
-                tm_edge_map_put(&mesh->locked, a, b, 0);
+            const uint32_t *count = tm_edge_map_get(faces_at, a, b);
+            tm_edge_map_put(faces_at, a, b, count ? *count + 1 : 1);
         }
     }
+    return true;
+}
+
+/* Locks the edges with more than two boundary faces: there the mesh touches itself, and
+ * a star walk sees only a part of the tetrahedra. Looks for marked edges inside. */
+static tm_status look_at_edges(tm_tet_mesh *mesh, tm_error *error)
+{
+    tm_edge_map faces_at = {0};
+    bool done = count_faces_at_edges(mesh, &faces_at);
+    for (size_t s = 0; s < faces_at.room && done; s++) {
+        const tm_edge_slot *slot = &faces_at.slot[s];
+        if (slot->key == 0 || slot->value <= 2)
+            continue;
+        done = tm_edge_map_reserve(&mesh->locked, 1);
+        if (done)
+            tm_edge_map_put(&mesh->locked, (uint32_t)(slot->key >> 32),
+                            (uint32_t)slot->key, 0);
+    }
+    for (size_t e = 0; e < mesh->edges && done; e++)
+        if (mesh->edge[e].marker != 0 &&
+            !tm_edge_map_get(&faces_at, mesh->edge[e].node[0], mesh->edge[e].node[1]))
+            mesh->inner_marked_edges = true;
     tm_edge_map_free(&faces_at);
-    return status;
+    return done ? TM_OK : tm_fail_memory(error);
 }
 
 /* Forgets the rows of .face that need not stay. */
@@ -269,6 +287,6 @@ tm_status tm_tet_mesh_connect(tm_tet_mesh *mesh, unsigned base, tm_error *error)
     if (status == TM_OK && mesh->dropped_faces > 0)
         drop_faces(mesh, listed_count);
     if (status == TM_OK)
-        status = lock_edges(mesh, error);
+        status = look_at_edges(mesh, error);
     return status;
 }

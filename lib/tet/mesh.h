@@ -62,8 +62,9 @@ typedef struct tm_tet_mesh {
     size_t edge_room;
     tm_marked_edge *edge;
     bool edge_markers;
-    tm_edge_map edge_of; /* two nodes -> edge[…] */
-    tm_edge_map locked;  /* edges where the mesh is not manifold: never changed */
+    bool inner_marked_edges; /* some edge with a marker is not on the boundary */
+    tm_edge_map edge_of;     /* two nodes -> edge[…] */
+    tm_edge_map locked;      /* edges where the mesh is not manifold: never changed */
 
     size_t turned;        /* tetrahedra that came left-handed and were turned */
     size_t flat;          /* that came with volume 0 */

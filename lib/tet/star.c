@@ -119,6 +119,8 @@ bool tm_star_is_free(const tm_tet_mesh *mesh, const tm_star *star)
 {
     if (!star->closed || star->kept_face)
         return false;
+    if (!mesh->inner_marked_edges)
+        return true;
     const tm_marked_edge *edge = tm_tet_mesh_edge(mesh, star->a, star->b);
     return !(edge && edge->marker != 0);
 }
