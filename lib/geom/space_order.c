@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "space_order.h"
 
+#include "../base/array.h"
+
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { CELLS = 1024 };
 
@@ -41,15 +44,28 @@ uint32_t tm_space_place(const tm_space *space, const double p[3])
     return place;
 }
 
-static int compare(const void *a, const void *b)
+/* Sorts by ten bits of the place from bit `from` on; equal ones stay in their order. */
+static void sort_by_digit(tm_placed *to, const tm_placed *placed, size_t count, int from)
 {
-    const tm_placed *p = a, *q = b;
-    if (p->place != q->place)
-        return p->place < q->place ? -1 : 1;
-    return (p->item > q->item) - (p->item < q->item);
+    size_t begin[CELLS + 1] = {0};
+    for (size_t i = 0; i < count; i++)
+        begin[(placed[i].place >> from & (CELLS - 1)) + 1]++;
+    for (size_t d = 0; d < CELLS; d++)
+        begin[d + 1] += begin[d];
+    for (size_t i = 0; i < count; i++)
+        to[begin[placed[i].place >> from & (CELLS - 1)]++] = placed[i];
 }
 
-void tm_space_sort(tm_placed *placed, size_t count)
+bool tm_space_sort(tm_placed *placed, size_t count)
 {
-    qsort(placed, count, sizeof *placed, compare);
+    enum { DIGIT = 10 };
+    tm_placed *other = tm_new(count, sizeof *other);
+    if (!other)
+        return false;
+    sort_by_digit(other, placed, count, 0);
+    sort_by_digit(placed, other, count, DIGIT);
+    sort_by_digit(other, placed, count, 2 * DIGIT);
+    memcpy(placed, other, count * sizeof *placed);
+    free(other);
+    return true;
 }

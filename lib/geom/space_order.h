@@ -5,6 +5,7 @@
 #ifndef TM_GEOM_SPACE_ORDER_H
 #define TM_GEOM_SPACE_ORDER_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -24,7 +25,8 @@ tm_space tm_space_around(const double (*xyz)[3], size_t count);
 /* The place of a point on the curve; the nearest end for points outside. */
 uint32_t tm_space_place(const tm_space *space, const double p[3]);
 
-/* Sorts by place, then by item. O(count log count). */
-void tm_space_sort(tm_placed *placed, size_t count);
+/* Sorts by place; what has the same stays in its order. False where memory is out.
+ * O(count). */
+bool tm_space_sort(tm_placed *placed, size_t count);
 
 #endif

@@ -8,6 +8,11 @@
 
 const uint8_t tm_face_corner[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
+static inline uint32_t lesser(uint32_t a, uint32_t b)
+{
+    return a < b ? a : b;
+}
+
 static inline void order3(uint32_t n[3])
 {
     uint32_t swap;
@@ -34,9 +39,14 @@ static inline void face_nodes(const tm_face_order *order, uint32_t half, uint32_
 
 static inline uint32_t smallest(const tm_face_order *order, uint32_t half)
 {
-    uint32_t n[3];
-    face_nodes(order, half, n);
-    return n[0];
+    const uint32_t *n;
+    if (half & TM_FACE_ORDER_ADDED) {
+        n = order->added[half & ~TM_FACE_ORDER_ADDED];
+        return lesser(n[0], lesser(n[1], n[2]));
+    }
+    n = order->tet[half / 4];
+    const uint8_t *corner = tm_face_corner[half % 4];
+    return lesser(n[corner[0]], lesser(n[corner[1]], n[corner[2]]));
 }
 
 tm_status tm_face_order_init(tm_face_order *order, const uint32_t (*tet)[4], size_t tets,

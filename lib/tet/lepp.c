@@ -9,8 +9,8 @@
 #include <string.h>
 
 /* Whether the longest edge of t is a b; its nodes in *c and *d. */
-static bool has_longest(const tm_lepp_engine *e, uint32_t t, uint32_t a, uint32_t b,
-                        uint32_t *c, uint32_t *d)
+static inline bool has_longest(const tm_lepp_engine *e, uint32_t t, uint32_t a,
+                               uint32_t b, uint32_t *c, uint32_t *d)
 {
     const uint8_t *corner = tm_edge_corner[e->mark[t] & TM_LEPP_LONGEST];
     *c = e->mesh->tet[t][corner[0]];
@@ -154,8 +154,9 @@ static tm_status find_targets(tm_lepp_engine *e)
         if (tm_tet_lives(mesh, t) && (e->mark[t] & TM_LEPP_BAD))
             placed[count++] =
                 (tm_placed){tm_space_place(&space, mesh->xyz[mesh->tet[t][0]]), t};
-    tm_space_sort(placed, count);
     tm_status status = TM_OK;
+    if (!tm_space_sort(placed, count))
+        status = tm_fail_memory(e->error);
     e->targets = 0;
     for (size_t i = 0; i < count && status == TM_OK; i++)
         if (!tm_lepp_add_target(e, placed[i].item))
@@ -246,6 +247,11 @@ tm_status tm_lepp_improve(tm_tet_mesh *mesh, const tm_lepp_options *options,
             tm_lepp_measure(&e, (uint32_t)t);
     if (status == TM_OK) {
         report->bad_before = count_bad(&e);
+        /* As many edges as that are refused; later growth would cost a second table. */
+        if (!tm_edge_map_reserve(&e.refused, report->bad_before))
+            status = tm_fail_memory(error);
+    }
+    if (status == TM_OK) {
         status = run(&e);
         report->bad_after = count_bad(&e);
     }
