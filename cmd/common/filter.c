@@ -10,7 +10,6 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 enum { THREADS_MAX = 256 };
@@ -97,8 +96,7 @@ void filter_fail(const filter *f, const tm_error *error)
     if (error->block[0])
         fprintf(stderr, "%s: ", error->block);
     fprintf(stderr, "%s\n", error->what);
-    if (f->temporary[0])
-        unlink(f->temporary);
+    output_files_abandon(f->files);
     exit(error->status);
 }
 
@@ -124,17 +122,6 @@ long filter_integer(const filter *f, const char *option, const char *text, long 
     return (long)value;
 }
 
-/* The -o file in the making, for the signal handler. */
-static char *unfinished;
-
-static void remove_unfinished(int signal_number)
-{
-    if (unfinished)
-        unlink(unfinished);
-    signal(signal_number, SIG_DFL);
-    raise(signal_number);
-}
-
 /* A standard descriptor that the caller closed would be given to the next file that is
  * opened; it gets one on which every read or write fails instead. */
 static void occupy_standard_descriptors(void)
@@ -148,6 +135,8 @@ void filter_start(filter *f, int argc, char **argv)
 {
     occupy_standard_descriptors();
     signal(SIGPIPE, SIG_DFL);
+    static output_files files; /* filter_fail(), which gets f as const, tidies them up */
+    f->files = &files;
     f->argc = argc;
     f->argv = argv;
     f->history = true;
@@ -267,58 +256,13 @@ void filter_read(const filter *f, tm_stream *stream)
         close(fd);
 }
 
-_Noreturn static void fail_output(const filter *f, const char *file)
-{
-    tm_error error;
-    tm_fail_at(&error, TM_ERROR_SYSTEM, file, 0, NULL, "cannot write: %s",
-               strerror(errno));
-    filter_fail(f, &error);
-}
-
-/* Makes the file beside f->output that will be renamed to it, with the mode that the
- * shell would give. */
-static int open_temporary(filter *f)
-{
-    struct stat old;
-    bool exists = stat(f->output, &old) == 0;
-    if (exists && !S_ISREG(old.st_mode))
-        return open(f->output, O_WRONLY | O_CLOEXEC); /* a device or a named pipe */
-    int size = snprintf(f->temporary, sizeof f->temporary, "%s.XXXXXX", f->output);
-    if (size < 0 || (size_t)size >= sizeof f->temporary) {
-        f->temporary[0] = '\0';
-        errno = ENAMETOOLONG;
-        return -1;
-    }
-    int fd = mkostemp(f->temporary, O_CLOEXEC);
-    if (fd < 0) {
-        f->temporary[0] = '\0';
-        return -1;
-    }
-    unfinished = f->temporary;
-    signal(SIGINT, remove_unfinished);
-    signal(SIGTERM, remove_unfinished);
-    signal(SIGHUP, remove_unfinished);
-    mode_t mask = umask(0);
-    umask(mask);
-    fchmod(fd, exists ? old.st_mode & 0777 : 0666 & ~mask);
-    return fd;
-}
-
 int filter_open_output(filter *f)
 {
-    if (!f->output)
-        return STDOUT_FILENO;
-    int fd = open_temporary(f);
-    if (fd < 0)
-        fail_output(f, f->output);
+    int fd = STDOUT_FILENO;
+    tm_error error;
+    if (f->output && output_files_open(f->files, f->output, &fd, &error) != TM_OK)
+        filter_fail(f, &error);
     return fd;
-}
-
-/* Closes a descriptor of filter_open_output(); some errors show only here. */
-static void close_output(const filter *f, int fd)
-{
-    if (fd != STDOUT_FILENO && close(fd) != 0)
-        fail_output(f, f->output);
 }
 
 void filter_write(filter *f, tm_stream *stream, const char *summary, ...)
@@ -342,7 +286,6 @@ void filter_write(filter *f, tm_stream *stream, const char *summary, ...)
     int fd = filter_open_output(f);
     if (tm_stream_write(stream, fd, f->threads, &error) != TM_OK)
         filter_fail(f, &error);
-    close_output(f, fd);
 }
 
 static void write_or_fail(const filter *f, int fd, const tm_text *text, const char *file)
@@ -362,7 +305,6 @@ void filter_write_text(filter *f, const tm_text *text)
 {
     int fd = filter_open_output(f);
     write_or_fail(f, fd, text, f->output);
-    close_output(f, fd);
 }
 
 void filter_write_json(filter *f, const tm_text *text)
@@ -371,22 +313,21 @@ void filter_write_json(filter *f, const tm_text *text)
         write_or_fail(f, f->json_is_output ? STDOUT_FILENO : STDERR_FILENO, text, NULL);
         return;
     }
-    int fd = open(f->json, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (fd < 0)
-        fail_output(f, f->json);
-    write_or_fail(f, fd, text, f->json);
-    if (close(fd) != 0)
-        fail_output(f, f->json);
+    tm_error error;
+    if (output_file_write(f->json, text, &error) != TM_OK)
+        filter_fail(f, &error);
 }
 
 int filter_finish(filter *f, int status)
 {
-    if (f->temporary[0] && rename(f->temporary, f->output) != 0)
-        fail_output(f, f->output);
-    unfinished = NULL;
-    f->temporary[0] = '\0';
-    if (close(STDOUT_FILENO) != 0)
-        fail_output(f, "<stdout>");
+    tm_error error;
+    if (output_files_finish(f->files, &error) != TM_OK)
+        filter_fail(f, &error);
+    if (close(STDOUT_FILENO) != 0) {
+        tm_fail_at(&error, TM_ERROR_SYSTEM, "<stdout>", 0, NULL, "cannot write: %s",
+                   strerror(errno));
+        filter_fail(f, &error);
+    }
     tm_text_free(&f->command);
     return status;
 }

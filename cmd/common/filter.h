@@ -18,6 +18,7 @@
 #include "../../lib/base/error.h"
 #include "../../lib/base/text.h"
 #include "../../lib/stream/stream.h"
+#include "output_files.h"
 
 #include <getopt.h>
 #include <stdbool.h>
@@ -66,8 +67,8 @@ typedef struct filter {
     int verbosity;      /* -1 quiet, 0, 1 verbose */
     bool history;
     unsigned threads;
-    tm_text command;      /* the options as given, for the history */
-    char temporary[4096]; /* the file that becomes `output`, "" while there is none */
+    tm_text command;     /* the options as given, for the history */
+    output_files *files; /* -o FILE in the making */
 } filter;
 
 void filter_start(filter *f, int argc, char **argv);

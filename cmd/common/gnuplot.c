@@ -2,6 +2,7 @@
 #include "gnuplot.h"
 
 #include "../../lib/base/file.h"
+#include "output_files.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -10,7 +11,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -93,49 +93,6 @@ static tm_status run(int script, tm_text *figure, tm_error *error)
     return status;
 }
 
-/* Makes the file that will be renamed to `file`, with the mode that a shell would give;
- * where `file` is a device or a pipe, that itself, and *temporary is "". */
-static int open_figure(const char *file, char *temporary, size_t size)
-{
-    struct stat old;
-    const bool exists = stat(file, &old) == 0;
-    temporary[0] = '\0';
-    if (exists && !S_ISREG(old.st_mode))
-        return open(file, O_WRONLY | O_CLOEXEC);
-    const int length = snprintf(temporary, size, "%s.XXXXXX", file);
-    int fd = -1;
-    if (length < 0 || (size_t)length >= size)
-        errno = ENAMETOOLONG;
-    else
-        fd = mkostemp(temporary, O_CLOEXEC);
-    if (fd < 0) {
-        temporary[0] = '\0';
-        return -1;
-    }
-    const mode_t mask = umask(0);
-    umask(mask);
-    const mode_t everyone = S_IRUSR | S_IWUSR | S_IRGRP | S_IWGRP | S_IROTH | S_IWOTH;
-    fchmod(fd, exists ? old.st_mode & everyone : everyone & ~mask);
-    return fd;
-}
-
-static tm_status write_figure(const tm_text *figure, const char *file, tm_error *error)
-{
-    char temporary[FILENAME_MAX];
-    const int fd = open_figure(file, temporary, sizeof temporary);
-    if (fd < 0)
-        return tm_fail_at(error, TM_ERROR_SYSTEM, file, 0, NULL, "cannot write: %s",
-                          strerror(errno));
-    tm_status status = tm_write_all(fd, figure->byte, figure->size, error);
-    const bool closed = close(fd) == 0;
-    if (status == TM_OK && (!closed || (temporary[0] && rename(temporary, file) != 0)))
-        status = tm_fail_at(error, TM_ERROR_SYSTEM, file, 0, NULL, "cannot write: %s",
-                            strerror(errno));
-    if (status != TM_OK && temporary[0])
-        unlink(temporary);
-    return status;
-}
-
 tm_status gnuplot_plot(const tm_text *script, const char *file, tm_error *error)
 {
     if (script->failed || script->size == 0)
@@ -147,7 +104,7 @@ tm_status gnuplot_plot(const tm_text *script, const char *file, tm_error *error)
     tm_status status = run(fd, &figure, error);
     close(fd);
     if (status == TM_OK)
-        status = write_figure(&figure, file, error);
+        status = output_file_write(file, &figure, error);
     tm_text_free(&figure);
     return status;
 }

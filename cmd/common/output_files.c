@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "output_files.h"
 
-#include "../../lib/base/text.h"
+#include "../../lib/base/file.h"
 #include "private_signals.h"
 
 #include <errno.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,12 +19,36 @@ static tm_status fail_file(const char *name, tm_error *error)
                       strerror(errno));
 }
 
-/* NAME.XXXXXX, as mkostemp() wants it; NULL where memory is out. */
-static char *temporary_name(const char *name)
+static void free_file(output_file *file)
+{
+    free(file->name);
+    free(file->temporary);
+}
+
+/* Makes NAME.XXXXXX; -1 with errno where that fails. */
+static int make_temporary(output_file *file, const struct stat *old)
 {
     tm_text text = {0};
-    tm_text_format(&text, "%s.XXXXXX", name);
-    return text.failed ? NULL : text.byte;
+    tm_text_format(&text, "%s.XXXXXX", file->name);
+    file->temporary = text.byte;
+    errno = ENOMEM;
+    int fd = text.failed ? -1 : mkostemp(file->temporary, O_CLOEXEC);
+    if (fd < 0)
+        return -1;
+    const mode_t everyone = S_IRUSR | S_IWUSR | S_IRGRP | S_IWGRP | S_IROTH | S_IWOTH;
+    mode_t mask = umask(0);
+    umask(mask);
+    fchmod(fd, old ? old->st_mode & everyone : everyone & ~mask);
+    return fd;
+}
+
+static int open_file(output_file *file)
+{
+    struct stat old;
+    bool exists = stat(file->name, &old) == 0;
+    if (exists && !S_ISREG(old.st_mode))
+        return open(file->name, O_WRONLY | O_CLOEXEC);
+    return make_temporary(file, exists ? &old : NULL);
 }
 
 tm_status output_files_open(output_files *files, const char *name, int *fd,
@@ -33,26 +58,19 @@ tm_status output_files_open(output_files *files, const char *name, int *fd,
     if (!grown)
         return tm_fail_memory(error);
     files->file = grown;
-    output_file file = {strdup(name), temporary_name(name), -1};
-    if (!file.name || !file.temporary) {
-        free(file.name);
-        free(file.temporary);
+    output_file file = {strdup(name), NULL, -1};
+    if (!file.name)
         return tm_fail_memory(error);
-    }
     if (files->count == 0)
         private_signals_hold();
-    file.fd = mkostemp(file.temporary, O_CLOEXEC);
+    file.fd = open_file(&file);
     if (file.fd < 0) {
         tm_status status = fail_file(name, error);
-        free(file.name);
-        free(file.temporary);
+        free_file(&file);
         if (files->count == 0)
             private_signals_release();
         return status;
     }
-    mode_t mask = umask(0);
-    umask(mask);
-    fchmod(file.fd, 0666 & ~mask);
     *fd = file.fd;
     files->file[files->count++] = file;
     return TM_OK;
@@ -61,10 +79,8 @@ tm_status output_files_open(output_files *files, const char *name, int *fd,
 /* Forgets the files; a signal that waited takes its course. */
 static void release(output_files *files)
 {
-    for (size_t i = 0; i < files->count; i++) {
-        free(files->file[i].name);
-        free(files->file[i].temporary);
-    }
+    for (size_t i = 0; i < files->count; i++)
+        free_file(&files->file[i]);
     free(files->file);
     if (files->count > 0)
         private_signals_release();
@@ -76,7 +92,8 @@ void output_files_abandon(output_files *files)
     for (size_t i = 0; i < files->count; i++) {
         if (files->file[i].fd >= 0)
             close(files->file[i].fd);
-        unlink(files->file[i].temporary);
+        if (files->file[i].temporary)
+            unlink(files->file[i].temporary);
     }
     release(files);
 }
@@ -98,11 +115,29 @@ tm_status output_files_finish(output_files *files, tm_error *error)
     if (status == TM_OK && private_signals_came())
         status = tm_fail(error, TM_ERROR_SYSTEM, "interrupted");
     for (size_t i = 0; i < files->count && status == TM_OK; i++)
-        if (rename(files->file[i].temporary, files->file[i].name) != 0)
+        if (files->file[i].temporary &&
+            rename(files->file[i].temporary, files->file[i].name) != 0)
             status = fail_file(files->file[i].name, error);
     if (status == TM_OK)
         release(files);
     else
         output_files_abandon(files);
+    return status;
+}
+
+tm_status output_file_write(const char *name, const tm_text *text, tm_error *error)
+{
+    output_files files = {0};
+    int fd;
+    if (text->failed)
+        return tm_fail_memory(error);
+    tm_status status = output_files_open(&files, name, &fd, error);
+    if (status != TM_OK)
+        return status;
+    status = tm_write_all(fd, text->byte ? text->byte : "", text->size, error);
+    if (status == TM_OK)
+        return output_files_finish(&files, error);
+    snprintf(error->file, sizeof error->file, "%s", name);
+    output_files_abandon(&files);
     return status;
 }

@@ -1,17 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Several files as the output of a filter: each is written beside its name first, and
- * they get their names when all are whole. Before that an error, or SIGINT, SIGTERM or
- * SIGHUP, leaves none. */
+/* Files as the output of a filter: each is written beside its name first, with the mode
+ * that the shell would give, and they get their names when all are whole. Before that an
+ * error, or SIGINT, SIGTERM or SIGHUP, leaves none. What is there already and is no
+ * regular file, a device or a named pipe, is written directly. */
 #ifndef CMD_COMMON_OUTPUT_FILES_H
 #define CMD_COMMON_OUTPUT_FILES_H
 
 #include "../../lib/base/error.h"
+#include "../../lib/base/text.h"
 
 #include <stddef.h>
 
 typedef struct output_file {
     char *name;
-    char *temporary;
+    char *temporary; /* NULL: written directly */
     int fd;
 } output_file;
 
@@ -30,5 +32,8 @@ tm_status output_files_finish(output_files *files, tm_error *error);
 
 /* Removes all that was begun. */
 void output_files_abandon(output_files *files);
+
+/* A text as one file. */
+tm_status output_file_write(const char *name, const tm_text *text, tm_error *error);
 
 #endif

@@ -8,6 +8,7 @@ static const int held[] = {SIGINT, SIGTERM, SIGHUP};
 enum { HELD = sizeof held / sizeof held[0] };
 
 static struct sigaction before[HELD];
+static int holds; /* that were not released yet */
 static volatile sig_atomic_t came;
 static volatile pid_t child_group;
 
@@ -20,6 +21,8 @@ static void note(int signal_number)
 
 void private_signals_hold(void)
 {
+    if (holds++ > 0)
+        return;
     struct sigaction action = {.sa_handler = note};
     sigemptyset(&action.sa_mask);
     came = 0;
@@ -61,6 +64,8 @@ bool private_signals_came(void)
 
 void private_signals_release(void)
 {
+    if (--holds > 0)
+        return;
     for (size_t i = 0; i < HELD; i++)
         sigaction(held[i], &before[i], NULL);
     if (came)

@@ -7,7 +7,8 @@
 #include <stdbool.h>
 #include <sys/types.h>
 
-/* From here SIGINT, SIGTERM and SIGHUP are only noted, unless they are ignored. */
+/* From here SIGINT, SIGTERM and SIGHUP are only noted, unless they are ignored, until as
+ * many _release() as _hold() were called. */
 void private_signals_hold(void);
 
 /* The process group to kill when one comes, or 0. Between _block() and _unblock() none
@@ -19,7 +20,7 @@ void private_signals_kill(pid_t group);
 /* True when one has come. */
 bool private_signals_came(void);
 
-/* As before _hold(); the one that has come takes its course. */
+/* As before the first _hold(); the one that has come takes its course. */
 void private_signals_release(void);
 
 #endif
