@@ -11,9 +11,6 @@
 #include <ctype.h>
 #include <math.h>
 #include <string.h>
-#ifdef __SSE2__
-#include <emmintrin.h>
-#endif
 
 static bool is_blank(char c)
 {
@@ -222,103 +219,6 @@ static const char *row_number(tm_row_context *c, const char *at, const char *end
         return FAIL(c, "row %zu is numbered %lld (rows are numbered without a gap)",
                     right, (long long)number);
     return at;
-}
-
-/* One bit for each of the TM_ROW_WINDOW bytes at `at` that is no digit, the first lowest;
- * all higher bits are set. Subtracting '0' as a number without sign leaves digits at
- * most 9. */
-static inline uint64_t gaps_of(const char *at)
-{
-    uint64_t digits = 0;
-#ifdef __SSE2__
-    const __m128i zero = _mm_set1_epi8('0'), nine = _mm_set1_epi8(9);
-#pragma GCC unroll 3
-    for (int v = 0; v < TM_ROW_WINDOW; v += 16) {
-        __m128i byte = _mm_loadu_si128((const __m128i *)(const void *)(at + v));
-        __m128i value = _mm_sub_epi8(byte, zero);
-        __m128i is_digit = _mm_cmpeq_epi8(_mm_min_epu8(value, nine), value);
-        digits |= (uint64_t)(unsigned)_mm_movemask_epi8(is_digit) << v;
-    }
-#else
-    for (int i = 0; i < TM_ROW_WINDOW; i++)
-        digits |= (uint64_t)((unsigned char)(at[i] - '0') <= 9) << i;
-#endif
-    return ~digits;
-}
-
-/* The place in a row that is being read as plain numbers; `wrong` is not 0 as soon as
- * something was not as it is written. */
-typedef struct {
-    const char *begin;
-    const char *window;
-    uint64_t gaps;
-    uint64_t wrong;
-} plain_row;
-
-/* The next number, of one to eight digits, that `separator` follows. */
-static inline uint64_t plain_number(plain_row *r, char separator)
-{
-    const char *past = r->window + __builtin_ctzll(r->gaps);
-    unsigned others = TM_WORD_BYTES - (unsigned)(past - r->begin);
-    uint64_t word = tm_word_load(r->begin) - tm_word_of('0');
-    r->gaps &= r->gaps - 1;
-    r->wrong |= (others & ~7u) | (unsigned char)(*past ^ separator);
-    r->begin = past + 1;
-    return tm_word_join(word << (8 * others & 63));
-}
-
-/* Reads a row in the form in which it is written: short numbers, one blank before each.
- * First all their ends are found, so that the numbers need not wait for each other. NULL
- * where the row is otherwise: then it is read with care. */
-static inline const char *plain_row_read(const char *at, size_t row, uint32_t base,
-                                         size_t limit, uint32_t *to, size_t width,
-                                         int32_t *marker_to)
-{
-    plain_row r = {at, at, gaps_of(at), 0};
-    uint64_t number = plain_number(&r, ' ');
-    r.wrong |= number ^ (row + base);
-#pragma GCC unroll 4
-    for (size_t i = 0; i < width; i++) {
-        bool last = i + 1 == width && !marker_to;
-        uint64_t node = plain_number(&r, last ? '\n' : ' ') - base;
-        r.wrong |= node >= limit;
-        to[i] = (uint32_t)node;
-    }
-    if (marker_to)
-        *marker_to = (int32_t)plain_number(&r, '\n');
-    return r.wrong ? NULL : r.begin;
-}
-
-/* Inlined for the widths that the compiler is told, so that its loops are unrolled. */
-static inline const char *plain_rows(const tm_row_context *c, const char *at,
-                                     const char *end, size_t most, size_t width,
-                                     int32_t *marker_to)
-{
-    size_t row = c->block->count, limit = c->limit;
-    uint32_t base = c->base, *to = c->block->integer;
-    while (row < most && at < end) {
-        const char *after = plain_row_read(at, row, base, limit, to + row * width, width,
-                                           marker_to ? marker_to + row : NULL);
-        if (!after)
-            break;
-        at = after;
-        row++;
-    }
-    c->block->count = row;
-    return at;
-}
-
-const char *tm_row_read_plain(tm_row_context *c, const char *at, const char *end,
-                              size_t most)
-{
-    tm_block *block = c->block;
-    bool of_nodes =
-        block->kind == TM_ELE || block->kind == TM_FACE || block->kind == TM_EDGE;
-    if (!of_nodes || block->attributes > 0)
-        return at;
-    if (block->kind == TM_ELE)
-        return plain_rows(c, at, end, most, 4, NULL);
-    return plain_rows(c, at, end, most, c->shape->integers, block->marker);
 }
 
 const char *tm_row_read(tm_row_context *c, const char *at, const char *end)
