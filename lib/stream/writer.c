@@ -31,6 +31,38 @@ static char *put_reals(char *to, const double *real, size_t count)
     return to;
 }
 
+/* The number of a row as text. Counting on is cheaper than converting each. */
+typedef struct {
+    char text[TM_INTEGER_CHARS];
+    size_t size;
+} row_number;
+
+static row_number row_number_from(size_t number)
+{
+    row_number n;
+    n.size = (size_t)(tm_write_int64(n.text, (int64_t)number) - n.text);
+    return n;
+}
+
+static inline void count_on(row_number *n)
+{
+    size_t i = n->size;
+    while (i > 0 && n->text[i - 1] == '9')
+        n->text[--i] = '0';
+    if (i > 0) {
+        n->text[i - 1]++;
+        return;
+    }
+    n->text[n->size++] = '0'; /* 99 becomes 100 */
+    n->text[0] = '1';
+}
+
+static inline char *put_row_number(char *to, const row_number *n)
+{
+    memcpy(to, n->text, sizeof n->text);
+    return to + n->size;
+}
+
 /* Nearly all indices are below TM_WORD_NUMBERS. */
 static inline char *put_index(char *to, uint32_t index, uint32_t base)
 {
@@ -67,10 +99,10 @@ static char *put_integers(char *to, const tm_block *block, size_t width, size_t 
     return put_indices(to, integer + plain, width - plain, base);
 }
 
+/* What follows the number of a row. */
 static char *put_row(char *to, const tm_block *block, const tm_block_shape *shape,
                      size_t row, uint32_t base)
 {
-    to = put_index(to, (uint32_t)row, base);
     to = put_reals(to, block->real + row * shape->reals, shape->reals);
     to = put_integers(to, block, shape->integers, row, base);
     if (block->start) {
@@ -116,9 +148,12 @@ static void format_chunk(void *context, size_t chunk)
     if (text->failed)
         return;
     const tm_block_shape *shape = tm_block_shape_of(b->block->kind);
+    row_number number = row_number_from(from + b->base);
     char *end = text->byte;
-    for (size_t row = from; row < to; row++)
-        end = put_row(end, b->block, shape, row, b->base);
+    for (size_t row = from; row < to; row++) {
+        end = put_row(put_row_number(end, &number), b->block, shape, row, b->base);
+        count_on(&number);
+    }
     text->size = (size_t)(end - text->byte);
 }
 
