@@ -128,16 +128,15 @@ tm_status output_files_finish(output_files *files, tm_error *error)
 tm_status output_file_write(const char *name, const tm_text *text, tm_error *error)
 {
     output_files files = {0};
-    int fd;
-    if (text->failed)
-        return tm_fail_memory(error);
-    tm_status status = output_files_open(&files, name, &fd, error);
-    if (status != TM_OK)
-        return status;
-    status = tm_write_all(fd, text->byte ? text->byte : "", text->size, error);
-    if (status == TM_OK)
-        return output_files_finish(&files, error);
-    snprintf(error->file, sizeof error->file, "%s", name);
+    int fd = -1;
+    tm_status status = text->failed ? tm_fail_memory(error)
+                                    : output_files_open(&files, name, &fd, error);
+    if (status == TM_OK) {
+        status = tm_write_all(fd, text->byte ? text->byte : "", text->size, error);
+        if (status == TM_OK)
+            return output_files_finish(&files, error);
+        snprintf(error->file, sizeof error->file, "%s", name);
+    }
     output_files_abandon(&files);
     return status;
 }
