@@ -142,7 +142,7 @@ install: all
 	done
 	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@LIBDIR@|$(LIBDIR)|' \
 		-e 's|@INCLUDEDIR@|$(INCLUDEDIR)|' -e 's|@VERSION@|$(VERSION)|' \
-		-e 's|@LDLIBS@|$(LDLIBS)|' termesh.pc.in \
+		-e 's|@LDLIBS@|$(LDLIBS)|' lib/termesh.pc.in \
 		>$(DESTDIR)$(LIBDIR)/pkgconfig/termesh.pc
 
 uninstall:
