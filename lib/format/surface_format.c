@@ -127,8 +127,10 @@ tm_status tm_format_read(tm_polygon_surface *surface, tm_format format, const ch
     case TM_FORMAT_SMESH:
         return tm_poly_read(surface, TM_POLY_SMESH, bytes, size, name, error);
     default:
-        return tm_fail_at(error, TM_ERROR_INPUT, name, 0, NULL,
-                          "is no surface that can be read (OFF, STL, PLY, OBJ, .mdl, "
-                          ".node, .poly or .smesh)");
+        return tm_fail_at(
+            error, TM_ERROR_INPUT, name, 0, NULL,
+            size == 0 ? "is empty (a surface, or points)"
+                      : "is no surface that can be read (OFF, STL, PLY, OBJ, .mdl, "
+                        ".node, .poly or .smesh)");
     }
 }
