@@ -64,9 +64,3 @@ void tm_json_string(tm_json *json, const char *key, const char *value)
     begin(json, key);
     quoted(json->text, value);
 }
-
-void tm_json_boolean(tm_json *json, const char *key, bool value)
-{
-    begin(json, key);
-    tm_text_string(json->text, value ? "true" : "false");
-}

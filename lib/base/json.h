@@ -26,6 +26,5 @@ void tm_json_integer(tm_json *json, const char *key, int64_t value);
 void tm_json_double(tm_json *json, const char *key,
                     double value); /* null if not finite */
 void tm_json_string(tm_json *json, const char *key, const char *value);
-void tm_json_boolean(tm_json *json, const char *key, bool value);
 
 #endif

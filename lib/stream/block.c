@@ -35,11 +35,6 @@ size_t tm_block_integers(tm_block_kind kind)
     return shapes[kind].integers;
 }
 
-bool tm_block_has_list(tm_block_kind kind)
-{
-    return shapes[kind].list;
-}
-
 tm_block_kind tm_block_kind_of(const char *name)
 {
     const char *suffix = strrchr(name, '.');

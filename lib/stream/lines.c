@@ -3,6 +3,7 @@
 
 #include "../base/file.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -86,4 +87,16 @@ tm_status tm_lines_fill(tm_lines *lines, tm_error *error)
             status = read_more(lines, error);
     }
     return status;
+}
+
+const char *tm_lines_quote(const char *at, char text[TM_QUOTE_CHARS])
+{
+    enum { MOST = 24 };
+    size_t size = 0;
+    while (size < MOST && isprint((unsigned char)at[size])) {
+        text[size] = at[size];
+        size++;
+    }
+    memcpy(text + size, size == MOST ? "…" : "", size == MOST ? sizeof "…" : 1);
+    return text;
 }

@@ -33,6 +33,15 @@ void tm_lines_close(tm_lines *lines);
  * file. A line of over TM_LINE_MAX bytes is an error. */
 tm_status tm_lines_fill(tm_lines *lines, tm_error *error);
 
+static inline bool tm_is_blank(char c)
+{
+    return c == ' ' || c == '\t';
+}
+
+/* Copies the line at `at` for a message: its first printable bytes. Returns text. */
+enum { TM_QUOTE_CHARS = 32 };
+const char *tm_lines_quote(const char *at, char text[TM_QUOTE_CHARS]);
+
 /* The longest line that is read: a polyhedron of a million facets has room. */
 #define TM_LINE_MAX ((size_t)1 << 24)
 

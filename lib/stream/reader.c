@@ -25,23 +25,6 @@ typedef struct {
     tm_error *error;
 } reader;
 
-static bool is_blank(char c)
-{
-    return c == ' ' || c == '\t';
-}
-
-/* A line for a message: its first printable bytes. */
-static const char *quote(const char *at, char text[32])
-{
-    size_t size = 0;
-    while (size < 24 && at[size] != '\n' && isprint((unsigned char)at[size])) {
-        text[size] = at[size];
-        size++;
-    }
-    memcpy(text + size, size == 24 ? "…" : "", size == 24 ? sizeof "…" : 1);
-    return text;
-}
-
 #define FAIL(r, block, ...)                                                              \
     tm_fail_at((r)->error, TM_ERROR_INPUT, (r)->lines.name, (r)->lines.line, block,      \
                __VA_ARGS__)
@@ -62,7 +45,7 @@ static tm_status next_content(reader *r)
         if (status != TM_OK || r->lines.at == r->lines.end)
             return status;
         const char *at = r->lines.at;
-        while (is_blank(*at))
+        while (tm_is_blank(*at))
             at++;
         if (*at != '\n' && *r->lines.at != '#')
             return TM_OK;
@@ -129,7 +112,7 @@ static bool block_name(const char *at, char name[TM_BLOCK_NAME])
     }
     name[size] = '\0';
     const char *rest = at + size;
-    while (is_blank(*rest))
+    while (tm_is_blank(*rest))
         rest++;
     return dots == 1 && size > 1 && name[size - 1] != '.' && *rest == '\n' &&
            !isdigit((unsigned char)name[0]);
@@ -147,10 +130,10 @@ static tm_status read_header(reader *r, tm_block *block, size_t *rows)
     const char *at = r->lines.at;
     for (size_t i = 0; i <= shape->headers; i++) {
         int64_t number;
-        while (is_blank(*at))
+        while (tm_is_blank(*at))
             at++;
         at = tm_read_int64(at, r->lines.end, &number);
-        if (!at || (*at != '\n' && !is_blank(*at)))
+        if (!at || (*at != '\n' && !tm_is_blank(*at)))
             return FAIL(r, block->name, "the header is not %zu whole numbers",
                         shape->headers + 1);
         int is = i == 0 ? 0 : shape->header[i - 1];
@@ -173,12 +156,12 @@ static tm_status read_header(reader *r, tm_block *block, size_t *rows)
         else if (is == TM_HEADER_MARKERS)
             block->markers = number == 1;
     }
-    while (is_blank(*at))
+    while (tm_is_blank(*at))
         at++;
     if (*at != '\n') {
-        char text[32];
+        char text[TM_QUOTE_CHARS];
         return FAIL(r, block->name, "'%s' after the header's %zu numbers",
-                    quote(at, text), shape->headers + 1);
+                    tm_lines_quote(at, text), shape->headers + 1);
     }
     next_line(r);
     return TM_OK;
@@ -204,12 +187,12 @@ static tm_status find_limit(reader *r, const tm_block *block, size_t *limit)
 
 static tm_status missing_row(reader *r, const tm_block *block, size_t row, size_t rows)
 {
-    char text[32];
+    char text[TM_QUOTE_CHARS];
     if (r->lines.at == r->lines.end)
         return FAIL(r, block->name, "truncated: row %zu of %zu is missing", row + 1,
                     rows);
     return FAIL(r, block->name, "row %zu of %zu is missing: '%s' follows", row + 1, rows,
-                quote(r->lines.at, text));
+                tm_lines_quote(r->lines.at, text));
 }
 
 /* Room for one more row; it doubles, up to what the header claims. */
@@ -231,9 +214,9 @@ static bool reserve_row(tm_block *block, size_t row, size_t rows, size_t *room)
 static tm_status read_base(reader *r, const tm_block *block)
 {
     int64_t number;
-    char text[32];
+    char text[TM_QUOTE_CHARS];
     const char *at = r->lines.at;
-    while (is_blank(*at))
+    while (tm_is_blank(*at))
         at++;
     if (block->kind != TM_NODE)
         return FAIL(r, block->name,
@@ -241,7 +224,7 @@ static tm_status read_base(reader *r, const tm_block *block)
                     "index base of the stream");
     if (!tm_read_int64(at, r->lines.end, &number) || number < 0 || number > 1)
         return FAIL(r, block->name, "the first row's number is '%s' (0 or 1)",
-                    quote(at, text));
+                    tm_lines_quote(at, text));
     r->stream->base = (unsigned)number;
     r->base_known = true;
     return TM_OK;
@@ -347,9 +330,10 @@ static tm_status read_end(reader *r)
 {
     next_line(r);
     tm_status status = next_content(r);
-    char text[32];
+    char text[TM_QUOTE_CHARS];
     if (status == TM_OK && r->lines.at != r->lines.end)
-        return FAIL(r, ".end", "'%s' follows (nothing may)", quote(r->lines.at, text));
+        return FAIL(r, ".end", "'%s' follows (nothing may)",
+                    tm_lines_quote(r->lines.at, text));
     return status;
 }
 
@@ -369,7 +353,7 @@ static tm_status read_blocks(reader *r)
                 return FAIL(r, last->name, "more rows than the %zu that its header says",
                             last->count);
             return FAIL(r, NULL, "'%s' is not the name of a block",
-                        quote(r->lines.at, text));
+                        tm_lines_quote(r->lines.at, text));
         }
         if (strcmp(name, ".end") == 0)
             return read_end(r);

@@ -12,27 +12,18 @@
 #include <math.h>
 #include <string.h>
 
-static bool is_blank(char c)
-{
-    return c == ' ' || c == '\t';
-}
-
 bool tm_row_begins(const char *at)
 {
-    while (is_blank(*at))
+    while (tm_is_blank(*at))
         at++;
     return isdigit((unsigned char)*at) || *at == '-' || *at == '+';
 }
 
 /* The field at `at`, for a message. */
-static const char *field(const char *at, char text[32])
+static const char *field(const char *at, char text[TM_QUOTE_CHARS])
 {
-    size_t size = 0;
-    while (size < 24 && isgraph((unsigned char)at[size])) {
-        text[size] = at[size];
-        size++;
-    }
-    memcpy(text + size, size == 24 ? "…" : "", size == 24 ? sizeof "…" : 1);
+    tm_lines_quote(at, text);
+    text[strcspn(text, " ")] = '\0';
     return text;
 }
 
@@ -41,7 +32,7 @@ static const char *field(const char *at, char text[32])
 /* Says why no number, or not all of the field, could be read. */
 static const char *fail_field(tm_row_context *c, const char *at, const char *what)
 {
-    char text[32];
+    char text[TM_QUOTE_CHARS];
     size_t row = c->block->count + c->base;
     if (*at == '\n')
         return FAIL(c, "row %zu ends before its %s", row, what);
@@ -68,7 +59,7 @@ static inline const char *short_number(const char *at, uint64_t *value)
 static inline const char *whole(tm_row_context *c, const char *at, const char *end,
                                 int64_t *value, const char *what)
 {
-    while (is_blank(*at))
+    while (tm_is_blank(*at))
         at++;
     uint64_t small;
     const char *after = short_number(at, &small);
@@ -77,7 +68,7 @@ static inline const char *whole(tm_row_context *c, const char *at, const char *e
         return after;
     }
     after = tm_read_int64(at, end, value);
-    if (!after || (*after != '\n' && !is_blank(*after)))
+    if (!after || (*after != '\n' && !tm_is_blank(*after)))
         return fail_field(c, after && *after <= ' ' ? after : at, what);
     return after;
 }
@@ -124,12 +115,12 @@ static const char *reference(tm_row_context *c, const char *at, const char *end,
 static const char *reals(tm_row_context *c, const char *at, const char *end, double *real,
                          size_t count)
 {
-    char text[32];
+    char text[TM_QUOTE_CHARS];
     for (size_t i = 0; i < count; i++) {
-        while (is_blank(*at))
+        while (tm_is_blank(*at))
             at++;
         const char *after = tm_read_double(at, end, &real[i]);
-        if (!after || (*after != '\n' && !is_blank(*after)))
+        if (!after || (*after != '\n' && !tm_is_blank(*after)))
             return fail_field(c, after && *after < ' ' ? after : at, "finite number");
         if (!isfinite(real[i]))
             return FAIL(c, "row %zu: '%s' is too large for a double",
@@ -241,10 +232,10 @@ const char *tm_row_read(tm_row_context *c, const char *at, const char *end)
         at = marker(c, at, end);
     if (at && *at == '\n')
         return at + 1;
-    while (at && is_blank(*at))
+    while (at && tm_is_blank(*at))
         at++;
     if (at && *at != '\n') {
-        char text[32];
+        char text[TM_QUOTE_CHARS];
         if (*at == '#' || *at == '\r')
             return fail_field(c, at, "");
         return FAIL(c, "row %zu: '%s' after the last number that its header says",

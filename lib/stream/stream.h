@@ -54,10 +54,9 @@ typedef struct tm_stream {
     tm_block *block;
 } tm_stream;
 
-/* Fixed columns of a row: how many reals, how many integers; and whether a list. */
+/* Fixed columns of a row: how many reals, how many integers. */
 size_t tm_block_reals(tm_block_kind kind);
 size_t tm_block_integers(tm_block_kind kind);
-bool tm_block_has_list(tm_block_kind kind);
 
 /* The kind that a name says: by what follows its last dot. */
 tm_block_kind tm_block_kind_of(const char *name);
