@@ -8,14 +8,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Whether the longest edge of t is a b; its nodes in *c and *d. */
-static inline bool has_longest(const tm_lepp_engine *e, uint32_t t, uint32_t a,
-                               uint32_t b, uint32_t *c, uint32_t *d)
+/* The nodes of the longest edge of t. */
+static inline void longest_edge_of(const tm_lepp_engine *e, uint32_t t, uint32_t *a,
+                                   uint32_t *b)
 {
     const uint8_t *corner = tm_edge_corner[e->mark[t] & TM_LEPP_LONGEST];
-    *c = e->mesh->tet[t][corner[0]];
-    *d = e->mesh->tet[t][corner[1]];
-    return (*c == a && *d == b) || (*c == b && *d == a);
+    *a = e->mesh->tet[t][corner[0]];
+    *b = e->mesh->tet[t][corner[1]];
+}
+
+static inline bool is_same_edge(uint32_t a, uint32_t b, uint32_t c, uint32_t d)
+{
+    return (c == a && d == b) || (c == b && d == a);
 }
 
 static bool push(tm_lepp_engine *e, uint32_t t)
@@ -29,7 +33,7 @@ static bool push(tm_lepp_engine *e, uint32_t t)
     }
     tm_lepp_step *step = &e->path[e->depth++];
     step->t = t;
-    has_longest(e, t, 0, 0, &step->a, &step->b);
+    longest_edge_of(e, t, &step->a, &step->b);
     step->operations = SIZE_MAX;
     return true;
 }
@@ -52,7 +56,8 @@ static uint32_t next_on_path(const tm_lepp_engine *e, tm_lepp_step *step)
 {
     while (step->searched < step->star.size) {
         uint32_t t = step->star.tet[step->searched++], a, b;
-        if (!has_longest(e, t, step->a, step->b, &a, &b) && !tm_lepp_is_blocked(e, a, b))
+        longest_edge_of(e, t, &a, &b);
+        if (!is_same_edge(step->a, step->b, a, b) && !tm_lepp_is_blocked(e, a, b))
             return t;
     }
     return TM_NONE;
@@ -63,10 +68,12 @@ static uint32_t next_on_path(const tm_lepp_engine *e, tm_lepp_step *step)
  * star where an operation may have changed it. */
 static bool refresh(tm_lepp_engine *e, tm_lepp_step *step, tm_status *status)
 {
-    uint32_t a, b;
     if (step->operations != e->operations) {
-        if (!tm_tet_lives(e->mesh, step->t) ||
-            !has_longest(e, step->t, step->a, step->b, &a, &b))
+        uint32_t a, b;
+        if (!tm_tet_lives(e->mesh, step->t))
+            return false;
+        longest_edge_of(e, step->t, &a, &b);
+        if (!is_same_edge(step->a, step->b, a, b))
             return false;
     }
     if (tm_lepp_is_blocked(e, step->a, step->b))
