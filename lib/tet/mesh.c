@@ -4,6 +4,7 @@
 #include "../base/array.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 void tm_tet_mesh_free(tm_tet_mesh *mesh)
 {
@@ -92,6 +93,12 @@ tm_status tm_tet_mesh_reserve(tm_tet_mesh *mesh, size_t nodes, size_t tets, size
     return TM_OK;
 }
 
+size_t tm_tet_mesh_most(const tm_tet_mesh *mesh, double growth)
+{
+    double most = growth * (double)mesh->tets;
+    return growth > 0 && most < (double)TM_TETS_MAX ? (size_t)most : TM_TETS_MAX;
+}
+
 uint32_t tm_tet_mesh_new_tet(tm_tet_mesh *mesh)
 {
     uint32_t t = mesh->first_dead;
@@ -108,6 +115,32 @@ void tm_tet_mesh_delete_tet(tm_tet_mesh *mesh, uint32_t t)
     mesh->tet[t][1] = mesh->first_dead;
     mesh->first_dead = t;
     mesh->tets--;
+}
+
+uint32_t tm_tet_mesh_new_node(tm_tet_mesh *mesh, const double p[3])
+{
+    uint32_t v = (uint32_t)mesh->nodes;
+    if (mesh->removed_nodes > 0) {
+        v = mesh->last_removed;
+        mesh->removed_nodes--;
+        mesh->last_removed = (uint32_t)mesh->xyz[v][1];
+    } else {
+        mesh->nodes++;
+    }
+    memcpy(mesh->xyz[v], p, sizeof mesh->xyz[v]);
+    for (size_t k = 0; k < mesh->node_attributes; k++)
+        mesh->node_attribute[v * mesh->node_attributes + k] = 0;
+    if (mesh->node_marker)
+        mesh->node_marker[v] = 0;
+    return v;
+}
+
+void tm_tet_mesh_delete_node(tm_tet_mesh *mesh, uint32_t v)
+{
+    mesh->xyz[v][0] = NAN;
+    mesh->xyz[v][1] = mesh->last_removed;
+    mesh->last_removed = v;
+    mesh->removed_nodes++;
 }
 
 tm_marked_edge *tm_tet_mesh_edge(const tm_tet_mesh *mesh, uint32_t a, uint32_t b)

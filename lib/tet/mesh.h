@@ -12,6 +12,7 @@
 #include "../stream/stream.h"
 #include "edge_map.h"
 
+#include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -40,7 +41,9 @@ typedef struct tm_marked_edge {
 typedef struct tm_tet_mesh {
     size_t nodes;
     size_t node_room;
-    double (*xyz)[3];
+    double (*xyz)[3]; /* xyz[v][0] is NaN: removed, xyz[v][1] the one removed before */
+    size_t removed_nodes;
+    uint32_t last_removed;
     size_t node_attributes;
     double *node_attribute; /* [nodes][node_attributes] */
     int32_t *node_marker;   /* [nodes], or NULL */
@@ -77,6 +80,11 @@ static inline bool tm_tet_lives(const tm_tet_mesh *mesh, uint32_t t)
     return mesh->tet[t][0] != TM_NONE;
 }
 
+static inline bool tm_node_lives(const tm_tet_mesh *mesh, uint32_t v)
+{
+    return !isnan(mesh->xyz[v][0]);
+}
+
 /* The half face on the other side of face i of t; TM_NONE on the boundary. */
 static inline uint32_t tm_tet_across(const tm_tet_mesh *mesh, uint32_t t, uint32_t i)
 {
@@ -103,10 +111,15 @@ static inline uint32_t tm_tet_corner(const tm_tet_mesh *mesh, uint32_t t, uint32
 tm_status tm_tet_mesh_take(tm_tet_mesh *mesh, tm_stream *stream, tm_error *error);
 
 /* Gives the mesh back to the blocks that it was taken from; the mesh is empty then.
- * Dead slots are filled by the last tetrahedra. */
+ * Dead slots are filled by the last tetrahedra; nodes that were not removed keep their
+ * order. */
 tm_status tm_tet_mesh_give(tm_tet_mesh *mesh, tm_stream *stream, tm_error *error);
 
 void tm_tet_mesh_free(tm_tet_mesh *mesh);
+
+/* How many tetrahedra are `growth` times those that the mesh has; for growth 0, or more
+ * than a mesh can have, TM_TETS_MAX. */
+size_t tm_tet_mesh_most(const tm_tet_mesh *mesh, double growth);
 
 /* Verifies every invariant that this header states. TM_ERROR_INTERNAL with the first
  * that does not hold. O(n log n), for tests and self-checks. */
@@ -122,6 +135,13 @@ tm_status tm_tet_mesh_reserve(tm_tet_mesh *mesh, size_t nodes, size_t tets, size
 /* A slot for a tetrahedron; its contents are the caller's to set. */
 uint32_t tm_tet_mesh_new_tet(tm_tet_mesh *mesh);
 void tm_tet_mesh_delete_tet(tm_tet_mesh *mesh, uint32_t t);
+
+/* A node at p, without attributes and marker: they are the caller's to set. There must
+ * be room for it. */
+uint32_t tm_tet_mesh_new_node(tm_tet_mesh *mesh, const double p[3]);
+
+/* Removes a node that no tetrahedron has any more. */
+void tm_tet_mesh_delete_node(tm_tet_mesh *mesh, uint32_t v);
 
 /* Makes half faces h and g each other's neighbours, with no face kept between them. */
 static inline void tm_tet_join(tm_tet_mesh *mesh, uint32_t h, uint32_t g)

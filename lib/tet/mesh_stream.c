@@ -114,6 +114,45 @@ static void compact(tm_tet_mesh *mesh)
     mesh->first_dead = TM_NONE;
 }
 
+/* Takes removed nodes out; the others keep their order. */
+static tm_status compact_nodes(tm_tet_mesh *mesh, tm_error *error)
+{
+    size_t kept = 0, width = mesh->node_attributes;
+    if (mesh->removed_nodes == 0)
+        return TM_OK;
+    uint32_t *number = tm_new(mesh->nodes, sizeof *number);
+    if (!number)
+        return tm_fail_memory(error);
+    for (size_t e = 0; e < mesh->edges; e++)
+        mesh->edge[e].gone |= !tm_node_lives(mesh, mesh->edge[e].node[0]) ||
+                              !tm_node_lives(mesh, mesh->edge[e].node[1]);
+    for (uint32_t v = 0; v < mesh->nodes; v++) {
+        number[v] = (uint32_t)kept;
+        if (!tm_node_lives(mesh, v))
+            continue;
+        memmove(mesh->xyz[kept], mesh->xyz[v], sizeof mesh->xyz[v]);
+        if (width > 0)
+            memmove(mesh->node_attribute + kept * width, mesh->node_attribute + v * width,
+                    width * sizeof *mesh->node_attribute);
+        if (mesh->node_marker)
+            mesh->node_marker[kept] = mesh->node_marker[v];
+        kept++;
+    }
+    for (size_t t = 0; t < mesh->tets; t++)
+        for (int i = 0; i < 4; i++)
+            mesh->tet[t][i] = number[mesh->tet[t][i]];
+    for (size_t f = 0; f < mesh->faces; f++)
+        for (int i = 0; i < 3; i++)
+            mesh->face[f].node[i] = number[mesh->face[f].node[i]];
+    for (size_t e = 0; e < mesh->edges; e++)
+        for (int i = 0; i < 2; i++)
+            mesh->edge[e].node[i] = number[mesh->edge[e].node[i]];
+    mesh->nodes = kept;
+    mesh->removed_nodes = 0;
+    free(number);
+    return TM_OK;
+}
+
 static tm_status give_faces(const tm_tet_mesh *mesh, tm_block *block, tm_error *error)
 {
     size_t count = 0;
@@ -163,6 +202,8 @@ tm_status tm_tet_mesh_give(tm_tet_mesh *mesh, tm_stream *stream, tm_error *error
     tm_status status = TM_OK;
     free(mesh->neighbour); /* before more is allocated: this is where memory peaks */
     mesh->neighbour = NULL;
+    compact(mesh);
+    status = compact_nodes(mesh, error);
     if (node) {
         MOVE(node->real, mesh->xyz);
         MOVE(node->attribute, mesh->node_attribute);
@@ -170,12 +211,11 @@ tm_status tm_tet_mesh_give(tm_tet_mesh *mesh, tm_stream *stream, tm_error *error
         node->count = mesh->nodes;
     }
     if (ele) {
-        compact(mesh);
         MOVE(ele->integer, mesh->tet);
         MOVE(ele->attribute, mesh->region);
         ele->count = mesh->tets;
     }
-    if (face)
+    if (status == TM_OK && face)
         status = give_faces(mesh, face, error);
     if (status == TM_OK && edge)
         status = give_edges(mesh, edge, error);

@@ -43,15 +43,16 @@ static inline bool all_positive(const tm_block *node, const tm_block *ele)
     return true;
 }
 
-/* Moves inner nodes of the grid by up to `by` cells each, where all stays positive. */
-static inline void shake(tm_block *node, const tm_block *ele, int n, double by)
+/* Moves inner nodes of the grid by up to `by` cells each along the first axes, where all
+ * stays positive. */
+static inline void shake(tm_block *node, const tm_block *ele, int n, double by, int axes)
 {
     for (int z = 1; z < n; z++)
         for (int y = 1; y < n; y++)
             for (int x = 1; x < n; x++) {
                 double *p = node->real + 3 * grid_node(n, x, y, z), old[3];
                 memcpy(old, p, sizeof old);
-                for (int k = 0; k < 3; k++)
+                for (int k = 0; k < axes; k++)
                     p[k] += by * (2 * random_unit() - 1);
                 if (!all_positive(node, ele))
                     memcpy(p, old, sizeof old);
@@ -132,8 +133,7 @@ static inline void make_grid(tm_stream *stream, int n, double by, bool regions)
                         ele->attribute[t] = 1 + z % FIXTURE_REGIONS;
                 }
     assert_true(all_positive(node, ele));
-    if (!regions)
-        shake(node, ele, n, by);
+    shake(node, ele, n, by, regions ? 2 : 3); /* the regions stay flat */
     for (size_t v = 0; v < nodes; v++) {
         const double *p = node->real + 3 * v;
         node->attribute[v] = p[0] + 2 * p[1] - p[2];
@@ -168,6 +168,8 @@ static inline void measure_faces(const tm_tet_mesh *mesh, invariants *i)
     assert_true(tm_edge_map_reserve(&edges, 3 * mesh->faces));
     for (size_t f = 0; f < mesh->faces; f++) {
         const tm_kept_face *face = &mesh->face[f];
+        if (face->side[0] == TM_NONE && face->side[1] == TM_NONE)
+            continue; /* removed */
         if (face->marker >= 0 && face->marker < FIXTURE_MARKERS)
             i->area[face->marker] +=
                 tm_triangle_area(mesh->xyz[face->node[0]], mesh->xyz[face->node[1]],
@@ -202,8 +204,10 @@ static inline invariants measure_invariants(const tm_tet_mesh *mesh)
         if (!mesh->edge[e].gone)
             i.length[mesh->edge[e].marker] += sqrt(tm_distance2(
                 mesh->xyz[mesh->edge[e].node[0]], mesh->xyz[mesh->edge[e].node[1]]));
-    for (size_t v = 0; v < mesh->nodes && mesh->node_attributes; v++) {
+    for (uint32_t v = 0; v < mesh->nodes && mesh->node_attributes; v++) {
         const double *p = mesh->xyz[v];
+        if (!tm_node_lives(mesh, v))
+            continue;
         i.worst_attribute = fmax(
             i.worst_attribute, fabs(mesh->node_attribute[v] - (p[0] + 2 * p[1] - p[2])));
     }
