@@ -83,6 +83,74 @@ bool tm_edge_removal_plan(const tm_tet_mesh *mesh, const tm_star *star,
     return plan->quality > 0 && is_valid(mesh, star, plan, 0, n - 1);
 }
 
+/* What the two tetrahedra on triangle i k j cost; HUGE_VAL where one is below least. */
+static double triangle_cost(const tm_tet_mesh *mesh, const tm_star *star,
+                            const tm_cost *cost, size_t i, size_t k, size_t j,
+                            double least)
+{
+    const double *x = mesh->xyz[star->ring[i]], *y = mesh->xyz[star->ring[k]];
+    const double *z = mesh->xyz[star->ring[j]];
+    double above = tm_cost_quality(cost, x, y, z, mesh->xyz[star->b]);
+    if (above < least)
+        return HUGE_VAL;
+    double below = tm_cost_quality(cost, x, z, y, mesh->xyz[star->a]);
+    if (below < least)
+        return HUGE_VAL;
+    return tm_cost_of(cost, above) + tm_cost_of(cost, below);
+}
+
+bool tm_edge_removal_plan_cheapest(const tm_tet_mesh *mesh, const tm_star *star,
+                                   const tm_cost *cost, double least, double most,
+                                   tm_edge_removal *plan)
+{
+    size_t n = star->size + !star->closed;
+    for (size_t i = 0; i + 1 < n; i++)
+        plan->best[i][i + 1] = 0;
+    for (size_t length = 2; length < n; length++) {
+        bool any = false;
+        for (size_t i = 0; i + length < n; i++) {
+            size_t j = i + length;
+            double best = most;
+            for (size_t k = i + 1; k < j; k++) {
+                double sum = plan->best[i][k] + plan->best[k][j];
+                if (!(sum < best))
+                    continue;
+                sum += triangle_cost(mesh, star, cost, i, k, j, least);
+                if (sum < best) {
+                    best = sum;
+                    plan->apex[i][j] = (uint8_t)k;
+                }
+            }
+            plan->best[i][j] = best < most ? best : HUGE_VAL;
+            any |= best < most;
+        }
+        /* Every triangulation has an ear: without a good one there is none. */
+        if (length == 2 && !any)
+            return false;
+    }
+    plan->quality = plan->best[0][n - 1];
+    return plan->quality < most && is_valid(mesh, star, plan, 0, n - 1);
+}
+
+static size_t list(const tm_star *star, const tm_edge_removal *plan, size_t i, size_t j,
+                   uint32_t (*node)[4])
+{
+    if (j - i < 2)
+        return 0;
+    size_t k = plan->apex[i][j];
+    const uint32_t *r = star->ring;
+    memcpy(node[0], (uint32_t[4]){r[i], r[k], r[j], star->b}, sizeof node[0]);
+    memcpy(node[1], (uint32_t[4]){r[i], r[j], r[k], star->a}, sizeof node[1]);
+    size_t count = 2 + list(star, plan, i, k, node + 2);
+    return count + list(star, plan, k, j, node + count);
+}
+
+size_t tm_edge_removal_list(const tm_star *star, const tm_edge_removal *plan,
+                            uint32_t (*node)[4])
+{
+    return list(star, plan, 0, star->size - star->closed, node);
+}
+
 /* An outer face of the star: the half face that is going, and what is across it. */
 typedef struct {
     uint32_t old;

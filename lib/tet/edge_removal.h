@@ -8,7 +8,7 @@
 #ifndef TM_TET_EDGE_REMOVAL_H
 #define TM_TET_EDGE_REMOVAL_H
 
-#include "../quality/tet_measure.h"
+#include "../quality/tet_cost.h"
 #include "star.h"
 
 /* Larger stars are not tried: the thesis saw 14, the programme costs O(n³). */
@@ -31,6 +31,18 @@ static inline bool tm_edge_is_removable(const tm_star *star)
  * exactly positive. False where there is none. O(n³) for n tetrahedra. */
 bool tm_edge_removal_plan(const tm_tet_mesh *mesh, const tm_star *star,
                           tm_tet_measure measure, double least, tm_edge_removal *plan);
+
+/* The same for a sum: finds the triangulation whose tetrahedra have the least
+ * tm_improve_cost() in all, below `most`, while each is at least `least` good and exactly
+ * positive. plan->quality is that sum. The star may be open: its ring is triangulated
+ * with the chord between its ends. */
+bool tm_edge_removal_plan_cheapest(const tm_tet_mesh *mesh, const tm_star *star,
+                                   const tm_cost *cost, double least, double most,
+                                   tm_edge_removal *plan);
+
+/* The tetrahedra that a plan makes, 2n - 4 for n nodes of the ring: their nodes. */
+size_t tm_edge_removal_list(const tm_star *star, const tm_edge_removal *plan,
+                            uint32_t (*node)[4]);
 
 /* Does what was planned. created[0 … 2n-4) are the tetrahedra made; created has room for
  * them. TM_ERROR_SYSTEM, with nothing changed, where memory is out. O(n). */

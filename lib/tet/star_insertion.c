@@ -2,7 +2,7 @@
 #include "star_insertion.h"
 
 #include "../geom/predicates.h"
-#include "../geom/vector.h"
+#include "interpolation.h"
 
 #include <string.h>
 
@@ -101,58 +101,30 @@ static int32_t marker_on_edge(const tm_tet_mesh *mesh, const tm_star *star)
     return marker;
 }
 
-/* Weights of the corners of a tetrahedron, not normalised, that make p; the least one is
- * returned: it is negative where p is outside. */
-static double weights_of(const tm_tet_mesh *mesh, const uint32_t n[4], const double p[3],
-                         double weight[4])
-{
-    double least = HUGE_VAL;
-    for (int i = 0; i < 4; i++) {
-        const double *x[4] = {mesh->xyz[n[0]], mesh->xyz[n[1]], mesh->xyz[n[2]],
-                              mesh->xyz[n[3]]};
-        x[i] = p;
-        weight[i] = tm_tet_volume(x[0], x[1], x[2], x[3]);
-        least = fmin(least, weight[i]);
-    }
-    return least;
-}
-
-/* The attributes of the new node: on the edge by its ends, else by the tetrahedron of
- * the star that p is deepest in. */
-static void interpolate(const tm_tet_mesh *mesh, const tm_star *star, const double p[3],
-                        bool on_edge, double *to)
+/* The attributes of the new node: on the edge the mean of its ends, else interpolated. */
+static void set_attributes(tm_tet_mesh *mesh, const tm_star *star, bool on_edge,
+                           uint32_t v)
 {
     size_t width = mesh->node_attributes;
-    uint32_t nodes[4] = {star->a, star->b, star->ring[0], star->ring[1]};
-    double weight[4] = {1, 1, 0, 0}, deepest = -HUGE_VAL;
-    for (size_t i = 0; i < star->size && !on_edge; i++) {
-        uint32_t n[4] = {star->a, star->b, star->ring[i], star->ring[i + 1]};
-        double w[4], least = weights_of(mesh, n, p, w);
-        if (least <= deepest)
-            continue;
-        deepest = least;
-        memcpy(nodes, n, sizeof nodes);
-        memcpy(weight, w, sizeof weight);
+    double *attribute = mesh->node_attribute;
+    if (!on_edge) {
+        tm_tet_interpolate(mesh, star->tet, star->size, mesh->xyz[v],
+                           attribute + v * width);
+        return;
     }
-    double sum = weight[0] + weight[1] + weight[2] + weight[3];
-    for (size_t k = 0; k < width; k++) {
-        to[k] = 0;
-        for (int i = 0; i < 4; i++)
-            to[k] += weight[i] / sum * mesh->node_attribute[nodes[i] * width + k];
-    }
+    for (size_t k = 0; k < width; k++)
+        attribute[v * width + k] =
+            attribute[star->a * width + k] / 2 + attribute[star->b * width + k] / 2;
 }
 
 static uint32_t add_node(tm_tet_mesh *mesh, const tm_star *star, const double p[3],
                          bool on_edge)
 {
-    uint32_t v = (uint32_t)mesh->nodes;
-    memcpy(mesh->xyz[v], p, sizeof mesh->xyz[v]);
+    uint32_t v = tm_tet_mesh_new_node(mesh, p);
     if (mesh->node_attributes)
-        interpolate(mesh, star, p, on_edge,
-                    mesh->node_attribute + v * mesh->node_attributes);
-    if (mesh->node_marker)
-        mesh->node_marker[v] = on_edge ? marker_on_edge(mesh, star) : 0;
-    mesh->nodes++;
+        set_attributes(mesh, star, on_edge, v);
+    if (mesh->node_marker && on_edge)
+        mesh->node_marker[v] = marker_on_edge(mesh, star);
     return v;
 }
 

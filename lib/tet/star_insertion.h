@@ -28,11 +28,11 @@ bool tm_star_contains(const tm_tet_mesh *mesh, const tm_star *star, const double
 double tm_star_insertion_quality(const tm_tet_mesh *mesh, const tm_star *star,
                                  const double p[3], tm_tet_measure measure, double least);
 
-/* Inserts p, which tm_star_sees(), as the last node of the mesh. With on_edge, p is on
- * the edge: faces that stay, and an edge of .edge, are split, and p gets the marker of
- * the edge, or of a face; else tm_star_is_free() must hold. Node attributes are
- * interpolated. created[0 … 2n) are the tetrahedra made. TM_ERROR_SYSTEM, with nothing
- * changed, where memory is out. O(n). */
+/* Inserts p, which tm_star_sees(), as a new node: the corner of created[0] that replaces
+ * star->b. With on_edge, p is the midpoint of the edge: faces that stay, and an edge of
+ * .edge, are split, and p gets the marker of the edge, or of a face; else
+ * tm_star_is_free() must hold. Node attributes are interpolated. created[0 … 2n) are the
+ * tetrahedra made. TM_ERROR_SYSTEM, with nothing changed, where memory is out. O(n). */
 tm_status tm_star_insert(tm_tet_mesh *mesh, const tm_star *star, const double p[3],
                          bool on_edge, uint32_t *created, tm_error *error);
 
