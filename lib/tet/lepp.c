@@ -8,36 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The nodes of the longest edge of t. */
-static inline void longest_edge_of(const tm_lepp_engine *e, uint32_t t, uint32_t *a,
-                                   uint32_t *b)
-{
-    const uint8_t *corner = tm_edge_corner[e->mark[t] & TM_LEPP_LONGEST];
-    *a = e->mesh->tet[t][corner[0]];
-    *b = e->mesh->tet[t][corner[1]];
-}
-
-static inline bool is_same_edge(uint32_t a, uint32_t b, uint32_t c, uint32_t d)
-{
-    return (c == a && d == b) || (c == b && d == a);
-}
-
-static bool push(tm_lepp_engine *e, uint32_t t)
-{
-    if (e->depth == e->path_room) {
-        tm_lepp_step *path = tm_grow(e->path, &e->path_room, e->depth + 1, sizeof *path);
-        if (!path)
-            return false;
-        e->path = path;
-        memset(path + e->depth, 0, (e->path_room - e->depth) * sizeof *path);
-    }
-    tm_lepp_step *step = &e->path[e->depth++];
-    step->t = t;
-    longest_edge_of(e, t, &step->a, &step->b);
-    step->operations = SIZE_MAX;
-    return true;
-}
-
 bool tm_lepp_add_target(tm_lepp_engine *e, uint32_t t)
 {
     uint32_t *target =
@@ -49,83 +19,6 @@ bool tm_lepp_add_target(tm_lepp_engine *e, uint32_t t)
     return true;
 }
 
-/* A tetrahedron around the edge of the step whose own longest edge is longer, and
- * refinable; TM_NONE where the edge is terminal. All around contain the edge, so theirs
- * is longer if it is another one. */
-static uint32_t next_on_path(const tm_lepp_engine *e, tm_lepp_step *step)
-{
-    while (step->searched < step->star.size) {
-        uint32_t t = step->star.tet[step->searched++], a, b;
-        longest_edge_of(e, t, &a, &b);
-        if (!is_same_edge(step->a, step->b, a, b) && !tm_lepp_is_blocked(e, a, b))
-            return t;
-    }
-    return TM_NONE;
-}
-
-/* Whether a step of the path still is one: its edge is not blocked, and its tetrahedron
- * lives, or another one came in its place that has the same longest edge. Collects its
- * star where an operation may have changed it. */
-static bool refresh(tm_lepp_engine *e, tm_lepp_step *step, tm_status *status)
-{
-    if (step->operations != e->operations) {
-        uint32_t a, b;
-        if (!tm_tet_lives(e->mesh, step->t))
-            return false;
-        longest_edge_of(e, step->t, &a, &b);
-        if (!is_same_edge(step->a, step->b, a, b))
-            return false;
-    }
-    if (tm_lepp_is_blocked(e, step->a, step->b))
-        return false;
-    if (step->operations != e->operations) {
-        step->operations = e->operations;
-        step->searched = 0;
-        if (!tm_star_around(e->mesh, step->t, e->mark[step->t] & TM_LEPP_LONGEST,
-                            &step->star))
-            *status = tm_fail_memory(e->error);
-    }
-    return *status == TM_OK;
-}
-
-/* Follows the path of one target until it is gone or its longest edge is blocked. After
- * each operation the path goes on from its last step that still holds. */
-static tm_status improve_target(tm_lepp_engine *e, uint32_t target)
-{
-    uint32_t nodes[4];
-    memcpy(nodes, e->mesh->tet[target], sizeof nodes);
-    size_t visited = 0;
-    tm_status status = TM_OK;
-    e->depth = 0;
-    if (!push(e, target))
-        return tm_fail_memory(e->error);
-    while (e->depth > 0 && memcmp(nodes, e->mesh->tet[target], sizeof nodes) == 0) {
-        tm_lepp_step *last = &e->path[e->depth - 1];
-        if (!refresh(e, last, &status)) {
-            if (status != TM_OK)
-                return status;
-            e->depth--;
-            continue;
-        }
-        uint32_t next = next_on_path(e, last);
-        if (next != TM_NONE) {
-            if (!push(e, next))
-                return tm_fail_memory(e->error);
-            continue;
-        }
-        visited++;
-        status = tm_lepp_process_star(e, &last->star, visited);
-        if (status != TM_OK)
-            return status;
-        e->depth--;
-    }
-    e->report->targets++;
-    e->report->visited[tm_lepp_bin(visited, TM_LEPP_VISITS)]++;
-    if (visited > e->report->most_visited)
-        e->report->most_visited = visited;
-    return TM_OK;
-}
-
 /* One pass over S, which may grow on the way. */
 static tm_status improve_all(tm_lepp_engine *e)
 {
@@ -134,7 +27,7 @@ static tm_status improve_all(tm_lepp_engine *e)
     for (size_t i = 0; i < e->targets && status == TM_OK; i++) {
         uint32_t t = e->target[i];
         if (tm_tet_lives(e->mesh, t) && (e->mark[t] & TM_LEPP_BAD))
-            status = improve_target(e, t);
+            status = tm_lepp_follow(e, t);
     }
     return status;
 }
@@ -203,12 +96,39 @@ static tm_status run_passes(tm_lepp_engine *e)
     return status;
 }
 
+/* Algorithm 7.1: sweeps, then one pass with no edge blocked; so many times, or until
+ * neither changes anything. */
+static tm_status run_with_sweeps(tm_lepp_engine *e)
+{
+    const tm_lepp_options *o = e->options;
+    size_t most = o->stop == TM_LEPP_ORIGINAL ? 1
+                  : o->stop == TM_LEPP_PASSES ? o->passes
+                                              : SIZE_MAX;
+    tm_status status = TM_OK;
+    bool idle = false;
+    while (status == TM_OK && !idle && e->report->passes < most) {
+        size_t before = tm_lepp_changes(e->report);
+        e->round++;
+        if (o->sweeps & TM_SWEEP_SMOOTH)
+            status = tm_lepp_smooth(e);
+        if (status == TM_OK && o->sweeps & TM_SWEEP_SWAP)
+            status = tm_lepp_swap(e);
+        if (status == TM_OK)
+            status = find_targets(e);
+        if (status == TM_OK)
+            status = improve_all(e);
+        idle = tm_lepp_changes(e->report) == before;
+    }
+    return status;
+}
+
 /* Passes over what is left of S until one changes nothing; then all over with no edge
  * blocked, until that changes nothing either: a star that changed may lie behind an edge
  * that is still blocked. So a second run on the output finds nothing to do. */
 static tm_status run_until_converged(tm_lepp_engine *e)
 {
     size_t fresh, before;
+    e->reintroduce = true;
     tm_status status = find_targets(e);
     do {
         fresh = tm_lepp_operations(e->report);
@@ -225,12 +145,71 @@ static tm_status run_until_converged(tm_lepp_engine *e)
 
 static tm_status run(tm_lepp_engine *e)
 {
+    if (e->options->sweeps)
+        return run_with_sweeps(e);
     if (e->options->stop == TM_LEPP_CONVERGED)
         return run_until_converged(e);
     if (e->options->stop == TM_LEPP_PASSES)
         return run_passes(e);
     tm_status status = find_targets(e);
     return status == TM_OK ? improve_all(e) : status;
+}
+
+bool tm_lepp_reserve(tm_lepp_engine *e, size_t more)
+{
+    size_t slots = e->mesh->slots + more;
+    uint8_t *mark = tm_grow(e->mark, &e->mark_room, slots, sizeof *mark);
+    e->mark = mark ? mark : e->mark;
+    double *quality = tm_grow(e->quality, &e->quality_room, slots, sizeof *quality);
+    e->quality = quality ? quality : e->quality;
+    uint32_t *created = tm_grow(e->created, &e->created_room, more, sizeof *created);
+    e->created = created ? created : e->created;
+    return mark && quality && created;
+}
+
+static tm_status start(tm_lepp_engine *e)
+{
+    tm_tet_mesh *mesh = e->mesh;
+    if (!tm_lepp_reserve(e, 0))
+        return tm_fail_memory(e->error);
+    for (uint32_t t = 0; t < mesh->slots; t++)
+        if (tm_tet_lives(mesh, t))
+            tm_lepp_measure(e, t);
+    e->report->bad_before = count_bad(e);
+    if (e->options->algorithm == TM_LEPP_DELAUNAY) {
+        e->delaunay = tm_delaunay_for(mesh);
+        e->report->not_delaunay_before = tm_tet_mesh_not_delaunay(mesh);
+    }
+    if (e->options->sweeps)
+        tm_lepp_measure_angles(e);
+    /* As many edges as that are refused; later growth would cost a second table. */
+    return tm_edge_map_reserve(&e->refused, e->report->bad_before)
+               ? TM_OK
+               : tm_fail_memory(e->error);
+}
+
+static void finish(tm_lepp_engine *e)
+{
+    e->report->bad_after = count_bad(e);
+    if (e->options->algorithm == TM_LEPP_DELAUNAY) {
+        e->report->not_delaunay_after = tm_tet_mesh_not_delaunay(e->mesh);
+        e->report->delaunay = e->delaunay.cavity.report;
+    }
+}
+
+static void free_engine(tm_lepp_engine *e)
+{
+    free(e->mark);
+    free(e->quality);
+    tm_edge_map_free(&e->refused);
+    for (size_t i = 0; i < e->path_room; i++)
+        tm_star_free(&e->path[i].star);
+    free(e->path);
+    tm_tet_marks_free(&e->graph);
+    free(e->target);
+    free(e->created);
+    tm_delaunay_free(&e->delaunay);
+    tm_lepp_sweeper_free(&e->sweeper);
 }
 
 tm_status tm_lepp_improve(tm_tet_mesh *mesh, const tm_lepp_options *options,
@@ -242,33 +221,12 @@ tm_status tm_lepp_improve(tm_tet_mesh *mesh, const tm_lepp_options *options,
                         .report = report,
                         .error = error,
                         .bad_below = tm_bad_sine2(options->angle),
-                        .mark_room = mesh->slots,
-                        .quality_room = mesh->slots};
-    tm_status status = TM_OK;
-    e.mark = tm_new(mesh->slots, sizeof *e.mark);
-    e.quality = tm_new(mesh->slots, sizeof *e.quality);
-    if (!e.mark || !e.quality)
-        status = tm_fail_memory(error);
-    for (size_t t = 0; t < mesh->slots && status == TM_OK; t++)
-        if (tm_tet_lives(mesh, (uint32_t)t))
-            tm_lepp_measure(&e, (uint32_t)t);
-    if (status == TM_OK) {
-        report->bad_before = count_bad(&e);
-        /* As many edges as that are refused; later growth would cost a second table. */
-        if (!tm_edge_map_reserve(&e.refused, report->bad_before))
-            status = tm_fail_memory(error);
-    }
+                        .most_tets = tm_tet_mesh_most(mesh, options->max_growth)};
+    tm_status status = start(&e);
     if (status == TM_OK) {
         status = run(&e);
-        report->bad_after = count_bad(&e);
+        finish(&e);
     }
-    free(e.mark);
-    free(e.quality);
-    tm_edge_map_free(&e.refused);
-    for (size_t i = 0; i < e.path_room; i++)
-        tm_star_free(&e.path[i].star);
-    free(e.path);
-    free(e.target);
-    free(e.created);
+    free_engine(&e);
     return status;
 }

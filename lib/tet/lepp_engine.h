@@ -1,12 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What lepp.c (paths and passes) and lepp_star.c (what is done with one terminal star)
- * share; for these two only. */
+/* What the files of LEPP share, for these only: lepp.c (targets and passes), lepp_path.c
+ * (from a target to terminal stars), lepp_star.c (what is done with one of them), and the
+ * sweeps between passes, lepp_smooth.c and lepp_swap.c. */
 #ifndef TM_TET_LEPP_ENGINE_H
 #define TM_TET_LEPP_ENGINE_H
 
 #include "lepp.h"
 
+#include "ball.h"
+#include "delaunay_insertion.h"
 #include "edge_removal.h"
+#include "features.h"
+#include "replacement.h"
+
+/* After so many terminal stars a target is left as it is. Insertions of midpoints end by
+ * themselves (Balboa saw some hundreds of stars); that Delaunay insertions do has not
+ * been proved. */
+enum { TM_LEPP_VISITS_MAX = 100000 };
 
 /* What is remembered of each tetrahedron beside its quality: its longest edge, 0 … 5, and
  * these bits. One byte, because paths look at it most. */
@@ -20,7 +30,23 @@ typedef struct tm_lepp_step {
     tm_star star;
     size_t searched;
     size_t operations; /* done when the star was collected; SIZE_MAX: not collected */
+    bool is_terminal;  /* was when it was found: TM_LEPP_FULL */
 } tm_lepp_step;
+
+/* What sweeps need beside. */
+typedef struct tm_lepp_sweeper {
+    double least_angle, most_angle; /* degrees, of the input: no change goes beyond */
+    tm_features features;
+    tm_ball ball;
+    tm_tet_marks marks;
+    tm_star star;
+    tm_replacement_table table;
+    uint32_t *tet_at; /* [nodes]: a tetrahedron that has the node, or TM_NONE */
+    uint32_t *seen;   /* [nodes]: look, if met */
+    uint32_t look;
+    double *value; /* [node_attributes] */
+    size_t tet_at_room, seen_room, value_room;
+} tm_lepp_sweeper;
 
 typedef struct tm_lepp_engine {
     tm_tet_mesh *mesh;
@@ -28,6 +54,7 @@ typedef struct tm_lepp_engine {
     tm_lepp_report *report;
     tm_error *error;
     double bad_below; /* sin² */
+    size_t most_tets; /* the mesh never grows beyond */
     uint8_t *mark;    /* [mesh->slots] */
     double *quality;  /* [mesh->slots], by options->measure */
     size_t mark_room, quality_room;
@@ -38,24 +65,62 @@ typedef struct tm_lepp_engine {
     uint32_t round;
 
     tm_lepp_step *path; /* [path_room]; the stars keep their memory */
+    tm_tet_marks graph; /* TM_LEPP_FULL: tetrahedra of the target's Lepp3D */
     size_t depth, path_room;
     size_t operations;
+    bool reintroduce; /* bad tetrahedra that are made join S */
     uint32_t *target; /* S */
     size_t targets, target_room;
     tm_edge_removal removal;
     uint32_t *created;
     size_t created_room;
+    tm_delaunay delaunay;
+    tm_lepp_sweeper sweeper;
 } tm_lepp_engine;
 
 /* Measures a tetrahedron: its mark and quality. */
 void tm_lepp_measure(tm_lepp_engine *e, uint32_t t);
 
+/* Room in the engine's arrays for so many more slots, and created tetrahedra; false where
+ * memory is out. */
+bool tm_lepp_reserve(tm_lepp_engine *e, size_t more);
+
+/* Measures tetrahedra that were made or changed; those that are bad join S if that grows.
+ * False where memory is out. */
+bool tm_lepp_note(tm_lepp_engine *e, const uint32_t *tet, size_t count);
+
+/* Makes the edges of tetrahedra refinable again. */
+void tm_lepp_unblock(tm_lepp_engine *e, const uint32_t *tet, size_t count);
+
 /* Appends a tetrahedron to S; false where memory is out. */
 bool tm_lepp_add_target(tm_lepp_engine *e, uint32_t t);
+
+/* Follows the path of one target, or all branches of its Lepp3D, until it is gone or its
+ * longest edge is not refinable. */
+tm_status tm_lepp_follow(tm_lepp_engine *e, uint32_t target);
 
 /* The terminal star of a path, the visited-th for its target: changes it, or makes its
  * edge non-refinable. */
 tm_status tm_lepp_process_star(tm_lepp_engine *e, const tm_star *star, size_t visited);
+
+/* Sweeps over the mesh: nodes to the mean of their neighbours, and swaps of faces; where
+ * that makes the worst tetrahedron better. */
+tm_status tm_lepp_smooth(tm_lepp_engine *e);
+tm_status tm_lepp_swap(tm_lepp_engine *e);
+void tm_lepp_sweeper_free(tm_lepp_sweeper *s);
+
+/* Finds the extreme angles of the mesh. */
+void tm_lepp_measure_angles(tm_lepp_engine *e);
+
+/* Whether a tetrahedron has no smaller and no larger angle than the input. */
+bool tm_lepp_keeps_angles(const tm_lepp_engine *e, const double a[3], const double b[3],
+                          const double c[3], const double d[3]);
+
+/* Whether the mesh may have so many tetrahedra more. */
+static inline bool tm_lepp_may_grow(const tm_lepp_engine *e, size_t more)
+{
+    return e->mesh->tets + more <= e->most_tets;
+}
 
 static inline bool tm_lepp_is_blocked(const tm_lepp_engine *e, uint32_t a, uint32_t b)
 {

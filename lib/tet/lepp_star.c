@@ -2,7 +2,7 @@
 /* What LEPP improvement does with one terminal star. */
 #include "lepp_engine.h"
 
-#include "../base/array.h"
+#include "../geom/predicates.h"
 #include "../geom/vector.h"
 #include "star_insertion.h"
 
@@ -70,8 +70,9 @@ static operation choose_point(tm_lepp_engine *e, const tm_star *star, bool is_fr
                               double p[3])
 {
     const tm_tet_mesh *mesh = e->mesh;
-    if (e->options->algorithm != TM_LEPP_BISECTION && is_free) {
-        if (e->options->algorithm == TM_LEPP_WCENTROID)
+    tm_lepp_algorithm algorithm = e->options->algorithm;
+    if (algorithm != TM_LEPP_BISECTION && algorithm != TM_LEPP_DELAUNAY && is_free) {
+        if (algorithm == TM_LEPP_WCENTROID)
             tm_star_wcentroid(mesh, star, p);
         else
             tm_star_centroid(mesh, star, p);
@@ -84,6 +85,35 @@ static operation choose_point(tm_lepp_engine *e, const tm_star *star, bool is_fr
     }
     tm_star_midpoint(mesh, star, p);
     return tm_star_sees(mesh, star, p) ? INSERT_MIDPOINT : REFUSE;
+}
+
+/* Whether the two tetrahedra on triangle i k j of the ring are positive. */
+static bool is_valid_triangle(const tm_tet_mesh *mesh, const tm_star *star, size_t i,
+                              size_t k, size_t j)
+{
+    const double *x = mesh->xyz[star->ring[i]], *y = mesh->xyz[star->ring[k]];
+    const double *z = mesh->xyz[star->ring[j]];
+    return tm_orient3d(x, y, z, mesh->xyz[star->b]) > 0 &&
+           tm_orient3d(x, z, y, mesh->xyz[star->a]) > 0;
+}
+
+/* Whether the ring has a triangulation whose tetrahedra are all positive, however good:
+ * can[i][j] is that the polygon i … j has one. */
+static bool has_removal(const tm_tet_mesh *mesh, const tm_star *star)
+{
+    bool can[TM_REMOVAL_MAX][TM_REMOVAL_MAX];
+    size_t n = star->size;
+    for (size_t i = 0; i + 1 < n; i++)
+        can[i][i + 1] = true;
+    for (size_t length = 2; length < n; length++)
+        for (size_t i = 0; i + length < n; i++) {
+            size_t j = i + length;
+            can[i][j] = false;
+            for (size_t k = i + 1; k < j && !can[i][j]; k++)
+                can[i][j] =
+                    can[i][k] && can[k][j] && is_valid_triangle(mesh, star, i, k, j);
+        }
+    return can[0][n - 1];
 }
 
 /* The better of the best edge removal and the insertion, if it is good enough. */
@@ -107,11 +137,81 @@ static operation choose(tm_lepp_engine *e, const tm_star *star, bool is_free,
     if (insertion != REFUSE)
         inserted = tm_star_insertion_quality(mesh, star, p, e->options->measure, least);
     e->report->too_large += star->closed && star->size > TM_REMOVAL_MAX;
-    if (may_swap && is_free && tm_edge_is_removable(star) &&
-        tm_edge_removal_plan(mesh, star, e->options->measure, fmax(least, inserted),
-                             &e->removal))
-        return REMOVE_EDGE;
+    if (may_swap && is_free && tm_edge_is_removable(star)) {
+        if (tm_edge_removal_plan(mesh, star, e->options->measure, fmax(least, inserted),
+                                 &e->removal))
+            return REMOVE_EDGE;
+        e->report->no_swap += e->options->count_invalid_swaps && !has_removal(mesh, star);
+    }
     return inserted >= least ? insertion : REFUSE;
+}
+
+/* Whether what was chosen makes no angle that the mesh had none of. */
+static bool keeps_angles(const tm_lepp_engine *e, const tm_star *star, operation chosen,
+                         const double p[3])
+{
+    const double(*xyz)[3] = (const double(*)[3])e->mesh->xyz;
+    const double *a = xyz[star->a], *b = xyz[star->b];
+    if (chosen == REMOVE_EDGE) {
+        uint32_t node[2 * TM_REMOVAL_MAX][4];
+        size_t count = tm_edge_removal_list(star, &e->removal, node);
+        for (size_t i = 0; i < count; i++)
+            if (!tm_lepp_keeps_angles(e, xyz[node[i][0]], xyz[node[i][1]],
+                                      xyz[node[i][2]], xyz[node[i][3]]))
+                return false;
+        return true;
+    }
+    for (size_t i = 0; i < star->size; i++) {
+        const double *r = xyz[star->ring[i]], *s = xyz[star->ring[i + 1]];
+        if (!tm_lepp_keeps_angles(e, a, p, r, s) || !tm_lepp_keeps_angles(e, p, b, r, s))
+            return false;
+    }
+    return true;
+}
+
+/* What an operation adds to the mesh; of a Delaunay insertion only when it is foreseen.
+ */
+static size_t growth_of(const tm_lepp_engine *e, const tm_star *star, operation chosen)
+{
+    if (chosen == REMOVE_EDGE)
+        return star->size > 4 ? star->size - 4 : 0;
+    return e->options->algorithm == TM_LEPP_DELAUNAY ? 0 : star->size;
+}
+
+/* The same for a Delaunay insertion, which must leave a Delaunay mesh if the input was
+ * one. */
+static tm_status keeps_delaunay(tm_lepp_engine *e, const tm_star *star, const double p[3],
+                                bool *keeps)
+{
+    const tm_delaunay_cavity *cavity = &e->delaunay.cavity;
+    bool is_whole;
+    if (e->report->not_delaunay_before > 0 && e->most_tets == TM_TETS_MAX)
+        return TM_OK;
+    tm_status status =
+        tm_delaunay_foresee(e->mesh, star, p, &e->delaunay, &is_whole, e->error);
+    if (status != TM_OK)
+        return status;
+    size_t more = cavity->faces > cavity->size ? cavity->faces - cavity->size : 0;
+    bool has_room = tm_lepp_may_grow(e, more);
+    e->report->no_room += !has_room;
+    *keeps = has_room && (is_whole || e->report->not_delaunay_before > 0);
+    return TM_OK;
+}
+
+/* Whether what was chosen leaves what the whole run promises: the size of the mesh, with
+ * sweeps its extreme angles, with delaunay a Delaunay mesh. */
+static tm_status keeps_promise(tm_lepp_engine *e, const tm_star *star, operation chosen,
+                               const double p[3], bool *keeps)
+{
+    *keeps = tm_lepp_may_grow(e, growth_of(e, star, chosen));
+    e->report->no_room += !*keeps;
+    if (!*keeps)
+        return TM_OK;
+    if (e->options->algorithm == TM_LEPP_DELAUNAY)
+        return keeps_delaunay(e, star, p, keeps);
+    *keeps = !e->options->sweeps || keeps_angles(e, star, chosen, p);
+    e->report->angle_kept += !*keeps;
+    return TM_OK;
 }
 
 static void count_star(tm_lepp_engine *e, const tm_star *star, bool is_free,
@@ -132,13 +232,14 @@ static void count_star(tm_lepp_engine *e, const tm_star *star, bool is_free,
     r->centroids += chosen == INSERT_CENTROID;
     r->midpoints += chosen == INSERT_MIDPOINT && is_free;
     r->open_midpoints += chosen == INSERT_MIDPOINT && !is_free;
-    r->insertion_size[size] +=
-        star->closed && (chosen == INSERT_CENTROID || chosen == INSERT_MIDPOINT);
+    bool inserted = chosen == INSERT_CENTROID || chosen == INSERT_MIDPOINT;
+    r->insertion_size[size] += star->closed && inserted;
+    r->open_insertion_size[size] += !star->closed && inserted;
 }
 
 /* Frees the edges of the tetrahedra that an operation made. Those that it made new were
  * never blocked, and the one it removed was not: a path does not lead there. */
-static void unblock(tm_lepp_engine *e, const tm_star *star)
+static void unblock_star(tm_lepp_engine *e, const tm_star *star)
 {
     for (size_t i = 0; i <= star->size; i++) {
         tm_edge_map_remove(&e->refused, star->a, star->ring[i]);
@@ -148,26 +249,53 @@ static void unblock(tm_lepp_engine *e, const tm_star *star)
     }
 }
 
-/* Room in the engine's arrays for what an operation on the star makes. */
-static bool reserve(tm_lepp_engine *e, const tm_star *star)
+bool tm_lepp_note(tm_lepp_engine *e, const uint32_t *tet, size_t count)
 {
-    size_t most = 2 * star->size, slots = e->mesh->slots + most;
-    uint8_t *mark = tm_grow(e->mark, &e->mark_room, slots, sizeof *mark);
-    e->mark = mark ? mark : e->mark;
-    double *quality = tm_grow(e->quality, &e->quality_room, slots, sizeof *quality);
-    e->quality = quality ? quality : e->quality;
-    uint32_t *created = tm_grow(e->created, &e->created_room, most, sizeof *created);
-    e->created = created ? created : e->created;
-    return mark && quality && created;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t t = tet[i];
+        tm_lepp_measure(e, t);
+        if (t < e->graph.room)
+            e->graph.stamp[t] = 0; /* another one than the path may have seen */
+        if (e->reintroduce && (e->mark[t] & TM_LEPP_BAD) && !tm_lepp_add_target(e, t))
+            return false;
+    }
+    return true;
+}
+
+void tm_lepp_unblock(tm_lepp_engine *e, const uint32_t *tet, size_t count)
+{
+    for (size_t i = 0; i < count && e->refused.count > 0; i++) {
+        const uint32_t *n = e->mesh->tet[tet[i]];
+        for (int k = 0; k < TM_TET_EDGES; k++)
+            tm_edge_map_remove(&e->refused, n[tm_edge_corner[k][0]],
+                               n[tm_edge_corner[k][1]]);
+    }
+}
+
+/* Inserts the midpoint by its Delaunay cavity. */
+static tm_status change_by_cavity(tm_lepp_engine *e, const tm_star *star,
+                                  const double p[3])
+{
+    tm_delaunay *d = &e->delaunay;
+    tm_status status = tm_delaunay_insert(e->mesh, star, p, d, e->error);
+    if (status != TM_OK)
+        return status;
+    e->operations++;
+    if (!tm_lepp_reserve(e, 0) || !tm_lepp_note(e, d->created, d->made))
+        return tm_fail_memory(e->error);
+    tm_lepp_unblock(e, d->created, d->made);
+    return TM_OK;
 }
 
 /* Changes the star as chosen; measures what was made. */
 static tm_status change(tm_lepp_engine *e, const tm_star *star, operation chosen,
                         const double p[3])
 {
-    if (!reserve(e, star))
-        return tm_fail_memory(e->error);
+    if (e->options->algorithm == TM_LEPP_DELAUNAY)
+        return change_by_cavity(e, star, p);
     size_t made = 2 * star->size;
+    if (!tm_lepp_reserve(e, made))
+        return tm_fail_memory(e->error);
     tm_status status;
     if (chosen == REMOVE_EDGE) {
         made -= 4;
@@ -178,16 +306,9 @@ static tm_status change(tm_lepp_engine *e, const tm_star *star, operation chosen
     }
     if (status != TM_OK)
         return status;
-    unblock(e, star);
+    unblock_star(e, star);
     e->operations++;
-    for (size_t i = 0; i < made; i++) {
-        uint32_t t = e->created[i];
-        tm_lepp_measure(e, t);
-        if (e->options->stop == TM_LEPP_CONVERGED && (e->mark[t] & TM_LEPP_BAD) &&
-            !tm_lepp_add_target(e, t))
-            return tm_fail_memory(e->error);
-    }
-    return TM_OK;
+    return tm_lepp_note(e, e->created, made) ? TM_OK : tm_fail_memory(e->error);
 }
 
 tm_status tm_lepp_process_star(tm_lepp_engine *e, const tm_star *star, size_t visited)
@@ -204,6 +325,13 @@ tm_status tm_lepp_process_star(tm_lepp_engine *e, const tm_star *star, size_t vi
     }
     bool is_free = tm_star_is_free(e->mesh, star);
     operation chosen = choose(e, star, is_free, may_swap, p);
+    if (chosen != REFUSE) {
+        bool keeps = true;
+        tm_status status = keeps_promise(e, star, chosen, p, &keeps);
+        if (status != TM_OK)
+            return status;
+        chosen = keeps ? chosen : REFUSE;
+    }
     count_star(e, star, is_free, chosen);
     if (chosen != REFUSE)
         return change(e, star, chosen, p);
