@@ -4,113 +4,192 @@
 
 #include "../lib/base/json.h"
 #include "../lib/quality/tet_statistics.h"
+#include "../lib/tet/improve.h"
 #include "../lib/tet/lepp.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-enum { MAX_STAR = FILTER_OWN };
+enum { OPS = FILTER_OWN, MAX_GROWTH, PATH, MAX_STAR, WITH };
 
-static const struct option options[] = {{"algorithm", required_argument, NULL, 'a'},
-                                        {"factor", required_argument, NULL, 'm'},
-                                        {"angle", required_argument, NULL, 't'},
-                                        {"quality", required_argument, NULL, 'Q'},
-                                        {"stop", required_argument, NULL, 's'},
-                                        {"max-star", required_argument, NULL, MAX_STAR},
-                                        FILTER_OPTIONS};
+static const struct option options[] = {
+    {"algorithm", required_argument, NULL, 'a'},
+    {"factor", required_argument, NULL, 'm'},
+    {"angle", required_argument, NULL, 't'},
+    {"quality", required_argument, NULL, 'Q'},
+    {"stop", required_argument, NULL, 's'},
+    {"ops", required_argument, NULL, OPS},
+    {"max-growth", required_argument, NULL, MAX_GROWTH},
+    {"path", required_argument, NULL, PATH},
+    {"max-star", required_argument, NULL, MAX_STAR},
+    {"with", required_argument, NULL, WITH},
+    FILTER_OPTIONS};
 
-static const char synopsis[] = "[-a ALGORITHM] [-m FACTOR] [-t DEG] [-Q dihedral|volume] "
-                               "[-s original|N|converged] [--max-star N] [FILE]";
+static const char synopsis[] =
+    "[-a ALGORITHM] [-t DEG] [-Q dihedral|volume] [-s original|N|converged] "
+    "[--max-growth R] [--ops LIST] [-m FACTOR] [--path simple|full] [--max-star N] "
+    "[--with smooth|face-swap|both] [FILE]";
 
 static const char own_help[] =
-    "  -a, --algorithm A   selective (default): change a terminal star only where that\n"
-    "                      makes it better; swap-centroid, centroid, wcentroid,\n"
-    "                      bisection: change every one\n"
-    "  -m, --factor M      selective: how many times better, 1 or more (default 1.1)\n"
+    "  -a, --algorithm A   improve (default): all operations together; or what is done\n"
+    "                      at the ends of longest-edge paths: selective, swap-centroid,\n"
+    "                      centroid, wcentroid, bisection, delaunay\n"
     "  -t, --angle DEG     bad: a dihedral angle below DEG or above 180 - DEG (30)\n"
-    "  -Q, --quality Q     compare stars by dihedral (default) or volume\n"
-    "  -s, --stop WHEN     original: the bad tetrahedra of the input, once (default of\n"
-    "                      all but selective); N: so many passes over the bad ones;\n"
-    "                      converged: until nothing can be done (default of selective)\n"
-    "      --max-star N    leave stars of more than N tetrahedra alone\n";
+    "  -Q, --quality Q     compare tetrahedra by dihedral (default) or volume\n"
+    "  -s, --stop WHEN     N: so many passes over the bad tetrahedra; converged: until\n"
+    "                      little is gained (default of improve) or nothing (default of\n"
+    "                      selective); original: those of the input once (the others)\n"
+    "      --max-growth R  never more than R times the input's tetrahedra\n"
+    "      --ops LIST      improve: what it may do, with commas; \"list\" prints all\n"
+    "  -m, --factor M      selective: change a star where that makes it so many times\n"
+    "                      better, 1 or more (default 1.1)\n"
+    "      --path P        simple (default): one path from each bad tetrahedron; full:\n"
+    "                      all branches of it; not for improve, as the rest\n"
+    "      --max-star N    leave stars of more than N tetrahedra alone\n"
+    "      --with SWEEP    selective: before each pass, smooth: move nodes to the mean "
+    "of\n"
+    "                      their neighbours; face-swap; both\n";
 
 static const double default_factor = 1.1, most_factor = 100;
 static const double default_angle = 30, right_angle = 90;
+static const double least_growth = 1e-9, most_growth = 1e9;
 
-/* In the order of tm_lepp_algorithm. */
-static const char *const algorithms[] = {"bisection", "centroid", "wcentroid",
-                                         "swap-centroid", "selective"};
+/* In the order of tm_lepp_algorithm; then the one that is none of them. */
+enum { ALGORITHMS = TM_LEPP_SELECTIVE + 1, IMPROVE = ALGORITHMS };
+static const char *const algorithms[] = {"bisection", "centroid",      "wcentroid",
+                                         "delaunay",  "swap-centroid", "selective",
+                                         "improve"};
 
-static void set_algorithm(const filter *f, tm_lepp_options *o, const char *name)
+/* What is to be done, by one of two engines. */
+typedef struct {
+    bool is_improve;
+    tm_improve_options improve;
+    tm_lepp_options lepp;
+} settings;
+
+/* The place of a word in a list, or a usage error. */
+static int find_word(const filter *f, const char *option, const char *const *word,
+                     int count, const char *given)
 {
-    for (size_t a = 0; a < sizeof algorithms / sizeof algorithms[0]; a++)
-        if (strcmp(name, algorithms[a]) == 0) {
-            o->algorithm = (tm_lepp_algorithm)a;
-            return;
-        }
-    filter_usage_error(f,
-                       "-a: '%s' is not an algorithm (bisection, centroid, wcentroid, "
-                       "swap-centroid, selective)",
-                       name);
+    char all[256] = "";
+    for (int k = 0; k < count; k++) {
+        if (strcmp(word[k], given) == 0)
+            return k;
+        snprintf(all + strlen(all), sizeof all - strlen(all), k ? ", %s" : "%s", word[k]);
+    }
+    filter_usage_error(f, "%s: '%s' is none of %s", option, given, all);
 }
 
-static void set_measure(const filter *f, tm_lepp_options *o, const char *name)
+static void set_stop(const filter *f, settings *o, const char *text)
 {
-    if (strcmp(name, "dihedral") == 0)
-        o->measure = TM_MEASURE_DIHEDRAL;
-    else if (strcmp(name, "volume") == 0)
-        o->measure = TM_MEASURE_VOLUME;
-    else
-        filter_usage_error(f, "-Q: '%s' is not a quality (dihedral, volume)", name);
-}
-
-static void set_stop(const filter *f, tm_lepp_options *o, const char *text)
-{
-    const long most_passes = 1000000;
     if (strcmp(text, "original") == 0) {
-        o->stop = TM_LEPP_ORIGINAL;
+        o->lepp.stop = TM_LEPP_ORIGINAL;
     } else if (strcmp(text, "converged") == 0) {
-        o->stop = TM_LEPP_CONVERGED;
+        o->lepp.stop = TM_LEPP_CONVERGED;
     } else {
-        o->stop = TM_LEPP_PASSES;
-        o->passes = (size_t)filter_integer(f, "-s", text, 1, most_passes);
+        o->lepp.stop = TM_LEPP_PASSES;
+        o->lepp.passes = (size_t)filter_integer(f, "-s", text, 1, INT32_MAX);
+        o->improve.passes = o->lepp.passes;
     }
 }
 
-static tm_lepp_options read_options(filter *f)
+static unsigned find_ops(const filter *f, const char *list)
 {
-    tm_lepp_options o = {.algorithm = TM_LEPP_SELECTIVE,
-                         .factor = default_factor,
-                         .angle = default_angle,
-                         .measure = TM_MEASURE_DIHEDRAL};
-    bool has_stop = false, has_factor = false;
+    unsigned ops = 0;
+    char word[64];
+    if (strcmp(list, "list") == 0) {
+        for (int op = 0; op < TM_IMPROVE_OPS; op++)
+            puts(tm_improve_op_name[op]);
+        filter_exit_after_text(f);
+    }
+    for (;;) {
+        size_t length = strcspn(list, ",");
+        snprintf(word, sizeof word, "%.*s", (int)length, list);
+        ops |= 1u << find_word(f, "--ops", tm_improve_op_name, TM_IMPROVE_OPS, word);
+        if (list[length] == '\0')
+            return ops;
+        list += length + 1;
+    }
+}
+
+static const char *const measures[] = {"dihedral", "volume"};
+static const char *const paths[] = {"simple", "full"};
+static const char *const sweeps[] = {"smooth", "face-swap", "both"};
+
+static void set_option(filter *f, settings *o, int c)
+{
+    if (c == 'a') {
+        int a = find_word(f, "-a", algorithms, ALGORITHMS + 1, optarg);
+        o->is_improve = a == IMPROVE;
+        o->lepp.algorithm = o->is_improve ? TM_LEPP_SELECTIVE : (tm_lepp_algorithm)a;
+    } else if (c == 'm') {
+        o->lepp.factor = filter_number(f, "-m", optarg, 1, most_factor);
+    } else if (c == 't') {
+        o->lepp.angle = o->improve.angle = filter_number(f, "-t", optarg, 0, right_angle);
+    } else if (c == 'Q') {
+        o->lepp.measure = (tm_tet_measure)find_word(f, "-Q", measures, 2, optarg);
+        o->improve.measure = o->lepp.measure;
+    } else if (c == 's') {
+        set_stop(f, o, optarg);
+    } else if (c == OPS) {
+        o->improve.ops = find_ops(f, optarg);
+    } else if (c == MAX_GROWTH) {
+        o->lepp.max_growth =
+            filter_number(f, "--max-growth", optarg, least_growth, most_growth);
+        o->improve.max_growth = o->lepp.max_growth;
+    } else if (c == PATH) {
+        o->lepp.path = (tm_lepp_path)find_word(f, "--path", paths, 2, optarg);
+    } else if (c == WITH) {
+        o->lepp.sweeps = 1u + (unsigned)find_word(f, "--with", sweeps, 3, optarg);
+    } else if (c == MAX_STAR) {
+        o->lepp.max_star = (size_t)filter_integer(f, "--max-star", optarg, 1, INT32_MAX);
+    }
+}
+
+/* Refuses options that the algorithm has no use for. */
+static void check_options(const filter *f, const settings *o, const bool given[])
+{
+    bool selective = !o->is_improve && o->lepp.algorithm == TM_LEPP_SELECTIVE;
+    const char *name = algorithms[o->is_improve ? IMPROVE : (int)o->lepp.algorithm];
+    if (o->is_improve && (given[PATH] || given[MAX_STAR]))
+        filter_usage_error(f, "%s is for paths: %s has none",
+                           given[PATH] ? "--path" : "--max-star", name);
+    if (!selective && given['m'])
+        filter_usage_error(f, "-m is for selective: %s does not compare so", name);
+    if (!selective && given[WITH])
+        filter_usage_error(f, "--with is for selective: %s has no sweeps", name);
+    if (!o->is_improve && given[OPS])
+        filter_usage_error(f, "--ops is for improve: %s does what its name says", name);
+    if (given['s'] && o->is_improve && o->lepp.stop == TM_LEPP_ORIGINAL)
+        filter_usage_error(f, "improve does not stop so: -s N or -s converged");
+    if (given['s'] && !o->is_improve && !selective && o->lepp.stop == TM_LEPP_CONVERGED)
+        filter_usage_error(f, "%s does not converge: -s original or -s N", name);
+    if (!o->is_improve && given[MAX_GROWTH] && o->lepp.max_growth < 1)
+        filter_usage_error(f, "--max-growth: %s only grows: 1 or more", name);
+}
+
+static settings read_options(filter *f)
+{
+    settings o = {.is_improve = true,
+                  .improve = {.angle = default_angle,
+                              .measure = TM_MEASURE_DIHEDRAL,
+                              .ops = TM_IMPROVE_ALL_OPS},
+                  .lepp = {.algorithm = TM_LEPP_SELECTIVE,
+                           .factor = default_factor,
+                           .angle = default_angle,
+                           .measure = TM_MEASURE_DIHEDRAL}};
+    bool given[WITH + 1] = {false};
     int c;
     while ((c = filter_option(f)) != -1) {
-        if (c == 'a')
-            set_algorithm(f, &o, optarg);
-        else if (c == 'm')
-            o.factor = filter_number(f, "-m", optarg, 1, most_factor);
-        else if (c == 't')
-            o.angle = filter_number(f, "-t", optarg, 0, right_angle);
-        else if (c == 'Q')
-            set_measure(f, &o, optarg);
-        else if (c == 's')
-            set_stop(f, &o, optarg);
-        else if (c == MAX_STAR)
-            o.max_star = (size_t)filter_integer(f, "--max-star", optarg, 1, INT32_MAX);
-        has_stop |= c == 's';
-        has_factor |= c == 'm';
+        set_option(f, &o, c);
+        given[c] = true;
     }
-    bool selective = o.algorithm == TM_LEPP_SELECTIVE;
-    if (!has_stop)
-        o.stop = selective ? TM_LEPP_CONVERGED : TM_LEPP_ORIGINAL;
-    if (!selective && has_factor)
-        filter_usage_error(f, "-m is for selective: %s changes every star",
-                           algorithms[o.algorithm]);
-    if (!selective && o.stop == TM_LEPP_CONVERGED)
-        filter_usage_error(f, "%s does not converge: -s original or -s N",
-                           algorithms[o.algorithm]);
+    check_options(f, &o, given);
+    if (!given['s'])
+        o.lepp.stop =
+            o.lepp.algorithm == TM_LEPP_SELECTIVE ? TM_LEPP_CONVERGED : TM_LEPP_ORIGINAL;
+    o.lepp.count_invalid_swaps = f->json;
     return o;
 }
 
@@ -157,64 +236,31 @@ static void drop_unknown(const filter *f, tm_stream *stream)
     }
 }
 
-static void histogram(tm_json *json, const char *key, const size_t *count, size_t bins)
-{
-    tm_json_open(json, key, '[');
-    for (size_t i = 0; i < bins; i++)
-        tm_json_integer(json, NULL, (int64_t)count[i]);
-    tm_json_close(json, ']');
-}
+/* What was done, by the engine that did it. */
+typedef struct {
+    tm_improve_report improve;
+    tm_lepp_report lepp;
+    tm_tet_statistics before, after; /* with --json */
+    double seconds;
+    size_t changes;
+} result;
 
-static void stars_json(tm_json *json, const tm_lepp_report *r)
-{
-    tm_json_open(json, "stars", '{');
-    tm_json_integer(json, "closed", (int64_t)r->closed);
-    tm_json_integer(json, "open", (int64_t)r->open);
-    tm_json_open(json, "refused", '{');
-    tm_json_integer(json, "closed", (int64_t)r->refused_closed);
-    tm_json_integer(json, "open", (int64_t)r->refused_open);
-    tm_json_integer(json, "locked", (int64_t)r->locked);
-    tm_json_integer(json, "above_max_star", (int64_t)r->above_max);
-    tm_json_close(json, '}');
-    tm_json_open(json, "invalid_centroids", '{');
-    tm_json_integer(json, "outside", (int64_t)r->outside);
-    tm_json_integer(json, "tangled", (int64_t)r->tangled);
-    tm_json_close(json, '}');
-    tm_json_open(json, "sizes", '{');
-    histogram(json, "closed", r->closed_size, TM_LEPP_SIZES);
-    histogram(json, "open", r->open_size, TM_LEPP_SIZES);
-    histogram(json, "swapped", r->swap_size, TM_LEPP_SIZES);
-    histogram(json, "inserted", r->insertion_size, TM_LEPP_SIZES);
-    tm_json_close(json, '}');
-    tm_json_integer(json, "too_large_to_swap", (int64_t)r->too_large);
-    histogram(json, "visited", r->visited, TM_LEPP_VISITS);
-    tm_json_integer(json, "most_visited", (int64_t)r->most_visited);
-    tm_json_close(json, '}');
-}
-
-static void write_json(filter *f, const tm_tet_statistics *before,
-                       const tm_tet_statistics *after, const tm_lepp_report *r,
-                       double seconds)
+static void write_json(filter *f, const settings *o, const result *r)
 {
     tm_text text = {0};
     tm_json json = {.text = &text};
     tm_json_open(&json, NULL, '{');
     tm_json_open(&json, "before", '{');
-    tm_tet_statistics_json(&json, before);
+    tm_tet_statistics_json(&json, &r->before);
     tm_json_close(&json, '}');
     tm_json_open(&json, "after", '{');
-    tm_tet_statistics_json(&json, after);
+    tm_tet_statistics_json(&json, &r->after);
     tm_json_close(&json, '}');
-    tm_json_double(&json, "seconds", seconds);
-    tm_json_integer(&json, "passes", (int64_t)r->passes);
-    tm_json_integer(&json, "targets", (int64_t)r->targets);
-    tm_json_open(&json, "operations", '{');
-    tm_json_integer(&json, "edge_removals", (int64_t)r->swaps);
-    tm_json_integer(&json, "centroids", (int64_t)r->centroids);
-    tm_json_integer(&json, "midpoints", (int64_t)r->midpoints);
-    tm_json_integer(&json, "boundary_midpoints", (int64_t)r->open_midpoints);
-    tm_json_close(&json, '}');
-    stars_json(&json, r);
+    tm_json_double(&json, "seconds", r->seconds);
+    if (o->is_improve)
+        tm_improve_report_json(&json, &r->improve);
+    else
+        tm_lepp_report_json(&json, &o->lepp, &r->lepp);
     tm_json_close(&json, '}');
     tm_text_string(&text, "\n");
     filter_write_json(f, &text);
@@ -230,75 +276,148 @@ static double cpu_seconds(void)
 }
 
 /* Improves the stream's mesh in place. */
-static tm_lepp_report improve(filter *f, tm_stream *stream, const tm_lepp_options *o,
-                              tm_tet_statistics *before, double *seconds)
+static void improve(filter *f, tm_stream *stream, const settings *o, result *r)
 {
     tm_error error;
     tm_tet_mesh mesh;
-    tm_lepp_report report;
     if (tm_tet_mesh_take(&mesh, stream, &error) != TM_OK) {
         snprintf(error.file, sizeof error.file, "%s", filter_input_name(f));
         filter_fail(f, &error);
     }
     note_input(f, &mesh);
     measure(f, (const double(*)[3])mesh.xyz, mesh.nodes, (const uint32_t(*)[4])mesh.tet,
-            mesh.slots, o->angle, before);
-    *seconds = -cpu_seconds();
-    if (tm_lepp_improve(&mesh, o, &report, &error) != TM_OK)
+            mesh.slots, o->improve.angle, &r->before);
+    r->seconds = -cpu_seconds();
+    tm_status status = o->is_improve ? tm_improve(&mesh, &o->improve, &r->improve, &error)
+                                     : tm_lepp_improve(&mesh, &o->lepp, &r->lepp, &error);
+    if (status != TM_OK)
         filter_fail(f, &error);
-    *seconds += cpu_seconds();
+    r->seconds += cpu_seconds();
+    r->changes =
+        o->is_improve ? tm_improve_operations(&r->improve) : tm_lepp_changes(&r->lepp);
     if (tm_tet_mesh_give(&mesh, stream, &error) != TM_OK)
         filter_fail(f, &error);
-    return report;
+}
+
+/* Text at the end of a string that is `size` bytes long. */
+static void add(char *text, size_t size, const char *format, size_t count)
+{
+    size_t length = strlen(text);
+    snprintf(text + length, size - length, format, count);
+}
+
+static void add_operations(const tm_improve_report *r, char *text, size_t size)
+{
+    const size_t *done = r->done;
+    add(text, size, "%zu edges and ",
+        done[TM_OP_EDGE_REMOVAL] + done[TM_OP_BOUNDARY_SWAP]);
+    add(text, size, "%zu faces removed, ", done[TM_OP_FACE_REMOVAL]);
+    add(text, size, "%zu times a node moved, ", done[TM_OP_SMOOTHING]);
+    add(text, size, "%zu points inserted, ", done[TM_OP_INSERTION]);
+    add(text, size, "%zu nodes removed", done[TM_OP_CONTRACTION] + r->swallowed);
+}
+
+static void add_star_operations(const settings *o, const tm_lepp_report *r, char *text,
+                                size_t size)
+{
+    add(text, size, "%zu edges removed, ", r->swaps);
+    add(text, size, "%zu points inserted", tm_lepp_operations(r) - r->swaps);
+    if (o->lepp.sweeps & TM_SWEEP_SMOOTH)
+        add(text, size, ", %zu times a node moved", tm_lepp_swept(&r->smooth));
+    if (o->lepp.sweeps & TM_SWEEP_SWAP)
+        add(text, size, ", %zu faces swapped", tm_lepp_swept(&r->swap));
 }
 
 /* One line about the run. */
-static void summarise(const tm_lepp_report *r, size_t tets, char *text, size_t size)
+static void summarise(const settings *o, const result *r, size_t tets, char *text,
+                      size_t size)
 {
-    double before = tm_percent(r->bad_before, r->tets_before);
-    if (tm_lepp_operations(r) == 0)
+    bool is_improve = o->is_improve;
+    size_t tets_before = is_improve ? r->improve.tets_before : r->lepp.tets_before;
+    size_t bad_before = is_improve ? r->improve.bad_before : r->lepp.bad_before;
+    size_t bad_after = is_improve ? r->improve.bad_after : r->lepp.bad_after;
+    double before = tm_percent(bad_before, tets_before);
+    if (r->changes == 0) {
         snprintf(text, size, "nothing to improve: %zu tetrahedra, %.2f%% bad", tets,
                  before);
+        return;
+    }
+    snprintf(text, size, "%zu -> %zu tetrahedra, %.2f%% -> %.2f%% bad; ", tets_before,
+             tets, before, tm_percent(bad_after, tets));
+    if (is_improve)
+        add_operations(&r->improve, text, size);
     else
-        snprintf(text, size,
-                 "%zu -> %zu tetrahedra, %.2f%% -> %.2f%% bad; %zu edges removed, %zu "
-                 "points inserted",
-                 r->tets_before, tets, before, tm_percent(r->bad_after, tets), r->swaps,
-                 tm_lepp_operations(r) - r->swaps);
+        add_star_operations(o, &r->lepp, text, size);
+}
+
+/* What -a delaunay promises, and where it cannot. */
+static void note_delaunay(const filter *f, const tm_lepp_report *r)
+{
+    if (r->not_delaunay_before > 0)
+        filter_note(f,
+                    "the mesh is not Delaunay: a node is inside of a sphere at %zu faces",
+                    r->not_delaunay_before);
+    if (r->delaunay.stopped > 0)
+        filter_note(f,
+                    "%zu faces that stay kept a point from tetrahedra beyond, whose "
+                    "spheres hold it",
+                    r->delaunay.stopped);
+    if (r->delaunay.refused > 0)
+        filter_note(f,
+                    "%zu terminal edges are left: their midpoints do not see all "
+                    "tetrahedra whose spheres hold them",
+                    r->delaunay.refused);
+    if (r->delaunay.cut_back > 0)
+        filter_note(
+            f,
+            "%zu points do not see, or may not take, all tetrahedra whose spheres "
+            "hold them",
+            r->delaunay.cut_back);
+    if (r->not_delaunay_after > 0)
+        filter_note(
+            f, "the result is not Delaunay: a node is inside of a sphere at %zu faces",
+            r->not_delaunay_after);
+    if (r->abandoned > 0)
+        filter_note(f, "%zu bad tetrahedra are left: their paths did not end",
+                    r->abandoned);
 }
 
 int main(int argc, char **argv)
 {
     filter f = {.name = "lepp-improve",
                 .synopsis = synopsis,
-                .purpose = "Improves a tetrahedral mesh along its longest edges.",
+                .purpose = "Improves tetrahedra; the boundary stays where it is.",
                 .help = own_help,
                 .options = options,
                 .letters = "a:m:t:Q:s:" FILTER_LETTERS};
     filter_start(&f, argc, argv);
-    tm_lepp_options o = read_options(&f);
+    settings o = read_options(&f);
     filter_operands(&f);
-
     tm_stream stream;
     filter_read(&f, &stream);
-    tm_tet_statistics before, after;
-    double seconds;
-    tm_lepp_report report = improve(&f, &stream, &o, &before, &seconds);
-    bool changed = tm_lepp_operations(&report) > 0;
-    if (changed)
+
+    result r;
+    improve(&f, &stream, &o, &r);
+    if (r.changes > 0)
         drop_unknown(&f, &stream);
 
     const tm_block *node = tm_stream_find(&stream, ".node");
     const tm_block *ele = tm_stream_find(&stream, ".ele");
     size_t nodes = node ? node->count : 0, tets = ele ? ele->count : 0;
     measure(&f, node ? (const double(*)[3])node->real : NULL, nodes,
-            ele ? (const uint32_t(*)[4])ele->integer : NULL, tets, o.angle, &after);
-    char summary[256];
-    summarise(&report, tets, summary, sizeof summary);
+            ele ? (const uint32_t(*)[4])ele->integer : NULL, tets, o.improve.angle,
+            &r.after);
+    char summary[512];
+    summarise(&o, &r, tets, summary, sizeof summary);
+    if (!o.is_improve && o.lepp.algorithm == TM_LEPP_DELAUNAY)
+        note_delaunay(&f, &r.lepp);
+    bool too_large = o.is_improve && r.improve.too_large;
+    if (too_large)
+        filter_note(&f, "the mesh could not be made as small as --max-growth says");
     filter_note(&f, "%s", summary);
     if (f.json)
-        write_json(&f, &before, &after, &report, seconds);
+        write_json(&f, &o, &r);
     filter_write(&f, &stream, "%s", summary);
     tm_stream_free(&stream);
-    return filter_finish(&f, EXIT_SUCCESS);
+    return filter_finish(&f, too_large ? EXIT_GOAL : EXIT_SUCCESS);
 }

@@ -30,8 +30,7 @@ static void usage(const filter *f, FILE *to)
     fprintf(to, "usage: %s %s\n", f->name, f->synopsis);
 }
 
-/* Ends the program after text on standard output, which must have arrived. */
-_Noreturn static void exit_after_text(const filter *f)
+void filter_exit_after_text(const filter *f)
 {
     if (fflush(stdout) != 0 || ferror(stdout)) {
         fprintf(stderr, "%s: cannot write: %s\n", f->name, strerror(errno));
@@ -45,7 +44,7 @@ _Noreturn static void help(const filter *f)
     usage(f, stdout);
     printf("\n%s\n\n%s", f->purpose, f->help);
     printf(shared_help, f->q_is_own ? "   " : "-q,");
-    exit_after_text(f);
+    filter_exit_after_text(f);
 }
 
 static void print_message(const filter *f, const char *format, va_list arguments)
@@ -162,7 +161,7 @@ static bool take_shared(filter *f, int c)
         help(f);
     case 'V':
         printf("%s (termesh) %s\n", f->name, TM_VERSION);
-        exit_after_text(f);
+        filter_exit_after_text(f);
     case 'o':
         f->output = strcmp(optarg, "-") ? optarg : NULL;
         return true;

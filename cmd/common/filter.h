@@ -121,6 +121,9 @@ void filter_write(filter *f, tm_stream *stream, const char *summary, ...)
 void filter_write_text(filter *f, const tm_text *text);
 void filter_write_json(filter *f, const tm_text *text);
 
+/* Ends the program after text on standard output, which must have arrived. */
+_Noreturn void filter_exit_after_text(const filter *f);
+
 /* Closes and checks standard output, puts -o FILE in place. Returns status for main(). */
 int filter_finish(filter *f, int status);
 

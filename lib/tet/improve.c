@@ -1,0 +1,222 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* When the improver tries what. */
+#include "improve_engine.h"
+
+#include "../base/array.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Prices of a tetrahedron: those at which insertions begin, and at which a kick ends. */
+static const double insertion_price = 0.1, kick_price = -1, kick_price_most = -4;
+
+/* Passes go on while each leaves this share of the bad tetrahedra less. */
+static const double pass_gain = 0.05, kick_gain = 0.05;
+
+enum { PASSES_MAX = 8, KICKS_MAX = 100, FAILS_MAX = 12, FEW = 100 };
+
+/* What a pass tries, in this order, on each tetrahedron until something is done. */
+enum { SWAP = 1, SMOOTH = 2, CONTRACT = 4, INSERT = 8 };
+enum { MOVE = SWAP | SMOOTH, SHRINK = MOVE | CONTRACT, ALL = SHRINK | INSERT };
+
+static bool is_bad(const tm_improver *m, uint32_t t)
+{
+    return tm_tet_lives(m->mesh, t) && m->quality[t] < m->cost.target;
+}
+
+static size_t count_bad(const tm_improver *m)
+{
+    size_t bad = 0;
+    for (uint32_t t = 0; t < m->mesh->slots; t++)
+        bad += is_bad(m, t);
+    return bad;
+}
+
+/* Whether anything around t has changed since it was tried. */
+static bool is_due(const tm_improver *m, uint32_t t)
+{
+    const uint32_t *n = m->mesh->tet[t];
+    uint32_t tried = m->tried[t];
+    return tried == 0 || m->changed[n[0]] > tried || m->changed[n[1]] > tried ||
+           m->changed[n[2]] > tried || m->changed[n[3]] > tried;
+}
+
+/* The bad tetrahedra that are due, along a space-filling curve; false where memory is
+ * out. */
+static bool find_targets(tm_improver *m)
+{
+    const tm_tet_mesh *mesh = m->mesh;
+    size_t bad = count_bad(m), count = 0;
+    tm_placed *placed = tm_new(bad, sizeof *placed);
+    uint32_t *target = tm_grow(m->target, &m->target_room, bad + 1, sizeof *target);
+    m->target = target ? target : m->target;
+    for (uint32_t t = 0; t < mesh->slots && placed; t++)
+        if (is_bad(m, t) && is_due(m, t))
+            placed[count++] =
+                (tm_placed){tm_space_place(&m->space, mesh->xyz[mesh->tet[t][0]]), t};
+    bool done = placed && target && tm_space_sort(placed, count);
+    for (size_t k = 0; k < count && done; k++)
+        target[k] = placed[k].item;
+    m->targets = count;
+    free(placed);
+    return done || tm_improve_no_memory(m);
+}
+
+static bool try_on(tm_improver *m, uint32_t t, int what)
+{
+    return ((what & SWAP) && tm_improve_swap(m, t)) ||
+           ((what & SMOOTH) && tm_improve_has(m, TM_OP_SMOOTHING) &&
+            tm_improve_smooth(m, t)) ||
+           ((what & CONTRACT) && tm_improve_has(m, TM_OP_CONTRACTION) &&
+            tm_improve_contract(m, t)) ||
+           ((what & INSERT) && tm_improve_has(m, TM_OP_INSERTION) &&
+            tm_improve_insert(m, t));
+}
+
+/* Tries all bad tetrahedra once. */
+static void run_pass(tm_improver *m, int what)
+{
+    size_t most = m->options->passes;
+    if (m->status != TM_OK || (most > 0 && m->report->passes >= most) || !find_targets(m))
+        return;
+    for (size_t k = 0; k < m->targets && m->status == TM_OK; k++) {
+        uint32_t t = m->target[k];
+        if (is_bad(m, t) && is_due(m, t) && !try_on(m, t, what))
+            m->tried[t] = m->change + 1;
+    }
+    m->report->passes++;
+}
+
+/* Whether so many bad ones are enough less than before. */
+static bool is_gain(size_t before, size_t after, double share)
+{
+    return (double)after < (1 - share) * (double)before;
+}
+
+/* Passes until one gains too little. */
+static void settle(tm_improver *m, int what, double price)
+{
+    size_t before, after = count_bad(m);
+    tm_improve_set_price(m, price);
+    for (int k = 0; k < PASSES_MAX && after > 0; k++) {
+        before = after;
+        run_pass(m, what);
+        after = count_bad(m);
+        if (!is_gain(before, after, pass_gain))
+            break;
+    }
+}
+
+/* Contracts at all nodes, once. */
+static void coarsen_once(tm_improver *m)
+{
+    for (uint32_t v = 0; v < m->mesh->nodes; v++) {
+        if (m->mesh->tets <= m->most_tets || m->status != TM_OK)
+            return;
+        if (tm_node_lives(m->mesh, v) && m->tet_at[v] != TM_NONE)
+            tm_improve_contract_node(m, m->tet_at[v], v);
+    }
+}
+
+/* Makes the mesh as small as is asked for, by a price that rises. */
+static void coarsen(tm_improver *m)
+{
+    const double highest = 1e3;
+    for (double price = insertion_price; price < highest; price *= 2) {
+        if (m->mesh->tets <= m->most_tets || !tm_improve_has(m, TM_OP_CONTRACTION))
+            break;
+        tm_improve_set_price(m, price);
+        coarsen_once(m);
+        run_pass(m, SHRINK);
+    }
+    settle(m, SHRINK, 0);
+}
+
+/* Growth that costs less than nothing, then what is good for the mesh again; as long as
+ * it leaves fewer bad ones. For few of them it is cheap to insist. */
+static void kick(tm_improver *m)
+{
+    double price = kick_price;
+    size_t before, after = count_bad(m);
+    for (int k = 0; k < KICKS_MAX && after > 0 && m->status == TM_OK; k++) {
+        before = after;
+        tm_improve_set_price(m, price);
+        run_pass(m, ALL);
+        if (m->fails % 2 == 0)
+            settle(m, MOVE, 0);
+        settle(m, ALL, 0);
+        after = count_bad(m);
+        m->report->kicks++;
+        if (is_gain(before, after, kick_gain)) {
+            m->fails = 0;
+            continue;
+        }
+        if (after > FEW || ++m->fails == FAILS_MAX)
+            break;
+        price = price > kick_price_most ? price * 2 : kick_price;
+    }
+    m->fails = 0;
+}
+
+/* Everything for one target. */
+static void reach(tm_improver *m)
+{
+    settle(m, MOVE, 0);
+    settle(m, SHRINK, 0);
+    if (m->mesh->tets > m->most_tets)
+        coarsen(m);
+    if (!tm_improve_has(m, TM_OP_INSERTION))
+        return;
+    settle(m, ALL, insertion_price);
+    settle(m, ALL, 0);
+    kick(m);
+}
+
+/* The target; one above 30 degrees step by step, as long as nothing is left behind. */
+static void run(tm_improver *m)
+{
+    const double first = 30, step = 1;
+    double degrees = fmin(m->options->angle, first);
+    for (;;) {
+        tm_improve_set_target(m, degrees);
+        reach(m);
+        if (degrees >= m->options->angle || m->status != TM_OK)
+            return;
+        degrees = count_bad(m) == 0 ? fmin(degrees + step, m->options->angle)
+                                    : m->options->angle;
+    }
+}
+
+/* Those that the report calls bad: by their angles. */
+static size_t count_bad_angles(const tm_improver *m)
+{
+    const tm_tet_mesh *mesh = m->mesh;
+    const double(*x)[3] = (const double(*)[3])mesh->xyz;
+    double limit = tm_bad_sine2(m->options->angle);
+    size_t bad = 0;
+    for (uint32_t t = 0; t < mesh->slots; t++) {
+        const uint32_t *n = mesh->tet[t];
+        bad += tm_tet_lives(mesh, t) &&
+               tm_tet_sine2(x[n[0]], x[n[1]], x[n[2]], x[n[3]]) < limit;
+    }
+    return bad;
+}
+
+tm_status tm_improve(tm_tet_mesh *mesh, const tm_improve_options *options,
+                     tm_improve_report *report, tm_error *error)
+{
+    tm_improver *m = malloc(sizeof *m);
+    if (!m)
+        return tm_fail_memory(error);
+    tm_status status = tm_improve_start(m, mesh, options, report, error);
+    if (status == TM_OK) {
+        report->bad_before = count_bad_angles(m);
+        run(m);
+        status = m->status;
+        report->bad_after = count_bad_angles(m);
+        report->too_large = mesh->tets > m->most_tets;
+    }
+    tm_improve_finish(m);
+    free(m);
+    return status;
+}

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "improve.h"
+
+const char *const tm_improve_op_name[TM_IMPROVE_OPS] = {"edge-removal", "boundary-swap",
+                                                        "face-removal", "smoothing",
+                                                        "contraction",  "insertion"};
+
+static const char *const done_key[TM_IMPROVE_OPS] = {"edge_removals", "boundary_swaps",
+                                                     "face_removals", "moves",
+                                                     "contractions",  "insertions"};
+
+void tm_improve_report_json(tm_json *json, const tm_improve_report *r)
+{
+    tm_json_integer(json, "passes", (int64_t)r->passes);
+    tm_json_integer(json, "kicks", (int64_t)r->kicks);
+    tm_json_open(json, "operations", '{');
+    for (int op = 0; op < TM_IMPROVE_OPS; op++)
+        tm_json_integer(json, done_key[op], (int64_t)r->done[op]);
+    tm_json_integer(json, "edge_splits", (int64_t)r->edge_splits);
+    tm_json_integer(json, "swallowed_nodes", (int64_t)r->swallowed);
+    tm_json_close(json, '}');
+    tm_json_open(json, "tried", '{');
+    for (int op = TM_OP_SMOOTHING; op < TM_IMPROVE_OPS; op++)
+        tm_json_integer(json, done_key[op], (int64_t)r->tried[op]);
+    tm_json_close(json, '}');
+    tm_json_open(json, "nodes", '{');
+    tm_json_integer(json, "fixed", (int64_t)r->nodes_free[0]);
+    tm_json_integer(json, "on_straight_edges", (int64_t)r->nodes_free[1]);
+    tm_json_integer(json, "in_flat_facets", (int64_t)r->nodes_free[2]);
+    tm_json_integer(json, "inside", (int64_t)r->nodes_free[3]);
+    tm_json_close(json, '}');
+}
+
+size_t tm_improve_operations(const tm_improve_report *report)
+{
+    size_t sum = 0;
+    for (int op = 0; op < TM_IMPROVE_OPS; op++)
+        sum += report->done[op];
+    return sum;
+}

@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The improver: the mesh is checked in full after each operation on small random meshes,
+ * and what must not change is compared. */
+#include "../../lib/quality/tet_quality.h"
+#include "../../lib/tet/improve_engine.h"
+#include "tet_fixture.h"
+
+enum { GRID = 3 };
+
+typedef struct {
+    double least, most;
+} extremes;
+
+static extremes angles_of(const tm_tet_mesh *mesh)
+{
+    extremes e = {180, 0};
+    for (uint32_t t = 0; t < mesh->slots; t++) {
+        double angle[TM_TET_EDGES];
+        const uint32_t *n = mesh->tet[t];
+        if (!tm_tet_lives(mesh, t))
+            continue;
+        tm_tet_dihedrals(mesh->xyz[n[0]], mesh->xyz[n[1]], mesh->xyz[n[2]],
+                         mesh->xyz[n[3]], angle);
+        for (int i = 0; i < TM_TET_EDGES; i++) {
+            e.least = fmin(e.least, angle[i]);
+            e.most = fmax(e.most, angle[i]);
+        }
+    }
+    return e;
+}
+
+/* What the improver remembers is so. */
+static void check_memory(const tm_improver *m)
+{
+    const tm_tet_mesh *mesh = m->mesh;
+    for (uint32_t t = 0; t < mesh->slots; t++) {
+        const uint32_t *n = mesh->tet[t];
+        if (!tm_tet_lives(mesh, t))
+            continue;
+        assert_true(m->quality[t] == tm_tet_measure_of(m->cost.measure, mesh->xyz[n[0]],
+                                                       mesh->xyz[n[1]], mesh->xyz[n[2]],
+                                                       mesh->xyz[n[3]]));
+        for (int i = 0; i < 4; i++) {
+            assert_true(tm_node_lives(mesh, n[i]));
+            uint32_t at = m->tet_at[n[i]];
+            assert_true(tm_tet_lives(mesh, at));
+            assert_int_equal(mesh->tet[at][tm_tet_corner(mesh, at, n[i])], n[i]);
+        }
+    }
+    for (uint32_t v = 0; v < mesh->nodes; v++)
+        if (tm_node_lives(mesh, v) && m->features.dimension[v] == 1)
+            for (int i = 0; i < 2; i++)
+                assert_true(tm_node_lives(mesh, m->features.line[v][i]));
+}
+
+/* One operation on a random tetrahedron, at a random price; which, or -1. */
+static int operate(tm_improver *m)
+{
+    uint32_t t;
+    do
+        t = random_below((unsigned)m->mesh->slots);
+    while (!tm_tet_lives(m->mesh, t));
+    tm_improve_set_price(m, 2 * random_unit() - 1);
+    memset(m->smoothed, 0, m->mesh->nodes * sizeof *m->smoothed);
+    switch (random_below(4)) {
+    case 0:
+        return tm_improve_swap(m, t) ? 0 : -1;
+    case 1:
+        return tm_improve_smooth(m, t) ? 1 : -1;
+    case 2:
+        return tm_improve_contract(m, t) ? 2 : -1;
+    default:
+        return m->mesh->tets < 2000 && tm_improve_insert(m, t) ? 3 : -1;
+    }
+}
+
+static void operate_on(bool regions, tm_tet_measure measure)
+{
+    enum { TRIES = 1500 };
+    const double angles[] = {30, 45, 60};
+    tm_stream stream;
+    tm_tet_mesh mesh;
+    tm_error error = {0};
+    tm_improve_report report;
+    static tm_improver m;
+    tm_improve_options options = {
+        .angle = angles[random_below(3)], .measure = measure, .ops = TM_IMPROVE_ALL_OPS};
+    make_mesh(&mesh, &stream, GRID, 0.9, regions);
+    invariants before = measure_invariants(&mesh);
+    extremes angles_before = angles_of(&mesh);
+    assert_int_equal(tm_improve_start(&m, &mesh, &options, &report, &error), TM_OK);
+    for (int k = 0; k < TRIES; k++) {
+        if (operate(&m) < 0)
+            continue;
+        assert_int_equal(m.status, TM_OK);
+        assert_valid(&mesh);
+        check_memory(&m);
+        invariants now = measure_invariants(&mesh);
+        assert_same_invariants(&before, &now);
+    }
+    tm_improve_finish(&m);
+    extremes angles_after = angles_of(&mesh);
+    assert_true(angles_after.least >= angles_before.least);
+    assert_true(angles_after.most <= angles_before.most);
+    for (int op = 0; op < TM_IMPROVE_OPS; op++)
+        printf(" %zu", report.done[op]);
+    printf(" operations\n");
+    if (measure == TM_MEASURE_DIHEDRAL && options.angle > 30)
+        assert_true(report.done[TM_OP_SMOOTHING] > 0 &&
+                    report.done[TM_OP_INSERTION] > 0 &&
+                    report.done[TM_OP_CONTRACTION] > 0);
+    assert_int_equal(tm_tet_mesh_give(&mesh, &stream, &error), TM_OK);
+    assert_int_equal(tm_tet_mesh_take(&mesh, &stream, &error), TM_OK);
+    assert_valid(&mesh);
+    invariants after = measure_invariants(&mesh);
+    assert_same_invariants(&before, &after);
+    tm_tet_mesh_free(&mesh);
+    tm_stream_free(&stream);
+}
+
+static void test_operations(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 4; k++)
+        operate_on(false, TM_MEASURE_DIHEDRAL);
+    operate_on(false, TM_MEASURE_VOLUME);
+}
+
+static void test_operations_with_regions(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 4; k++)
+        operate_on(true, TM_MEASURE_DIHEDRAL);
+    operate_on(true, TM_MEASURE_VOLUME);
+}
+
+/* A whole run. */
+static tm_improve_report run(tm_tet_mesh *mesh, const tm_improve_options *options)
+{
+    tm_improve_report report;
+    tm_error error = {0};
+    size_t tets = mesh->tets;
+    invariants before = measure_invariants(mesh);
+    extremes angles_before = angles_of(mesh);
+    if (tm_improve(mesh, options, &report, &error) != TM_OK)
+        fail_msg("%s", error.what);
+    assert_valid(mesh);
+    invariants after = measure_invariants(mesh);
+    assert_same_invariants(&before, &after);
+    extremes angles_after = angles_of(mesh);
+    assert_true(angles_after.least >= angles_before.least);
+    assert_true(angles_after.most <= angles_before.most);
+    assert_int_equal(report.tets_before, tets);
+    assert_true(report.bad_after <= report.bad_before);
+    double most = options->max_growth * (double)tets;
+    if (options->max_growth > 0)
+        assert_int_equal(report.too_large, (double)mesh->tets > most);
+    for (int op = 0; op < TM_IMPROVE_OPS; op++)
+        if (!(options->ops >> op & 1))
+            assert_int_equal(report.done[op], 0);
+    return report;
+}
+
+static void test_every_palette(void **state)
+{
+    (void)state;
+    for (unsigned ops = 0; ops <= TM_IMPROVE_ALL_OPS; ops++) {
+        tm_stream stream;
+        tm_tet_mesh mesh;
+        make_mesh(&mesh, &stream, GRID, 0.9, ops % 2);
+        tm_improve_options options = {
+            .angle = 40, .measure = TM_MEASURE_DIHEDRAL, .max_growth = 3, .ops = ops};
+        tm_improve_report report = run(&mesh, &options);
+        if (ops == 0)
+            assert_int_equal(tm_improve_operations(&report), 0);
+        tm_tet_mesh_free(&mesh);
+        tm_stream_free(&stream);
+    }
+}
+
+static void test_growth(void **state)
+{
+    (void)state;
+    const double growths[] = {0.01, 0.5, 0.9, 1, 1.1, 2, 0};
+    for (size_t k = 0; k < sizeof growths / sizeof growths[0]; k++) {
+        tm_stream stream;
+        tm_tet_mesh mesh;
+        make_mesh(&mesh, &stream, 4, 0.9, false);
+        tm_improve_options options = {.angle = 45,
+                                      .measure = TM_MEASURE_DIHEDRAL,
+                                      .max_growth = growths[k],
+                                      .ops = TM_IMPROVE_ALL_OPS};
+        tm_improve_report report = run(&mesh, &options);
+        assert_int_equal(report.too_large, growths[k] == 0.01);
+        tm_tet_mesh_free(&mesh);
+        tm_stream_free(&stream);
+    }
+}
+
+/* The same mesh twice gives the same. */
+static void test_deterministic(void **state)
+{
+    (void)state;
+    tm_stream stream[2];
+    tm_tet_mesh mesh[2];
+    uint64_t seed = random_state;
+    for (int k = 0; k < 2; k++) {
+        random_state = seed;
+        make_mesh(&mesh[k], &stream[k], GRID, 0.9, false);
+        tm_improve_options options = {
+            .angle = 35, .measure = TM_MEASURE_DIHEDRAL, .ops = TM_IMPROVE_ALL_OPS};
+        run(&mesh[k], &options);
+    }
+    assert_int_equal(mesh[0].nodes, mesh[1].nodes);
+    assert_int_equal(mesh[0].slots, mesh[1].slots);
+    assert_memory_equal(mesh[0].tet, mesh[1].tet, mesh[0].slots * sizeof *mesh[0].tet);
+    assert_memory_equal(mesh[0].xyz, mesh[1].xyz, mesh[0].nodes * sizeof *mesh[0].xyz);
+    for (int k = 0; k < 2; k++) {
+        tm_tet_mesh_free(&mesh[k]);
+        tm_stream_free(&stream[k]);
+    }
+}
+
+/* On the cube: corners, edges, sides and what has a marker. */
+static void test_features(void **state)
+{
+    (void)state;
+    tm_stream stream;
+    tm_tet_mesh mesh;
+    tm_features features;
+    tm_tet_marks marks = {0};
+    make_mesh(&mesh, &stream, GRID, 0.5, false);
+    assert_int_equal(tm_features_find(&features, &mesh, &marks, NULL), TM_OK);
+    for (int z = 0; z <= GRID; z++)
+        for (int y = 0; y <= GRID; y++)
+            for (int x = 0; x <= GRID; x++) {
+                int free =
+                    (x > 0 && x < GRID) + (y > 0 && y < GRID) + (z > 0 && z < GRID);
+                uint32_t v = grid_node(GRID, x, y, z);
+                /* the ends of the marked edges of the fixture */
+                bool marked =
+                    (y == 0 && z == 0 && x == 1) || (x == 1 && y == 1 && z <= 1);
+                assert_int_equal(features.dimension[v], marked ? 0 : free);
+            }
+    tm_features_free(&features);
+    tm_tet_marks_free(&marks);
+    tm_tet_mesh_free(&mesh);
+    tm_stream_free(&stream);
+}
+
+int main(void)
+{
+    random_start();
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_features),
+        cmocka_unit_test(test_operations),
+        cmocka_unit_test(test_operations_with_regions),
+        cmocka_unit_test(test_every_palette),
+        cmocka_unit_test(test_growth),
+        cmocka_unit_test(test_deterministic),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
