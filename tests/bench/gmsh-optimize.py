@@ -1,43 +1,40 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""gmsh-optimize.py STREAM: reads the tetrahedra of a termesh stream, runs Gmsh's default
-optimiser on them (which by itself leaves meshes without geometry alone: force), and
-prints how many there are then and the CPU seconds of the optimiser alone."""
-import sys
+"""gmsh-optimize.py [--threshold QUALITY] [--times N] [--output STREAM] STREAM: reads the
+tetrahedra of a termesh stream, runs Gmsh's default optimiser on them N times (which by
+itself leaves meshes without geometry alone: force), and prints how many there are then
+and the CPU seconds of the optimiser alone. The threshold is Mesh.OptimizeThreshold: it
+works on the tetrahedra whose quality is below that, and by itself that is 0.3."""
+import argparse
 import time
 
 import gmsh
 
-
-def rows(stream, block):
-    """The rows of a block as lists of strings."""
-    lines = iter(stream)
-    for line in lines:
-        if line.strip() == block:
-            break
-    else:
-        return []
-    count = int(next(lines).split()[0])
-    return [next(lines).split() for _ in range(count)]
+import gmsh_mesh
+import mesh_stream
 
 
 def main():
-    with open(sys.argv[1], encoding="ascii") as stream:
-        lines = stream.readlines()
-    nodes, tets = rows(lines, ".node"), rows(lines, ".ele")
-    base = int(nodes[0][0])
-    gmsh.initialize(["gmsh", "-nt", "1"])
-    gmsh.option.setNumber("General.Verbosity", 2)
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--threshold", type=float, default=0.3)
+    parser.add_argument("--times", type=int, default=1)
+    parser.add_argument("--output")
+    parser.add_argument("stream")
+    options = parser.parse_args()
+
+    blocks = mesh_stream.read(options.stream)
+    nodes, tets = blocks[".node"][1], blocks[".ele"][1]
+    gmsh_mesh.start()
+    gmsh.option.setNumber("Mesh.OptimizeThreshold", options.threshold)
     gmsh.model.addDiscreteEntity(3, 1)
-    xyz = [float(x) for row in nodes for x in row[1:4]]
-    tags = [int(row[0]) + 1 - base for row in nodes]
-    corners = [int(n) + 1 - base for row in tets for n in row[1:5]]
-    gmsh.model.mesh.addNodes(3, 1, tags, xyz)
+    xyz = [float(x) for node in nodes for x in node[:3]]
+    corners = [node + 1 for tet in tets for node in tet[:4]]
+    gmsh.model.mesh.addNodes(3, 1, list(range(1, len(nodes) + 1)), xyz)
     gmsh.model.mesh.addElementsByType(1, 4, [], corners)
     start = time.process_time()
-    gmsh.model.mesh.optimize("", force=True)
+    for _ in range(options.times):
+        gmsh.model.mesh.optimize("", force=True)
     seconds = time.process_time() - start
-    count = len(gmsh.model.mesh.getElementsByType(4)[0])
-    gmsh.finalize()
+    count = gmsh_mesh.finish(options.output)
     print(count, "%.4f" % seconds)
 
 

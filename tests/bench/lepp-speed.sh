@@ -4,42 +4,18 @@
 # beside Gmsh's default optimiser alone on the same mesh (femur.off as $1 or in $TM_DATA,
 # else a generated surface), and on 20 000 and 200 000 random points. Medians of CPU
 # seconds. Needs python3-gmsh for the peer.
-# shellcheck source-path=SCRIPTDIR source=common.inc
-. "$(dirname "$0")/common.inc"
+# shellcheck source-path=SCRIPTDIR source=peers.inc
+. "$(dirname "$0")/peers.inc"
 
-# A torus with bumps, some eight thousand triangles.
-torus() {
-    awk 'BEGIN {
-        n = 100; m = 40; turn = 8 * atan2(1, 1)
-        print "OFF"; print n * m, 2 * n * m, 0
-        for (i = 0; i < n; i++) for (j = 0; j < m; j++) {
-            a = turn * i / n; b = turn * j / m
-            r = 1 + 0.1 * cos(7 * a) * cos(5 * b)
-            print (4 + r * cos(b)) * cos(a), (4 + r * cos(b)) * sin(a), r * sin(b)
-        }
-        for (i = 0; i < n; i++) for (j = 0; j < m; j++) {
-            p = i * m + j; q = (i + 1) % n * m + j
-            r = i * m + (j + 1) % m; s = (i + 1) % n * m + (j + 1) % m
-            print 3, p, q, s; print 3, p, s, r
-        }
-    }'
-}
-
-if [ -z "$surface" ]; then
-    surface=$work/torus.off
-    torus >"$surface"
-fi
 tetgen-mesh -q4 "$surface" >"$work/surface.tm"
 echo "$(basename "$surface"), tetgen -pq4: $(tets_of "$work/surface.tm") tetrahedra"
-python=python3
-$python -c 'import gmsh' 2>/dev/null || python=/usr/bin/python3
 
 # Turn by turn, so that both see the same machine.
 i=0
 while [ "$i" -lt "$runs" ]; do
     cpu 1 lepp-improve -q -a selective -m 1.1 "$work/surface.tm" >>"$work/ours"
-    if $python -c 'import gmsh' 2>/dev/null; then
-        $python tests/bench/gmsh-optimize.py "$work/surface.tm" | cut -d ' ' -f 2 >>"$work/peer"
+    if have_gmsh; then
+        $python -B tests/bench/gmsh-optimize.py "$work/surface.tm" | cut -d ' ' -f 2 >>"$work/peer"
     fi
     i=$((i + 1))
 done
