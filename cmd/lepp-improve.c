@@ -37,9 +37,11 @@ static const char own_help[] =
     "                      centroid, wcentroid, bisection, delaunay\n"
     "  -t, --angle DEG     bad: a dihedral angle below DEG or above 180 - DEG (30)\n"
     "  -Q, --quality Q     compare tetrahedra by dihedral (default) or volume\n"
-    "  -s, --stop WHEN     N: so many passes over the bad tetrahedra; converged: until\n"
-    "                      little is gained (default of improve) or nothing (default of\n"
-    "                      selective); original: those of the input once (the others)\n"
+    "  -s, --stop WHEN     N: after so many passes over the bad tetrahedra; converged:\n"
+    "                      when nothing is gained (default of selective; improve: when "
+    "a\n"
+    "                      pass gains little); original: those of the input once (the\n"
+    "                      others' default)\n"
     "      --max-growth R  never more than R times the input's tetrahedra\n"
     "      --ops LIST      improve: what it may do, with commas; \"list\" prints all\n"
     "  -m, --factor M      selective: change a star where that makes it so many times\n"
@@ -87,6 +89,7 @@ static void set_stop(const filter *f, settings *o, const char *text)
         o->lepp.stop = TM_LEPP_ORIGINAL;
     } else if (strcmp(text, "converged") == 0) {
         o->lepp.stop = TM_LEPP_CONVERGED;
+        o->improve.converge = true;
     } else {
         o->lepp.stop = TM_LEPP_PASSES;
         o->lepp.passes = (size_t)filter_integer(f, "-s", text, 1, INT32_MAX);

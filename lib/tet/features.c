@@ -31,6 +31,18 @@ bool tm_features_reserve(tm_features *features, size_t nodes)
     return true;
 }
 
+bool tm_features_copy(tm_features *to, const tm_features *from)
+{
+    if (to->room < from->room && !tm_features_reserve(to, from->room)) {
+        tm_features_free(to);
+        return false;
+    }
+    memcpy(to->dimension, from->dimension, from->room * sizeof *to->dimension);
+    memcpy(to->line, from->line, from->room * sizeof *to->line);
+    to->flatness = from->flatness;
+    return true;
+}
+
 static uint32_t third_node(const tm_kept_face *face, uint32_t a, uint32_t b)
 {
     for (int i = 0; i < 2; i++)

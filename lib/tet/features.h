@@ -25,8 +25,12 @@ tm_status tm_features_find(tm_features *features, const tm_tet_mesh *mesh,
                            tm_tet_marks *marks, tm_error *error);
 void tm_features_free(tm_features *features);
 
-/* Room for one more node. */
+/* Room for so many nodes in all; false where memory is out. */
 bool tm_features_reserve(tm_features *features, size_t nodes);
+
+/* Makes *to, which is {0} or was found, the same as *from; false, with *to empty, where
+ * memory is out. */
+bool tm_features_copy(tm_features *to, const tm_features *from);
 
 /* How the node of a ball may move. */
 tm_freedom tm_features_freedom(const tm_features *features, const tm_tet_mesh *mesh,

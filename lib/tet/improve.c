@@ -10,10 +10,11 @@
 /* Prices of a tetrahedron: those at which insertions begin, and at which a kick ends. */
 static const double insertion_price = 0.1, kick_price = -1, kick_price_most = -4;
 
-/* Passes go on while each leaves this share of the bad tetrahedra less. */
-static const double pass_gain = 0.05, kick_gain = 0.05;
+/* Passes and kicks go on while each leaves this share of the bad tetrahedra less; to
+ * converge, this least one. */
+static const double enough_gain = 0.05, least_gain = 0.002;
 
-enum { PASSES_MAX = 8, KICKS_MAX = 100, FAILS_MAX = 12, FEW = 100 };
+enum { PASSES_MAX = 8, KICKS_MAX = 1000, FAILS_MAX = 12, FEW = 100 };
 
 /* What a pass tries, in this order, on each tetrahedron until something is done. */
 enum { SWAP = 1, SMOOTH = 2, CONTRACT = 4, INSERT = 8 };
@@ -73,11 +74,17 @@ static bool try_on(tm_improver *m, uint32_t t, int what)
             tm_improve_insert(m, t));
 }
 
+/* Whether no pass is left. */
+static bool is_over(const tm_improver *m)
+{
+    return m->status != TM_OK ||
+           (m->options->passes > 0 && m->report->passes >= m->options->passes);
+}
+
 /* Tries all bad tetrahedra once. */
 static void run_pass(tm_improver *m, int what)
 {
-    size_t most = m->options->passes;
-    if (m->status != TM_OK || (most > 0 && m->report->passes >= most) || !find_targets(m))
+    if (is_over(m) || !find_targets(m))
         return;
     for (size_t k = 0; k < m->targets && m->status == TM_OK; k++) {
         uint32_t t = m->target[k];
@@ -98,11 +105,11 @@ static void settle(tm_improver *m, int what, double price)
 {
     size_t before, after = count_bad(m);
     tm_improve_set_price(m, price);
-    for (int k = 0; k < PASSES_MAX && after > 0; k++) {
+    for (int k = 0; k < PASSES_MAX && after > 0 && !is_over(m); k++) {
         before = after;
         run_pass(m, what);
         after = count_bad(m);
-        if (!is_gain(before, after, pass_gain))
+        if (!is_gain(before, after, enough_gain))
             break;
     }
 }
@@ -132,26 +139,39 @@ static void coarsen(tm_improver *m)
     settle(m, SHRINK, 0);
 }
 
+/* Keeps the mesh if it is the best so far, or goes back to that. Returns how many are
+ * bad. */
+static size_t keep_best(tm_improver *m)
+{
+    size_t bad = count_bad(m);
+    if (bad > m->best.bad)
+        tm_improve_go_back(m, &m->best);
+    if (bad < m->best.bad)
+        tm_improve_keep(m, &m->best, bad);
+    return m->best.bad;
+}
+
 /* Growth that costs less than nothing, then what is good for the mesh again; as long as
  * it leaves fewer bad ones. For few of them it is cheap to insist. */
 static void kick(tm_improver *m)
 {
+    bool converge = m->options->converge;
     double price = kick_price;
-    size_t before, after = count_bad(m);
-    for (int k = 0; k < KICKS_MAX && after > 0 && m->status == TM_OK; k++) {
-        before = after;
+    size_t after = keep_best(m);
+    for (int k = 0; k < KICKS_MAX && after > 0 && !is_over(m); k++) {
+        size_t before = after;
         tm_improve_set_price(m, price);
         run_pass(m, ALL);
         if (m->fails % 2 == 0)
             settle(m, MOVE, 0);
         settle(m, ALL, 0);
-        after = count_bad(m);
+        after = keep_best(m);
         m->report->kicks++;
-        if (is_gain(before, after, kick_gain)) {
+        if (is_gain(before, after, converge ? least_gain : enough_gain)) {
             m->fails = 0;
             continue;
         }
-        if (after > FEW || ++m->fails == FAILS_MAX)
+        if ((after > FEW && !converge) || ++m->fails == FAILS_MAX)
             break;
         price = price > kick_price_most ? price * 2 : kick_price;
     }
@@ -161,30 +181,39 @@ static void kick(tm_improver *m)
 /* Everything for one target. */
 static void reach(tm_improver *m)
 {
+    m->best.bad = SIZE_MAX;
+    if (m->mesh->tets <= m->most_tets)
+        keep_best(m);
     settle(m, MOVE, 0);
     settle(m, SHRINK, 0);
     if (m->mesh->tets > m->most_tets)
         coarsen(m);
-    if (!tm_improve_has(m, TM_OP_INSERTION))
-        return;
-    settle(m, ALL, insertion_price);
-    settle(m, ALL, 0);
-    kick(m);
+    if (tm_improve_has(m, TM_OP_INSERTION)) {
+        settle(m, ALL, insertion_price);
+        settle(m, ALL, 0);
+        kick(m);
+    }
+    keep_best(m);
 }
 
 /* The target; one above 30 degrees step by step, as long as nothing is left behind. */
 static void run(tm_improver *m)
 {
-    const double first = 30, step = 1;
-    double degrees = fmin(m->options->angle, first);
+    const double first = 30, step = 1, last = m->options->angle;
+    double degrees = fmin(first, last);
+    m->input.bad = SIZE_MAX;
+    if (degrees < last && m->mesh->tets <= m->most_tets)
+        tm_improve_keep(m, &m->input, count_bad(m));
     for (;;) {
         tm_improve_set_target(m, degrees);
         reach(m);
-        if (degrees >= m->options->angle || m->status != TM_OK)
-            return;
-        degrees = count_bad(m) == 0 ? fmin(degrees + step, m->options->angle)
-                                    : m->options->angle;
+        if (degrees == last || is_over(m))
+            break;
+        degrees = count_bad(m) == 0 ? fmin(degrees + step, last) : last;
     }
+    tm_improve_set_target(m, last);
+    if (count_bad(m) > m->input.bad)
+        tm_improve_go_back(m, &m->input);
 }
 
 /* Those that the report calls bad: by their angles. */

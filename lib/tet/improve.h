@@ -30,7 +30,8 @@ typedef struct tm_improve_options {
     tm_tet_measure measure; /* by which tetrahedra are compared */
     double max_growth;      /* tetrahedra at most, by those of the input; 0: any */
     unsigned ops;           /* bits 1 << tm_improve_op */
-    size_t passes;          /* over the bad tetrahedra, at most; 0: while they gain */
+    size_t passes;          /* over the bad tetrahedra, at most; 0: any number */
+    bool converge;          /* go on while anything is gained, not only enough */
 } tm_improve_options;
 
 typedef struct tm_improve_report {

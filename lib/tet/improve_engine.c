@@ -90,18 +90,22 @@ static double measure(const tm_improver *m, uint32_t t)
     return tm_tet_measure_of(m->cost.measure, x[n[0]], x[n[1]], x[n[2]], x[n[3]]);
 }
 
+/* Measures a tetrahedron that the last change made. */
+static void note(tm_improver *m, uint32_t t)
+{
+    m->quality[t] = measure(m, t);
+    m->tried[t] = 0;
+    for (int i = 0; i < 4; i++) {
+        m->tet_at[m->mesh->tet[t][i]] = t;
+        m->changed[m->mesh->tet[t][i]] = m->change;
+    }
+}
+
 void tm_improve_note(tm_improver *m, const uint32_t *created, size_t count)
 {
     m->change++;
-    for (size_t k = 0; k < count; k++) {
-        uint32_t t = created[k];
-        m->quality[t] = measure(m, t);
-        m->tried[t] = 0;
-        for (int i = 0; i < 4; i++) {
-            m->tet_at[m->mesh->tet[t][i]] = t;
-            m->changed[m->mesh->tet[t][i]] = m->change;
-        }
-    }
+    for (size_t k = 0; k < count; k++)
+        note(m, created[k]);
 }
 
 double tm_improve_old_cost(const tm_improver *m, const uint32_t *old, size_t count,
@@ -132,6 +136,39 @@ void tm_improve_set_target(tm_improver *m, double degrees)
                          : degrees * volume_quality_per_degree;
     memset(m->smoothed, 0, m->mesh->nodes * sizeof *m->smoothed);
     tm_improve_set_price(m, 0);
+}
+
+/* Measures the whole mesh; nothing of it has been tried. */
+static void note_all(tm_improver *m)
+{
+    const tm_tet_mesh *mesh = m->mesh;
+    m->change++;
+    for (size_t v = 0; v < mesh->nodes; v++)
+        m->tet_at[v] = TM_NONE;
+    for (uint32_t t = 0; t < mesh->slots; t++)
+        if (tm_tet_lives(mesh, t))
+            note(m, t);
+}
+
+void tm_improve_keep(tm_improver *m, tm_improve_state *state, size_t bad)
+{
+    if (m->status != TM_OK)
+        return;
+    state->bad = bad;
+    m->status = tm_tet_mesh_copy(&state->mesh, m->mesh, m->error);
+    if (m->status == TM_OK && !tm_features_copy(&state->features, &m->features))
+        tm_improve_no_memory(m);
+}
+
+void tm_improve_go_back(tm_improver *m, const tm_improve_state *state)
+{
+    if (m->status != TM_OK)
+        return;
+    m->status = tm_tet_mesh_copy(m->mesh, &state->mesh, m->error);
+    if (m->status == TM_OK && !tm_features_copy(&m->features, &state->features))
+        tm_improve_no_memory(m);
+    if (m->status == TM_OK)
+        note_all(m);
 }
 
 /* The sin² from which on a tetrahedron has no angle beyond the limits. */
@@ -182,10 +219,7 @@ tm_status tm_improve_start(tm_improver *m, tm_tet_mesh *mesh,
         return m->status;
     }
     m->space = tm_space_around((const double(*)[3])mesh->xyz, mesh->nodes);
-    for (size_t v = 0; v < mesh->nodes; v++)
-        m->tet_at[v] = TM_NONE;
-    for (uint32_t t = 0; t < mesh->slots; t++)
-        tm_improve_note(m, &t, 1);
+    note_all(m);
     find_limits(m);
     m->status = tm_features_find(&m->features, mesh, &m->marks, m->error);
     for (size_t v = 0; v < mesh->nodes && m->status == TM_OK; v++)
@@ -203,6 +237,10 @@ void tm_improve_finish(tm_improver *m)
         free(list[k]);
     free(m->quality);
     free(m->node);
+    tm_tet_mesh_free(&m->input.mesh);
+    tm_features_free(&m->input.features);
+    tm_tet_mesh_free(&m->best.mesh);
+    tm_features_free(&m->best.features);
     tm_features_free(&m->features);
     tm_tet_marks_free(&m->marks);
     tm_star_free(&m->star);

@@ -18,6 +18,13 @@
 /* Every operation has to lower the cost by this. */
 #define TM_IMPROVE_GAIN 1e-6
 
+/* A mesh to come back to. */
+typedef struct tm_improve_state {
+    tm_tet_mesh mesh;
+    tm_features features;
+    size_t bad; /* tetrahedra; SIZE_MAX: nothing is kept */
+} tm_improve_state;
+
 typedef struct tm_improver {
     tm_tet_mesh *mesh;
     const tm_improve_options *options;
@@ -40,6 +47,9 @@ typedef struct tm_improver {
     uint32_t *tet_at, *changed, *smoothed, *contracted, *seen;
     size_t node_room;
     uint32_t change, look; /* counters */
+
+    tm_improve_state input; /* where several targets are reached one after the other */
+    tm_improve_state best;  /* for this target, so far */
 
     tm_space space; /* around the mesh */
     tm_features features;
@@ -67,6 +77,12 @@ void tm_improve_finish(tm_improver *m);
 /* What is bad, by the angle or, for the volume measure, a hundredth of it; the price is 0
  * then. */
 void tm_improve_set_target(tm_improver *m, double degrees);
+
+/* Keeps the mesh, which has so many bad tetrahedra. */
+void tm_improve_keep(tm_improver *m, tm_improve_state *state, size_t bad);
+
+/* Goes back to the mesh that was kept. */
+void tm_improve_go_back(tm_improver *m, const tm_improve_state *state);
 
 /* The price of a tetrahedron; all may be tried again. */
 void tm_improve_set_price(tm_improver *m, double price);

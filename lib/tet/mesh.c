@@ -93,6 +93,45 @@ tm_status tm_tet_mesh_reserve(tm_tet_mesh *mesh, size_t nodes, size_t tets, size
     return TM_OK;
 }
 
+/* A copy of so many items of an array, if there is one. */
+static void *copy(const void *array, size_t count, size_t size, bool *done)
+{
+    void *made = array ? tm_new(count, size) : NULL;
+    *done &= made || !array;
+    if (made)
+        memcpy(made, array, count * size);
+    return made;
+}
+
+tm_status tm_tet_mesh_copy(tm_tet_mesh *to, const tm_tet_mesh *from, tm_error *error)
+{
+    bool done = true;
+    size_t nodes = from->nodes, slots = from->slots;
+    tm_tet_mesh_free(to);
+    *to = *from;
+    to->node_room = nodes;
+    to->slot_room = slots;
+    to->face_room = from->faces;
+    to->edge_room = from->edges;
+    to->xyz = copy(from->xyz, nodes, sizeof *to->xyz, &done);
+    to->node_attribute = copy(from->node_attribute, nodes * from->node_attributes,
+                              sizeof *to->node_attribute, &done);
+    to->node_marker = copy(from->node_marker, nodes, sizeof *to->node_marker, &done);
+    to->tet = copy(from->tet, slots, sizeof *to->tet, &done);
+    to->neighbour = copy(from->neighbour, slots, sizeof *to->neighbour, &done);
+    to->region = copy(from->region, slots * from->regions, sizeof *to->region, &done);
+    to->face = copy(from->face, from->faces, sizeof *to->face, &done);
+    to->edge = copy(from->edge, from->edges, sizeof *to->edge, &done);
+    to->edge_of.slot =
+        copy(from->edge_of.slot, from->edge_of.room, sizeof *to->edge_of.slot, &done);
+    to->locked.slot =
+        copy(from->locked.slot, from->locked.room, sizeof *to->locked.slot, &done);
+    if (done)
+        return TM_OK;
+    tm_tet_mesh_free(to);
+    return tm_fail_memory(error);
+}
+
 size_t tm_tet_mesh_most(const tm_tet_mesh *mesh, double growth)
 {
     double most = growth * (double)mesh->tets;
