@@ -20,17 +20,19 @@ typedef struct tm_cost {
 bool tm_cost_allows(const tm_cost *cost, const double a[3], const double b[3],
                     const double c[3], const double d[3]);
 
-/* The measure of a tetrahedron; 0 where an angle is beyond the limits. */
-static inline double tm_cost_quality(const tm_cost *cost, const double a[3],
+/* The measure of a tetrahedron; 0 where it is below `least` or an angle is beyond the
+ * limits. */
+static inline double tm_cost_quality(const tm_cost *cost, double least, const double a[3],
                                      const double b[3], const double c[3],
                                      const double d[3])
 {
     double sine2 = tm_tet_sine2(a, b, c, d);
-    if (sine2 == 0 || (sine2 < cost->safe && !tm_cost_allows(cost, a, b, c, d)))
+    double quality = cost->measure == TM_MEASURE_DIHEDRAL
+                         ? sine2
+                         : tm_tet_measure_of(cost->measure, a, b, c, d);
+    if (quality < least || sine2 == 0)
         return 0;
-    return cost->measure == TM_MEASURE_DIHEDRAL
-               ? sine2
-               : tm_tet_measure_of(cost->measure, a, b, c, d);
+    return sine2 >= cost->safe || tm_cost_allows(cost, a, b, c, d) ? quality : 0;
 }
 
 /* What a tetrahedron of that quality costs: 0 from the target on, 1 just below, and

@@ -37,19 +37,27 @@ void tm_ball_free(tm_ball *ball)
     *ball = (tm_ball){0};
 }
 
-static bool append(const tm_tet_mesh *mesh, uint32_t t, tm_ball *ball)
+static bool reserve(tm_ball *ball, size_t needed)
 {
-    uint32_t *tet = tm_grow(ball->tet, &ball->tet_room, ball->size + 1, sizeof *tet);
+    if (needed <= ball->room)
+        return true;
+    size_t room = ball->room, face_room = ball->room;
+    uint32_t *tet = tm_grow(ball->tet, &room, needed, sizeof *tet);
     ball->tet = tet ? tet : ball->tet;
-    uint32_t(*face)[3] =
-        tm_grow(ball->face, &ball->face_room, ball->size + 1, sizeof *face);
+    uint32_t(*face)[3] = tm_grow(ball->face, &face_room, needed, sizeof *face);
     ball->face = face ? face : ball->face;
-    if (!tet || !face)
-        return false;
-    tet[ball->size] = t;
-    tm_tet_face_below(mesh, t, tm_tet_corner(mesh, t, ball->node), face[ball->size]);
+    if (tet && face)
+        ball->room = room;
+    return tet && face;
+}
+
+/* Appends tetrahedron t, for which there is room. */
+static void append(const tm_tet_mesh *mesh, uint32_t t, tm_ball *ball)
+{
+    ball->tet[ball->size] = t;
+    tm_tet_face_below(mesh, t, tm_tet_corner(mesh, t, ball->node),
+                      ball->face[ball->size]);
     ball->size++;
-    return true;
 }
 
 bool tm_ball_around(const tm_tet_mesh *mesh, uint32_t t, uint32_t v, tm_tet_marks *marks,
@@ -58,11 +66,14 @@ bool tm_ball_around(const tm_tet_mesh *mesh, uint32_t t, uint32_t v, tm_tet_mark
     ball->node = v;
     ball->size = 0;
     ball->kept_face = false;
-    if (!tm_tet_marks_clear(marks, mesh->slots) || !append(mesh, t, ball))
+    if (!tm_tet_marks_clear(marks, mesh->slots) || !reserve(ball, 1))
         return false;
     tm_tet_mark(marks, t);
+    append(mesh, t, ball);
     for (size_t next = 0; next < ball->size; next++) {
         uint32_t u = ball->tet[next];
+        if (!reserve(ball, ball->size + 3))
+            return false;
         for (uint32_t i = 0; i < 4; i++) {
             if (mesh->tet[u][i] == v)
                 continue;
@@ -73,8 +84,8 @@ bool tm_ball_around(const tm_tet_mesh *mesh, uint32_t t, uint32_t v, tm_tet_mark
                 if (across == TM_NONE)
                     continue;
             }
-            if (tm_tet_mark(marks, across / 4) && !append(mesh, across / 4, ball))
-                return false;
+            if (tm_tet_mark(marks, across / 4))
+                append(mesh, across / 4, ball);
         }
     }
     return true;

@@ -40,7 +40,7 @@ typedef struct tm_ball {
     bool kept_face; /* a face that has to stay is at the node */
     uint32_t *tet;
     uint32_t (*face)[3];
-    size_t tet_room, face_room;
+    size_t room;
 } tm_ball;
 
 void tm_ball_free(tm_ball *ball);

@@ -67,7 +67,7 @@ static double cost_at(const tm_tet_mesh *mesh, const tm_cost *cost, const uint32
                       const double p[3])
 {
     double quality =
-        tm_cost_quality(cost, mesh->xyz[n[0]], mesh->xyz[n[1]], mesh->xyz[n[2]], p);
+        tm_cost_quality(cost, 0, mesh->xyz[n[0]], mesh->xyz[n[1]], mesh->xyz[n[2]], p);
     return quality > 0 ? tm_cost_of(cost, quality) : 2 * tm_cost_of(cost, 0);
 }
 

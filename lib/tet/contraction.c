@@ -24,7 +24,7 @@ double tm_contraction_cost(const tm_tet_mesh *mesh, const tm_ball *ball, uint32_
             ++*gone;
             continue;
         }
-        double quality = tm_cost_quality(cost, x[f[0]], x[f[1]], x[f[2]], x[b]);
+        double quality = tm_cost_quality(cost, least, x[f[0]], x[f[1]], x[f[2]], x[b]);
         if (quality < least)
             return HUGE_VAL;
         sum += tm_cost_of(cost, quality);

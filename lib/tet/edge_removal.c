@@ -90,10 +90,10 @@ static double triangle_cost(const tm_tet_mesh *mesh, const tm_star *star,
 {
     const double *x = mesh->xyz[star->ring[i]], *y = mesh->xyz[star->ring[k]];
     const double *z = mesh->xyz[star->ring[j]];
-    double above = tm_cost_quality(cost, x, y, z, mesh->xyz[star->b]);
+    double above = tm_cost_quality(cost, least, x, y, z, mesh->xyz[star->b]);
     if (above < least)
         return HUGE_VAL;
-    double below = tm_cost_quality(cost, x, z, y, mesh->xyz[star->a]);
+    double below = tm_cost_quality(cost, least, x, z, y, mesh->xyz[star->a]);
     if (below < least)
         return HUGE_VAL;
     return tm_cost_of(cost, above) + tm_cost_of(cost, below);

@@ -31,7 +31,7 @@ static void add_old(search *s, uint32_t t, uint32_t u)
 static double new_cost(const search *s, uint32_t x, uint32_t y)
 {
     const double(*p)[3] = (const double(*)[3])s->mesh->xyz;
-    double quality = tm_cost_quality(s->cost, p[x], p[y], p[s->e], p[s->d]);
+    double quality = tm_cost_quality(s->cost, s->least, p[x], p[y], p[s->e], p[s->d]);
     if (quality < s->least || tm_orient3d(p[x], p[y], p[s->e], p[s->d]) <= 0)
         return HUGE_VAL;
     return tm_cost_of(s->cost, quality);
@@ -125,14 +125,6 @@ bool tm_face_removal_plan(const tm_tet_mesh *mesh, const double *quality, uint32
     }
     if (!(sum < HUGE_VAL))
         return false;
-    plan->old_cost = plan->cost = 0;
-    for (size_t k = 0; k < plan->old_count; k++)
-        plan->old_cost += tm_cost_of(cost, quality[plan->old[k]]);
-    for (size_t k = 0; k < plan->count; k++) {
-        const uint32_t *n = plan->node[k];
-        plan->cost +=
-            tm_cost_of(cost, tm_cost_quality(cost, mesh->xyz[n[0]], mesh->xyz[n[1]],
-                                             mesh->xyz[n[2]], mesh->xyz[n[3]]));
-    }
+    plan->gain = tm_cost_of(cost, quality[t]) + tm_cost_of(cost, quality[u]) - sum;
     return true;
 }

@@ -17,7 +17,7 @@ typedef struct tm_face_removal {
     size_t old_count;
     uint32_t node[TM_FACE_REMOVAL_MAX + 2][4];
     size_t count;
-    double old_cost, cost;
+    double gain; /* what the old ones cost, less what the new ones do */
 } tm_face_removal;
 
 /* Plans to remove face i of t and what faces beside it lower the cost most: all

@@ -24,8 +24,8 @@ double tm_hull_cost(const tm_hull *hull, const tm_cost *cost, const double p[3],
     double sum = 0;
     for (size_t i = 0; i < hull->count; i++) {
         const uint32_t *f = hull->face[i];
-        double quality =
-            tm_cost_quality(cost, hull->xyz[f[0]], hull->xyz[f[1]], hull->xyz[f[2]], p);
+        double quality = tm_cost_quality(cost, least, hull->xyz[f[0]], hull->xyz[f[1]],
+                                         hull->xyz[f[2]], p);
         if (quality < least)
             return HUGE_VAL;
         sum += tm_cost_of(cost, quality);

@@ -46,7 +46,7 @@ static bool start_cavity(tm_improver *m, uint32_t t, unsigned e, double p[3])
 static double plan_cavity(tm_improver *m, uint32_t t, unsigned e, double needed,
                           double p[3])
 {
-    enum { STEPS = 4 };
+    enum { STEPS = 2 };
     static const tm_freedom anywhere = {3, {0, 0, 0}};
     const double beyond_target = 1.1;
     double least, enough = m->cost.target * beyond_target;
@@ -169,8 +169,8 @@ static double plan_split(tm_improver *m, uint32_t t, unsigned e, double needed,
     tm_star_midpoint(m->mesh, s, p);
     for (size_t i = 0; i < s->size && sum < old - needed; i++) {
         const double *r = x[s->ring[i]], *q = x[s->ring[i + 1]];
-        double lower = tm_cost_quality(&m->cost, x[s->a], p, r, q);
-        double upper = tm_cost_quality(&m->cost, p, x[s->b], r, q);
+        double lower = tm_cost_quality(&m->cost, least, x[s->a], p, r, q);
+        double upper = tm_cost_quality(&m->cost, least, p, x[s->b], r, q);
         if (lower < least || upper < least)
             return 0;
         sum += tm_cost_of(&m->cost, lower) + tm_cost_of(&m->cost, upper);

@@ -44,11 +44,11 @@ static bool find_place(const tm_improver *m, const tm_hull *hull,
                        const tm_freedom *freedom, double least, double most,
                        double place[3])
 {
-    enum { STEPS = 4 };
+    enum { STEPS = 2 };
     double p[3], from[3];
     bool found = false;
     memcpy(from, m->mesh->xyz[m->ball.node], sizeof from);
-    for (int way = 0; way < 2 && most > 0; way++) {
+    for (int way = 0; way < 2 && !found; way++) {
         memcpy(p, found ? place : from, sizeof p);
         if (way == 0)
             go_to_centre(hull, freedom, p);

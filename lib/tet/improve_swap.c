@@ -158,7 +158,7 @@ static double plan_face(tm_improver *m, uint32_t t, uint32_t i, double needed)
     if (!tm_face_removal_plan(m->mesh, m->quality, t, i, &m->cost, least, plan))
         return 0;
     ptrdiff_t growth = (ptrdiff_t)plan->count - (ptrdiff_t)plan->old_count;
-    double gain = plan->old_cost - plan->cost - m->price * (double)growth;
+    double gain = plan->gain - m->price * (double)growth;
     return gain > needed && tm_improve_may_grow(m, growth) ? gain : 0;
 }
 

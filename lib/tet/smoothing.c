@@ -11,7 +11,7 @@ enum { SLOPES_MAX = 192 };
 
 /* Slopes are looked at that are so far above the worst, and are active if they are so
  * near to it. A step has to gain this part of the quality. */
-static const double window = 0.2, active_window = 0.02, least_gain = 1e-3;
+static const double window = 0.1, active_window = 0.02, least_gain = 1e-2;
 
 void tm_freedom_restrict(const tm_freedom *freedom, double vector[3])
 {
@@ -28,14 +28,12 @@ static size_t collect(const tm_hull *hull, tm_tet_measure measure,
                       const tm_freedom *freedom, const double p[3], double limit,
                       tm_slope *slope, double *worst)
 {
-    double limit_of_measure = measure == TM_MEASURE_DIHEDRAL ? limit * limit : limit;
     size_t count = 0;
     *worst = HUGE_VAL;
     for (size_t i = 0; i < hull->count && count + TM_SLOPES <= SLOPES_MAX; i++) {
         const uint32_t *f = hull->face[i];
-        const double *a = hull->xyz[f[0]], *b = hull->xyz[f[1]], *c = hull->xyz[f[2]];
-        if (tm_tet_measure_of(measure, a, b, c, p) < limit_of_measure)
-            count += tm_tet_slopes(measure, a, b, c, p, limit, slope + count);
+        count += tm_tet_slopes(measure, hull->xyz[f[0]], hull->xyz[f[1]], hull->xyz[f[2]],
+                               p, limit, slope + count);
     }
     for (size_t k = 0; k < count; k++) {
         tm_freedom_restrict(freedom, slope[k].gradient);
