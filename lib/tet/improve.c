@@ -14,7 +14,11 @@ static const double insertion_price = 0.1, kick_price = -1, kick_price_most = -4
  * converge, this least one. */
 static const double enough_gain = 0.05, least_gain = 0.002;
 
-enum { PASSES_MAX = 8, KICKS_MAX = 1000, FAILS_MAX = 12, FEW = 100 };
+enum { PASSES_MAX = 8, KICKS_MAX = 1000, FEW = 100 };
+
+/* Kicks that fail one after the other differ within a cycle; `wider_by` is in degrees. */
+enum { CYCLE = 12, FAILS_MAX = 3 * CYCLE };
+static const double wider_by = 1.5;
 
 /* What a pass tries, in this order, on each tetrahedron until something is done. */
 enum { SWAP = 1, SMOOTH = 2, CONTRACT = 4, INSERT = 8 };
@@ -151,8 +155,19 @@ static size_t keep_best(tm_improver *m)
     return m->best.bad;
 }
 
-/* Growth that costs less than nothing, then what is good for the mesh again; as long as
- * it leaves fewer bad ones. For few of them it is cheap to insist. */
+/* Growth that costs less than nothing. Where a cycle of kicks has failed, what is nearly
+ * bad is kicked too. */
+static void kick_once(tm_improver *m, double price)
+{
+    double degrees = m->degrees, wider = degrees + wider_by * (m->fails / CYCLE);
+    tm_improve_set_price(m, price);
+    m->cost.target = tm_improve_target(m, wider);
+    run_pass(m, ALL);
+    m->cost.target = tm_improve_target(m, degrees);
+}
+
+/* Kicks, and after each what is good for the mesh again; as long as
+ * that leaves fewer bad ones. For few of them it is cheap to insist. */
 static void kick(tm_improver *m)
 {
     bool converge = m->options->converge;
@@ -160,8 +175,7 @@ static void kick(tm_improver *m)
     size_t after = keep_best(m);
     for (int k = 0; k < KICKS_MAX && after > 0 && !is_over(m); k++) {
         size_t before = after;
-        tm_improve_set_price(m, price);
-        run_pass(m, ALL);
+        kick_once(m, price);
         if (m->fails % 2 == 0)
             settle(m, MOVE, 0);
         settle(m, ALL, 0);
@@ -196,21 +210,42 @@ static void reach(tm_improver *m)
     keep_best(m);
 }
 
-/* The target; one above 30 degrees step by step, as long as nothing is left behind. */
-static void run(tm_improver *m)
+/* Targets above the first one, step by step, as long as nothing is left behind; then the
+ * last one, without giving up what was reached. */
+static void climb(tm_improver *m, double first, double last)
 {
-    const double first = 30, step = 1, last = m->options->angle;
-    double degrees = fmin(first, last);
-    m->input.bad = SIZE_MAX;
-    if (degrees < last && m->mesh->tets <= m->most_tets)
-        tm_improve_keep(m, &m->input, count_bad(m));
-    for (;;) {
+    const double step = 1;
+    double reached = first;
+    while (reached < last && count_bad(m) == 0 && !is_over(m)) {
+        double degrees = fmin(reached + step, last);
+        tm_improve_keep(m, &m->reached, 0);
         tm_improve_set_target(m, degrees);
         reach(m);
-        if (degrees == last || is_over(m))
+        if (count_bad(m) > 0) {
+            tm_improve_go_back(m, &m->reached);
+            tm_improve_forbid(m, reached);
             break;
-        degrees = count_bad(m) == 0 ? fmin(degrees + step, last) : last;
+        }
+        reached = degrees;
     }
+    if (reached == last)
+        return;
+    tm_improve_set_target(m, last);
+    reach(m);
+}
+
+/* The target; one above 30 degrees in steps. */
+static void run(tm_improver *m)
+{
+    const double first = 30, last = m->options->angle;
+    m->input.bad = SIZE_MAX;
+    if (first < last && m->mesh->tets <= m->most_tets)
+        tm_improve_keep(m, &m->input, count_bad(m));
+    tm_improve_set_target(m, fmin(first, last));
+    reach(m);
+    if (first >= last)
+        return;
+    climb(m, first, last);
     tm_improve_set_target(m, last);
     if (count_bad(m) > m->input.bad)
         tm_improve_go_back(m, &m->input);

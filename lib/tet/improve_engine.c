@@ -128,12 +128,17 @@ void tm_improve_set_price(tm_improver *m, double price)
     memset(m->contracted, 0, m->mesh->nodes * sizeof *m->contracted);
 }
 
-void tm_improve_set_target(tm_improver *m, double degrees)
+double tm_improve_target(const tm_improver *m, double degrees)
 {
     const double volume_quality_per_degree = 0.01;
-    m->cost.target = m->cost.measure == TM_MEASURE_DIHEDRAL
-                         ? tm_bad_sine2(degrees)
-                         : degrees * volume_quality_per_degree;
+    return m->cost.measure == TM_MEASURE_DIHEDRAL ? tm_bad_sine2(degrees)
+                                                  : degrees * volume_quality_per_degree;
+}
+
+void tm_improve_set_target(tm_improver *m, double degrees)
+{
+    m->degrees = degrees;
+    m->cost.target = tm_improve_target(m, degrees);
     memset(m->smoothed, 0, m->mesh->nodes * sizeof *m->smoothed);
     tm_improve_set_price(m, 0);
 }
@@ -179,6 +184,15 @@ static double safe_sine2(const tm_cost *cost)
         return HUGE_VAL;
     return fmax(tm_bad_sine2(cost->least_angle + TM_ANGLE_TOLERANCE),
                 tm_bad_sine2(straight_angle - cost->most_angle + TM_ANGLE_TOLERANCE));
+}
+
+void tm_improve_forbid(tm_improver *m, double degrees)
+{
+    const double straight_angle = 180;
+    tm_cost *cost = &m->cost;
+    cost->least_angle = fmax(cost->least_angle, degrees);
+    cost->most_angle = fmin(cost->most_angle, straight_angle - degrees);
+    cost->safe = safe_sine2(cost);
 }
 
 /* The smallest and largest dihedral angle of the mesh, which are the limits. */
@@ -237,10 +251,11 @@ void tm_improve_finish(tm_improver *m)
         free(list[k]);
     free(m->quality);
     free(m->node);
-    tm_tet_mesh_free(&m->input.mesh);
-    tm_features_free(&m->input.features);
-    tm_tet_mesh_free(&m->best.mesh);
-    tm_features_free(&m->best.features);
+    tm_improve_state *state[] = {&m->best, &m->reached, &m->input};
+    for (size_t k = 0; k < sizeof state / sizeof state[0]; k++) {
+        tm_tet_mesh_free(&state[k]->mesh);
+        tm_features_free(&state[k]->features);
+    }
     tm_features_free(&m->features);
     tm_tet_marks_free(&m->marks);
     tm_star_free(&m->star);

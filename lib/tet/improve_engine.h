@@ -33,6 +33,7 @@ typedef struct tm_improver {
     tm_status status; /* of what failed: nothing more is done then */
 
     tm_cost cost;
+    double degrees;   /* the target, by the angle or, for volume, a hundredth of it */
     double price;     /* of one more tetrahedron; negative to kick */
     unsigned fails;   /* kicks without success, since one had it */
     size_t most_tets; /* the mesh never grows beyond */
@@ -48,8 +49,9 @@ typedef struct tm_improver {
     size_t node_room;
     uint32_t change, look; /* counters */
 
-    tm_improve_state input; /* where several targets are reached one after the other */
-    tm_improve_state best;  /* for this target, so far */
+    tm_improve_state best;    /* for this target, so far */
+    tm_improve_state reached; /* the last target that left nothing bad */
+    tm_improve_state input;   /* where there are several targets */
 
     tm_space space; /* around the mesh */
     tm_features features;
@@ -74,8 +76,10 @@ tm_status tm_improve_start(tm_improver *m, tm_tet_mesh *mesh,
                            tm_error *error);
 void tm_improve_finish(tm_improver *m);
 
-/* What is bad, by the angle or, for the volume measure, a hundredth of it; the price is 0
- * then. */
+/* What is not bad, by the measure, for a target in degrees. */
+double tm_improve_target(const tm_improver *m, double degrees);
+
+/* Sets the target; the price is 0 then. */
 void tm_improve_set_target(tm_improver *m, double degrees);
 
 /* Keeps the mesh, which has so many bad tetrahedra. */
@@ -83,6 +87,10 @@ void tm_improve_keep(tm_improver *m, tm_improve_state *state, size_t bad);
 
 /* Goes back to the mesh that was kept. */
 void tm_improve_go_back(tm_improver *m, const tm_improve_state *state);
+
+/* From here on no operation makes an angle below so many degrees, or above 180 less
+ * that. */
+void tm_improve_forbid(tm_improver *m, double degrees);
 
 /* The price of a tetrahedron; all may be tried again. */
 void tm_improve_set_price(tm_improver *m, double price);

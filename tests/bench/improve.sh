@@ -3,7 +3,7 @@
 # lepp-improve -a improve beside Gmsh, TetGen and CGAL on the same meshes with the
 # boundary kept: how large and how bad the mesh becomes, in how many CPU seconds; for us
 # with one bound of the size after the other, which gives the front of quality against
-# size. The figures go to build/bench/improve.tsv, and with gnuplot the fronts are drawn
+# size, and beside each peer with that peer's size and CPU seconds as bounds. The figures go to build/bench/improve.tsv, and with gnuplot the fronts are drawn
 # into build/bench/improve-front.svg. $1, TM_DATA and the rest: peers.inc; and
 #   MESHES   of rnd2000 rnd20000 femur knot house2; all
 #   GROWTHS  bounds of the size, in times the input
@@ -67,6 +67,27 @@ ours() {
     done
 }
 
+# Beside each peer that kept the boundary: ours with at most as many tetrahedra and, if
+# that takes longer, stopped after ever fewer passes. Whoever has fewer bad ones for less
+# CPU wins: our whole process with its text against the algorithm alone, where that is
+# known.
+duels() {
+    awk -F '\t' -v mesh="$1" 'BEGIN { OFS = FS }
+        $1 == mesh && $2 == "peer" && $11 == "ok" {
+            print $3, $5, $6, $9 == "-" ? $10 : $9 }' "$figures" >"$work/duels"
+    while IFS="$(printf '\t')" read -r name ratio bad seconds; do
+        for stop in '' '-s 6' '-s 3' '-s 1'; do
+            ours="vs $name${stop:+, $stop}"
+            # shellcheck disable=SC2046,SC2086 # words
+            row "$1" duel "$ours" '' improve "$work/$1.tm" $(growth "$ratio") $stop
+            awk -v ours="$(figure "$1" "$ours" whole)" -v theirs="$seconds" \
+                'BEGIN { exit !(ours + 0 <= theirs + 0) }' && break
+        done
+        target "  bad %" "$(figure "$1" "$ours" bad)" "$bad"
+        target "  CPU s" "$(figure "$1" "$ours" whole)" "$seconds"
+    done <"$work/duels"
+}
+
 # What the algorithm is to reach. Our whole process, with its text, against the others'
 # algorithm alone.
 aims() {
@@ -93,7 +114,7 @@ aims() {
 
 # Of all our runs that leave no bad tetrahedron, that with the largest smallest angle.
 house_aims() {
-    best=$(awk -F '\t' '$1 == "house2" && $2 ~ /^(ours|t40)$/ && $6 == 0 { print $7 "\t" $3 }' \
+    best=$(awk -F '\t' '$1 == "house2" && $2 ~ /^(ours|t38)$/ && $6 == 0 { print $7 "\t" $3 }' \
         "$figures" | sort -n | tail -n 1 | cut -f 2)
     if [ -z "$best" ]; then
         echo '  aim: no bad tetrahedron: NO'
@@ -114,10 +135,11 @@ for mesh in ${MESHES:-$all}; do
     if [ "$mesh" = house2 ]; then
         for growth in 1.5 2 3 4; do
             # shellcheck disable=SC2046 # words
-            row "$mesh" t40 "at most $growth, -t 40" "${growth_option:+$growth}" \
-                improve "$work/$mesh.tm" -t 40 $(growth "$growth")
+            row "$mesh" t38 "at most $growth, -t 38" "${growth_option:+$growth}" \
+                improve "$work/$mesh.tm" -t 38 $(growth "$growth")
         done
     fi
+    duels "$mesh"
     aims "$mesh"
 done
 
