@@ -311,13 +311,13 @@ static void add(char *text, size_t size, const char *format, size_t count)
 
 static void add_operations(const tm_improve_report *r, char *text, size_t size)
 {
-    const size_t *done = r->done;
+    const size_t *done = r->done.op;
     add(text, size, "%zu edges and ",
         done[TM_OP_EDGE_REMOVAL] + done[TM_OP_BOUNDARY_SWAP]);
     add(text, size, "%zu faces removed, ", done[TM_OP_FACE_REMOVAL]);
     add(text, size, "%zu times a node moved, ", done[TM_OP_SMOOTHING]);
     add(text, size, "%zu points inserted, ", done[TM_OP_INSERTION]);
-    add(text, size, "%zu nodes removed", done[TM_OP_CONTRACTION] + r->swallowed);
+    add(text, size, "%zu nodes removed", done[TM_OP_CONTRACTION] + r->done.swallowed);
 }
 
 static void add_star_operations(const settings *o, const tm_lepp_report *r, char *text,

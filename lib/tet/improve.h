@@ -34,14 +34,18 @@ typedef struct tm_improve_options {
     bool converge;          /* go on while anything is gained, not only enough */
 } tm_improve_options;
 
+typedef struct tm_improve_counts {
+    size_t op[TM_IMPROVE_OPS];
+    size_t edge_splits; /* those insertions that are on an edge to keep */
+    size_t swallowed;   /* nodes that insertions removed */
+} tm_improve_counts;
+
 typedef struct tm_improve_report {
     size_t tets_before, bad_before, bad_after; /* tetrahedra */
     size_t passes;                             /* over the bad tetrahedra */
     size_t kicks;
-    size_t done[TM_IMPROVE_OPS];
+    tm_improve_counts done;       /* what led to the result */
     size_t tried[TM_IMPROVE_OPS]; /* how often it was looked for; 0 for swaps */
-    size_t edge_splits;           /* those insertions that are on an edge to keep */
-    size_t swallowed;             /* nodes that insertions removed */
     size_t nodes_free[4];         /* of the input, by the dimension they may move in */
     bool too_large;               /* max_growth could not be reached */
 } tm_improve_report;

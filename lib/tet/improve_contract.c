@@ -86,7 +86,7 @@ bool tm_improve_contract_node(tm_improver *m, uint32_t t, uint32_t a)
     if (m->features.dimension[a] == 1)
         tm_features_join(&m->features, a, b);
     tm_tet_mesh_delete_node(m->mesh, a);
-    m->report->done[TM_OP_CONTRACTION]++;
+    m->report->done.op[TM_OP_CONTRACTION]++;
     return true;
 }
 

@@ -160,6 +160,7 @@ void tm_improve_keep(tm_improver *m, tm_improve_state *state, size_t bad)
     if (m->status != TM_OK)
         return;
     state->bad = bad;
+    state->done = m->report->done;
     m->status = tm_tet_mesh_copy(&state->mesh, m->mesh, m->error);
     if (m->status == TM_OK && !tm_features_copy(&state->features, &m->features))
         tm_improve_no_memory(m);
@@ -169,6 +170,7 @@ void tm_improve_go_back(tm_improver *m, const tm_improve_state *state)
 {
     if (m->status != TM_OK)
         return;
+    m->report->done = state->done;
     m->status = tm_tet_mesh_copy(m->mesh, &state->mesh, m->error);
     if (m->status == TM_OK && !tm_features_copy(&m->features, &state->features))
         tm_improve_no_memory(m);

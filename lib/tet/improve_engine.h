@@ -22,6 +22,7 @@
 typedef struct tm_improve_state {
     tm_tet_mesh mesh;
     tm_features features;
+    tm_improve_counts done;
     size_t bad; /* tetrahedra; SIZE_MAX: nothing is kept */
 } tm_improve_state;
 

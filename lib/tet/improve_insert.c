@@ -145,8 +145,8 @@ static bool fill(tm_improver *m, const double p[3])
     for (size_t k = 0; k < swallowed; k++)
         tm_tet_mesh_delete_node(mesh, m->swallowed[k]);
     tm_improve_note(m, m->created, faces);
-    m->report->swallowed += swallowed;
-    m->report->done[TM_OP_INSERTION]++;
+    m->report->done.swallowed += swallowed;
+    m->report->done.op[TM_OP_INSERTION]++;
     return true;
 }
 
@@ -193,8 +193,8 @@ static bool split(tm_improver *m, const double p[3])
     tm_features_place_node(&m->features, m->mesh->tet[m->created[0]][corner], place, a,
                            b);
     tm_improve_note(m, m->created, made);
-    m->report->edge_splits++;
-    m->report->done[TM_OP_INSERTION]++;
+    m->report->done.edge_splits++;
+    m->report->done.op[TM_OP_INSERTION]++;
     return true;
 }
 

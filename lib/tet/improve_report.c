@@ -15,9 +15,9 @@ void tm_improve_report_json(tm_json *json, const tm_improve_report *r)
     tm_json_integer(json, "kicks", (int64_t)r->kicks);
     tm_json_open(json, "operations", '{');
     for (int op = 0; op < TM_IMPROVE_OPS; op++)
-        tm_json_integer(json, done_key[op], (int64_t)r->done[op]);
-    tm_json_integer(json, "edge_splits", (int64_t)r->edge_splits);
-    tm_json_integer(json, "swallowed_nodes", (int64_t)r->swallowed);
+        tm_json_integer(json, done_key[op], (int64_t)r->done.op[op]);
+    tm_json_integer(json, "edge_splits", (int64_t)r->done.edge_splits);
+    tm_json_integer(json, "swallowed_nodes", (int64_t)r->done.swallowed);
     tm_json_close(json, '}');
     tm_json_open(json, "tried", '{');
     for (int op = TM_OP_SMOOTHING; op < TM_IMPROVE_OPS; op++)
@@ -35,6 +35,6 @@ size_t tm_improve_operations(const tm_improve_report *report)
 {
     size_t sum = 0;
     for (int op = 0; op < TM_IMPROVE_OPS; op++)
-        sum += report->done[op];
+        sum += report->done.op[op];
     return sum;
 }

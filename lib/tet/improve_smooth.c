@@ -36,7 +36,7 @@ static void move(tm_improver *m, const double p[3])
     }
     memcpy(mesh->xyz[v], p, sizeof mesh->xyz[v]);
     tm_improve_note(m, m->ball.tet, m->ball.size);
-    m->report->done[TM_OP_SMOOTHING]++;
+    m->report->done.op[TM_OP_SMOOTHING]++;
 }
 
 /* The place with the least cost, below `most`; false where there is none. */

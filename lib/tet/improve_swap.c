@@ -142,7 +142,7 @@ static bool remove_edge(tm_improver *m)
         if (m->status == TM_OK)
             tm_improve_note(m, m->created, what.count);
     }
-    m->report->done[inside ? TM_OP_EDGE_REMOVAL : TM_OP_BOUNDARY_SWAP]++;
+    m->report->done.op[inside ? TM_OP_EDGE_REMOVAL : TM_OP_BOUNDARY_SWAP]++;
     return m->status == TM_OK;
 }
 
@@ -176,7 +176,7 @@ static bool remove_faces(tm_improver *m)
     if (m->status != TM_OK)
         return false;
     tm_improve_note(m, m->created, what.count);
-    m->report->done[TM_OP_FACE_REMOVAL]++;
+    m->report->done.op[TM_OP_FACE_REMOVAL]++;
     return true;
 }
 

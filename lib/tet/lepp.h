@@ -86,15 +86,15 @@ typedef struct tm_lepp_report {
     size_t closed, open;   /* terminal stars looked at */
     size_t refused_closed, refused_open;
     size_t outside,
-        tangled;         /* centroids outside of their star, or not seeing all of it */
-    size_t locked;       /* stars where the mesh is not manifold, or flat twice */
-    size_t above_max;    /* stars left alone because of max_star */
-    size_t no_room;      /* stars left alone because of max_growth */
-    size_t too_large;    /* closed stars too large for an edge removal */
-    size_t no_swap;      /* closed stars whose edge no valid removal takes */
-    size_t most_visited; /* stars for one target */
-    size_t abandoned;    /* targets left after TM_LEPP_VISITS_MAX stars */
-    size_t angle_kept;   /* with sweeps: stars left for the mesh's extreme angles */
+        tangled;      /* centroids outside of their star, or not seeing all of it */
+    size_t locked;    /* stars where the mesh is not manifold, or flat twice */
+    size_t above_max; /* stars left alone because of max_star */
+    size_t no_room;   /* stars left alone because of max_growth */
+    size_t too_large; /* closed stars too large for an edge removal */
+    size_t no_swap;   /* closed stars whose edge no valid removal takes */
+    size_t visits, most_visited; /* stars for all targets, and for one */
+    size_t abandoned;            /* targets left after TM_LEPP_VISITS_MAX stars */
+    size_t angle_kept; /* with sweeps: stars left for the mesh's extreme angles */
     size_t closed_size[TM_LEPP_SIZES], open_size[TM_LEPP_SIZES];
     size_t swap_size[TM_LEPP_SIZES], insertion_size[TM_LEPP_SIZES];
     size_t open_insertion_size[TM_LEPP_SIZES];

@@ -188,6 +188,7 @@ tm_status tm_lepp_follow(tm_lepp_engine *e, uint32_t target)
         status = go_on(e, is_needed, &visited);
     }
     e->report->targets++;
+    e->report->visits += visited;
     e->report->visited[tm_lepp_bin(visited, TM_LEPP_VISITS)]++;
     if (visited > e->report->most_visited)
         e->report->most_visited = visited;

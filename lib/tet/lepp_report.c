@@ -64,6 +64,7 @@ static void stars_json(tm_json *json, const tm_lepp_options *o, const tm_lepp_re
     sizes_json(json, r);
     tm_json_integer(json, "too_large_to_swap", (int64_t)r->too_large);
     histogram(json, "visited", r->visited, TM_LEPP_VISITS);
+    tm_json_integer(json, "visits", (int64_t)r->visits);
     tm_json_integer(json, "most_visited", (int64_t)r->most_visited);
     if (o->path == TM_LEPP_FULL)
         histogram(json, "branches", r->branches, TM_LEPP_VISITS);

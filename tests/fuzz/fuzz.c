@@ -8,6 +8,7 @@
  * Every FILTER_EVERY-th case goes through the filters: no signal, no report of a
  * sanitizer, no other exit status than 0, 1 and 3. No case may take longer than SECONDS.
  * TM_SEED repeats a run. The first case that fails is kept in a file. */
+#include "../../lib/tet/improve.h"
 #include "../../lib/tet/lepp.h"
 #include "../unit/random.h"
 #include "damage.h"
@@ -37,7 +38,12 @@ static const command commands[] = {
     {"tet-stats", {"--list", INPUT}, false},
     {"tet-stats", {INPUT, INPUT}, false},
     {"lepp-improve", {INPUT}, false},
-    {"lepp-improve", {"-Q", "volume", "-m", "1", INPUT}, false},
+    {"lepp-improve", {"-t", "45", "--max-growth", "0.5", INPUT}, true},
+    {"lepp-improve", {"-a", "selective", "-Q", "volume", "-m", "1", INPUT}, false},
+    {"lepp-improve",
+     {"-a", "selective", "--with", "both", "--path", "full", INPUT},
+     false},
+    {"lepp-improve", {"-a", "delaunay", "--max-growth", "3", INPUT}, false},
     {"mesh-check", {INPUT}, false},
     {"tetgen-export", {"out", INPUT}, false},
     {"tetgen-import", {BASE}, false},
@@ -122,26 +128,50 @@ static bool is_compact(const tm_tet_mesh *mesh)
     return true;
 }
 
-/* An improved mesh is a mesh. */
-static void check_improvement(tm_stream *stream)
+/* Along paths, in one way or another. */
+static tm_status improve_stars(tm_tet_mesh *mesh, tm_error *error)
 {
-    static const double factor = 1.1, angle = 30;
-    tm_tet_mesh mesh;
-    tm_error error;
+    static const double factor = 1.1, angle = 30, growth = 4;
     tm_lepp_report report;
     tm_lepp_options options = {.algorithm = TM_LEPP_SELECTIVE,
                                .factor = factor,
                                .angle = angle,
                                .measure = random_below(2) ? TM_MEASURE_DIHEDRAL
                                                           : TM_MEASURE_VOLUME,
+                               .path = random_below(2) ? TM_LEPP_SIMPLE : TM_LEPP_FULL,
+                               .sweeps = random_below(4),
                                .stop = TM_LEPP_PASSES,
                                .passes = 2};
+    if (random_below(2) && is_compact(mesh)) {
+        options.sweeps = 0;
+        options.max_growth = growth;
+        options.algorithm = random_below(2) ? TM_LEPP_SWAP_CENTROID : TM_LEPP_DELAUNAY;
+    }
+    return tm_lepp_improve(mesh, &options, &report, error);
+}
+
+static tm_status improve_all(tm_tet_mesh *mesh, tm_error *error)
+{
+    static const double angle[] = {30, 45};
+    tm_improve_report report;
+    tm_improve_options options = {.angle = angle[random_below(2)],
+                                  .measure = random_below(2) ? TM_MEASURE_DIHEDRAL
+                                                             : TM_MEASURE_VOLUME,
+                                  .ops = TM_IMPROVE_ALL_OPS,
+                                  .max_growth = random_below(5) / 2.0};
+    return tm_improve(mesh, &options, &report, error);
+}
+
+/* An improved mesh is a mesh. */
+static void check_improvement(tm_stream *stream)
+{
+    tm_tet_mesh mesh;
+    tm_error error;
     tm_status status = tm_tet_mesh_take(&mesh, stream, &error);
     if (status == TM_OK) {
         require(tm_tet_mesh_check(&mesh, &error) == TM_OK, "a mesh that is none");
-        if (random_below(2) && is_compact(&mesh))
-            options.algorithm = TM_LEPP_SWAP_CENTROID;
-        status = tm_lepp_improve(&mesh, &options, &report, &error);
+        status =
+            random_below(2) ? improve_stars(&mesh, &error) : improve_all(&mesh, &error);
         require(status == TM_OK, "the improvement fails");
         if (tm_tet_mesh_check(&mesh, &error) != TM_OK)
             require(false, error.what);

@@ -104,7 +104,7 @@ static void operate_on(bool regions, tm_tet_measure measure, size_t done[TM_IMPR
     assert_true(angles_after.least >= angles_before.least);
     assert_true(angles_after.most <= angles_before.most);
     for (int op = 0; op < TM_IMPROVE_OPS; op++)
-        done[op] += report.done[op];
+        done[op] += report.done.op[op];
     assert_int_equal(tm_tet_mesh_give(&mesh, &stream, &error), TM_OK);
     assert_int_equal(tm_tet_mesh_take(&mesh, &stream, &error), TM_OK);
     assert_valid(&mesh);
@@ -159,7 +159,7 @@ static tm_improve_report run(tm_tet_mesh *mesh, const tm_improve_options *option
         assert_int_equal(report.too_large, (double)mesh->tets > most);
     for (int op = 0; op < TM_IMPROVE_OPS; op++)
         if (!(options->ops >> op & 1))
-            assert_int_equal(report.done[op], 0);
+            assert_int_equal(report.done.op[op], 0);
     return report;
 }
 
