@@ -132,8 +132,9 @@ static void coarsen_once(tm_improver *m)
 /* Makes the mesh as small as is asked for, by a price that rises. */
 static void coarsen(tm_improver *m)
 {
-    const double highest = 1e3;
-    for (double price = insertion_price; price < highest; price *= 2) {
+    enum { DOUBLINGS = 14 };
+    double price = insertion_price;
+    for (int k = 0; k < DOUBLINGS; k++, price *= 2) {
         if (m->mesh->tets <= m->most_tets || !tm_improve_has(m, TM_OP_CONTRACTION))
             break;
         tm_improve_set_price(m, price);
@@ -159,15 +160,16 @@ static size_t keep_best(tm_improver *m)
  * bad is kicked too. */
 static void kick_once(tm_improver *m, double price)
 {
-    double degrees = m->degrees, wider = degrees + wider_by * (m->fails / CYCLE);
+    unsigned cycle = m->fails / CYCLE;
+    double degrees = m->degrees, wider = degrees + wider_by * cycle;
     tm_improve_set_price(m, price);
     m->cost.target = tm_improve_target(m, wider);
     run_pass(m, ALL);
     m->cost.target = tm_improve_target(m, degrees);
 }
 
-/* Kicks, and after each what is good for the mesh again; as long as
- * that leaves fewer bad ones. For few of them it is cheap to insist. */
+/* Kicks, and after each what is good for the mesh again; as long as that leaves fewer bad
+ * ones. For few of them it is cheap to insist. */
 static void kick(tm_improver *m)
 {
     bool converge = m->options->converge;

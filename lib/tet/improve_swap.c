@@ -122,9 +122,9 @@ static bool remove_edge(tm_improver *m)
     tm_star part[2];
     tm_face_renewal renewal[2];
     int parts = take_apart(m, part);
-    bool inside = part[0].closed;
-    if (!tm_improve_reserve(m, 2 * m->star.size, 0))
+    if (parts == 0 || !tm_improve_reserve(m, 2 * m->star.size, 0))
         return false;
+    bool inside = part[0].closed;
     if (!tm_replacement_table_reserve(&m->table, m->star.size, 2 * m->star.size))
         return tm_improve_no_memory(m);
     for (int k = 0; k < parts && m->status == TM_OK; k++) {
