@@ -14,7 +14,7 @@ static const double insertion_price = 0.1, kick_price = -1, kick_price_most = -4
  * converge, this least one. */
 static const double enough_gain = 0.05, least_gain = 0.002;
 
-enum { PASSES_MAX = 8, KICKS_MAX = 1000, FEW = 100 };
+enum { PASSES_MAX = 8, KICKS_MAX = 1000, FEW = 100, MANY = 1000 };
 
 /* Kicks that fail one after the other differ within a cycle; `wider_by` is in degrees. */
 enum { CYCLE = 12, FAILS_MAX = 3 * CYCLE };
@@ -157,15 +157,18 @@ static size_t keep_best(tm_improver *m)
 }
 
 /* Growth that costs less than nothing. Where a cycle of kicks has failed, what is nearly
- * bad is kicked too. */
-static void kick_once(tm_improver *m, double price)
+ * bad is kicked too; false where that is too many. */
+static bool kick_once(tm_improver *m, double price)
 {
     unsigned cycle = m->fails / CYCLE;
-    double degrees = m->degrees, wider = degrees + wider_by * cycle;
+    double target = m->cost.target;
     tm_improve_set_price(m, price);
-    m->cost.target = tm_improve_target(m, wider);
-    run_pass(m, ALL);
-    m->cost.target = tm_improve_target(m, degrees);
+    m->cost.target = tm_improve_target(m, m->degrees + wider_by * cycle);
+    bool cheap = cycle == 0 || m->options->converge || count_bad(m) <= MANY;
+    if (cheap)
+        run_pass(m, ALL);
+    m->cost.target = target;
+    return cheap;
 }
 
 /* Kicks, and after each what is good for the mesh again; as long as that leaves fewer bad
@@ -177,7 +180,8 @@ static void kick(tm_improver *m)
     size_t after = keep_best(m);
     for (int k = 0; k < KICKS_MAX && after > 0 && !is_over(m); k++) {
         size_t before = after;
-        kick_once(m, price);
+        if (!kick_once(m, price))
+            break;
         if (m->fails % 2 == 0)
             settle(m, MOVE, 0);
         settle(m, ALL, 0);
