@@ -230,6 +230,9 @@ tm_status tm_improve_start(tm_improver *m, tm_tet_mesh *mesh,
     m->most_tets = tm_tet_mesh_most(mesh, options->max_growth);
     m->cost.measure = m->options->measure;
     m->cost.weight = cost_weight;
+    m->status = tm_features_find(&m->features, mesh, &m->marks, m->error);
+    if (m->status != TM_OK)
+        return m->status;
     if (!reserve_nodes(m, mesh->nodes + 1) || !reserve_tets(m, mesh->slots + 1)) {
         tm_improve_no_memory(m);
         return m->status;
@@ -237,12 +240,10 @@ tm_status tm_improve_start(tm_improver *m, tm_tet_mesh *mesh,
     m->space = tm_space_around((const double(*)[3])mesh->xyz, mesh->nodes);
     note_all(m);
     find_limits(m);
-    m->status = tm_features_find(&m->features, mesh, &m->marks, m->error);
-    for (size_t v = 0; v < mesh->nodes && m->status == TM_OK; v++)
+    for (size_t v = 0; v < mesh->nodes; v++)
         m->report->nodes_free[m->features.dimension[v]] += m->tet_at[v] != TM_NONE;
-    if (m->status == TM_OK)
-        tm_improve_set_target(m, options->angle);
-    return m->status;
+    tm_improve_set_target(m, options->angle);
+    return TM_OK;
 }
 
 void tm_improve_finish(tm_improver *m)
