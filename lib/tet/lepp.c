@@ -79,7 +79,7 @@ static void keep_targets(tm_lepp_engine *e)
     }
     e->targets = kept;
     for (size_t i = 0; i < kept; i++)
-        e->mark[e->target[i]] &= (uint8_t)~TM_LEPP_QUEUED;
+        e->mark[e->target[i]] &= (uint16_t)~TM_LEPP_QUEUED;
 }
 
 static tm_status run_passes(tm_lepp_engine *e)
@@ -96,6 +96,14 @@ static tm_status run_passes(tm_lepp_engine *e)
     return status;
 }
 
+/* Makes the edges refinable again that are only refused. */
+static void start_round(tm_lepp_engine *e)
+{
+    for (size_t t = 0; t < e->mesh->slots; t++)
+        if (!(e->mark[t] & TM_LEPP_SETTLED))
+            e->mark[t] &= (uint16_t)~TM_LEPP_BLOCKED;
+}
+
 /* Algorithm 7.1: sweeps, then one pass with no edge blocked; so many times, or until
  * neither changes anything. */
 static tm_status run_with_sweeps(tm_lepp_engine *e)
@@ -108,7 +116,7 @@ static tm_status run_with_sweeps(tm_lepp_engine *e)
     bool idle = false;
     while (status == TM_OK && !idle && e->report->passes < most) {
         size_t before = tm_lepp_changes(e->report);
-        e->round++;
+        start_round(e);
         if (o->sweeps & TM_SWEEP_SMOOTH)
             status = tm_lepp_smooth(e);
         if (status == TM_OK && o->sweeps & TM_SWEEP_SWAP)
@@ -132,7 +140,7 @@ static tm_status run_until_converged(tm_lepp_engine *e)
     tm_status status = find_targets(e);
     do {
         fresh = tm_lepp_operations(e->report);
-        e->round++;
+        start_round(e);
         do {
             before = tm_lepp_operations(e->report);
             if (status == TM_OK)
@@ -158,7 +166,7 @@ static tm_status run(tm_lepp_engine *e)
 bool tm_lepp_reserve(tm_lepp_engine *e, size_t more)
 {
     size_t slots = e->mesh->slots + more;
-    uint8_t *mark = tm_grow(e->mark, &e->mark_room, slots, sizeof *mark);
+    uint16_t *mark = tm_grow(e->mark, &e->mark_room, slots, sizeof *mark);
     e->mark = mark ? mark : e->mark;
     double *quality = tm_grow(e->quality, &e->quality_room, slots, sizeof *quality);
     e->quality = quality ? quality : e->quality;
@@ -182,10 +190,7 @@ static tm_status start(tm_lepp_engine *e)
     }
     if (e->options->sweeps)
         tm_lepp_measure_angles(e);
-    /* As many edges as that are refused; later growth would cost a second table. */
-    return tm_edge_map_reserve(&e->refused, e->report->bad_before)
-               ? TM_OK
-               : tm_fail_memory(e->error);
+    return TM_OK;
 }
 
 static void finish(tm_lepp_engine *e)
@@ -201,7 +206,7 @@ static void free_engine(tm_lepp_engine *e)
 {
     free(e->mark);
     free(e->quality);
-    tm_edge_map_free(&e->refused);
+    tm_star_free(&e->around);
     for (size_t i = 0; i < e->path_room; i++)
         tm_star_free(&e->path[i].star);
     free(e->path);

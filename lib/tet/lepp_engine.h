@@ -19,8 +19,21 @@
 enum { TM_LEPP_VISITS_MAX = 100000 };
 
 /* What is remembered of each tetrahedron beside its quality: its longest edge, 0 … 5, and
- * these bits. One byte, because paths look at it most. */
-enum { TM_LEPP_LONGEST = 7, TM_LEPP_BAD = 8, TM_LEPP_QUEUED = 16 };
+ * these bits. Two bytes, because paths look at it most.
+ *
+ * An edge is refused from when nothing was done at its star until that star changes. All
+ * tetrahedra around have a bit for it: a hash table of edges would be asked for something
+ * that is not there most of the time. Those whose longest edge it is have BLOCKED too
+ * where it is not refinable in this round, and SETTLED where it is that in all later
+ * ones. */
+enum {
+    TM_LEPP_LONGEST = 7,
+    TM_LEPP_BAD = 1 << 3,
+    TM_LEPP_QUEUED = 1 << 4,
+    TM_LEPP_BLOCKED = 1 << 5,
+    TM_LEPP_SETTLED = 1 << 6,
+    TM_LEPP_REFUSED = 1 << 8 /* edge 0; edge k is k bits above */
+};
 
 /* A step of the path: the tetrahedron and its longest edge, and how far the star of that
  * has been searched for the next step. */
@@ -55,15 +68,11 @@ typedef struct tm_lepp_engine {
     tm_error *error;
     double bad_below; /* sin² */
     size_t most_tets; /* the mesh never grows beyond */
-    uint8_t *mark;    /* [mesh->slots] */
+    uint16_t *mark;   /* [mesh->slots] */
     double *quality;  /* [mesh->slots], by options->measure */
     size_t mark_room, quality_room;
 
-    /* Edges whose star has not changed since it was refused, with the round in which it
-     * was found so: those of the current round are the non-refinable ones. */
-    tm_edge_map refused;
-    uint32_t round;
-
+    tm_star around;     /* of an edge that is made refinable */
     tm_lepp_step *path; /* [path_room]; the stars keep their memory */
     tm_tet_marks graph; /* TM_LEPP_FULL: tetrahedra of the target's Lepp3D */
     size_t depth, path_room;
@@ -89,8 +98,9 @@ bool tm_lepp_reserve(tm_lepp_engine *e, size_t more);
  * False where memory is out. */
 bool tm_lepp_note(tm_lepp_engine *e, const uint32_t *tet, size_t count);
 
-/* Makes the edges of tetrahedra refinable again. */
-void tm_lepp_unblock(tm_lepp_engine *e, const uint32_t *tet, size_t count);
+/* Makes the edges of tetrahedra that were measured anew refinable again; false where
+ * memory is out. */
+bool tm_lepp_unblock(tm_lepp_engine *e, const uint32_t *tet, size_t count);
 
 /* Appends a tetrahedron to S; false where memory is out. */
 bool tm_lepp_add_target(tm_lepp_engine *e, uint32_t t);
@@ -122,10 +132,10 @@ static inline bool tm_lepp_may_grow(const tm_lepp_engine *e, size_t more)
     return e->mesh->tets + more <= e->most_tets;
 }
 
-static inline bool tm_lepp_is_blocked(const tm_lepp_engine *e, uint32_t a, uint32_t b)
+/* Whether the longest edge of a tetrahedron is not refinable. */
+static inline bool tm_lepp_is_blocked(const tm_lepp_engine *e, uint32_t t)
 {
-    const uint32_t *round = tm_edge_map_get(&e->refused, a, b);
-    return round && *round == e->round;
+    return e->mark[t] & TM_LEPP_BLOCKED;
 }
 
 /* Where a value is counted in a histogram whose last bin is for all larger ones. */

@@ -12,6 +12,14 @@
  * alone may undo each other for ever, insertions end as bisection does. */
 enum { SWAPS_PER_TARGET = 64 };
 
+/* The bits of all six edges, and those of the three of each face. */
+enum { ALL_REFUSED = 63 * TM_LEPP_REFUSED };
+static const unsigned edges_of_face[4] = {
+    TM_LEPP_REFUSED << 3 | TM_LEPP_REFUSED << 4 | TM_LEPP_REFUSED << 5,
+    TM_LEPP_REFUSED << 1 | TM_LEPP_REFUSED << 2 | TM_LEPP_REFUSED << 5,
+    TM_LEPP_REFUSED << 0 | TM_LEPP_REFUSED << 2 | TM_LEPP_REFUSED << 4,
+    TM_LEPP_REFUSED << 0 | TM_LEPP_REFUSED << 1 | TM_LEPP_REFUSED << 3};
+
 /* What is to be done with a terminal star. */
 typedef enum { REFUSE, REMOVE_EDGE, INSERT_CENTROID, INSERT_MIDPOINT } operation;
 
@@ -48,7 +56,7 @@ void tm_lepp_measure(tm_lepp_engine *e, uint32_t t)
                         ? sine2
                         : tm_tet_measure_of(e->options->measure, a, b, c, d);
     e->mark[t] =
-        (uint8_t)(longest_edge(mesh, t) | (sine2 < e->bad_below ? TM_LEPP_BAD : 0));
+        (uint16_t)(longest_edge(mesh, t) | (sine2 < e->bad_below ? TM_LEPP_BAD : 0));
 }
 
 /* How good the tetrahedra must be that replace the star. */
@@ -237,16 +245,58 @@ static void count_star(tm_lepp_engine *e, const tm_star *star, bool is_free,
     r->open_insertion_size[size] += !star->closed && inserted;
 }
 
-/* Frees the edges of the tetrahedra that an operation made. Those that it made new were
- * never blocked, and the one it removed was not: a path does not lead there. */
-static void unblock_star(tm_lepp_engine *e, const tm_star *star)
+/* Makes those of the edges of t refinable whose bits are given. */
+static bool unblock_edges(tm_lepp_engine *e, uint32_t t, unsigned edges)
 {
-    for (size_t i = 0; i <= star->size; i++) {
-        tm_edge_map_remove(&e->refused, star->a, star->ring[i]);
-        tm_edge_map_remove(&e->refused, star->b, star->ring[i]);
-        if (i < star->size)
-            tm_edge_map_remove(&e->refused, star->ring[i], star->ring[i + 1]);
+    for (unsigned left = e->mark[t] & edges; left != 0; left &= left - 1) {
+        unsigned edge = (unsigned)__builtin_ctz(left / TM_LEPP_REFUSED);
+        tm_star *star = &e->around;
+        if (!tm_star_around(e->mesh, t, edge, star))
+            return false;
+        for (size_t i = 0; i < star->size; i++) {
+            uint16_t *mark = &e->mark[star->tet[i]];
+            unsigned gone = (unsigned)TM_LEPP_REFUSED << star->edge[i];
+            if ((*mark & TM_LEPP_LONGEST) == star->edge[i])
+                gone |= TM_LEPP_BLOCKED | TM_LEPP_SETTLED;
+            *mark &= (uint16_t)~gone;
+        }
     }
+    return true;
+}
+
+/* The same for a star that is about to change: the edges on its outside. The one that
+ * goes is not refused: a path does not lead there. */
+static bool unblock_star(tm_lepp_engine *e, const tm_star *star)
+{
+    for (size_t i = 0; i < star->size; i++)
+        if (!unblock_edges(e, star->tet[i], ALL_REFUSED))
+            return false;
+    return true;
+}
+
+/* Nothing is done at a star: its edge is refused, and not refinable in this round. With
+ * selective it stays so until the star changes if it is the longest edge of all around:
+ * to come back in another round would find the same. (The other algorithms may not leave
+ * that out: swap-centroid counts how often it was somewhere.) */
+static void block(tm_lepp_engine *e, const tm_star *star)
+{
+    bool is_longest = true;
+    for (size_t i = 0; i < star->size; i++)
+        is_longest &= (e->mark[star->tet[i]] & TM_LEPP_LONGEST) == star->edge[i];
+    bool settled = is_longest && e->options->algorithm == TM_LEPP_SELECTIVE;
+    unsigned blocked = TM_LEPP_BLOCKED | (settled ? TM_LEPP_SETTLED : 0);
+    for (size_t i = 0; i < star->size; i++) {
+        uint16_t *mark = &e->mark[star->tet[i]];
+        unsigned more = (unsigned)TM_LEPP_REFUSED << star->edge[i];
+        if ((*mark & TM_LEPP_LONGEST) == star->edge[i])
+            more |= blocked;
+        *mark |= (uint16_t)more;
+    }
+}
+
+static bool is_refused(const tm_lepp_engine *e, const tm_star *star)
+{
+    return e->mark[star->tet[0]] & TM_LEPP_REFUSED << star->edge[0];
 }
 
 bool tm_lepp_note(tm_lepp_engine *e, const uint32_t *tet, size_t count)
@@ -262,14 +312,18 @@ bool tm_lepp_note(tm_lepp_engine *e, const uint32_t *tet, size_t count)
     return true;
 }
 
-void tm_lepp_unblock(tm_lepp_engine *e, const uint32_t *tet, size_t count)
+/* They have no marks of refused edges any more; but what else is around such an edge has,
+ * and of that a neighbour of them is a part. */
+bool tm_lepp_unblock(tm_lepp_engine *e, const uint32_t *tet, size_t count)
 {
-    for (size_t i = 0; i < count && e->refused.count > 0; i++) {
-        const uint32_t *n = e->mesh->tet[tet[i]];
-        for (int k = 0; k < TM_TET_EDGES; k++)
-            tm_edge_map_remove(&e->refused, n[tm_edge_corner[k][0]],
-                               n[tm_edge_corner[k][1]]);
-    }
+    for (size_t i = 0; i < count; i++)
+        for (uint32_t k = 0; k < 4; k++) {
+            uint32_t across = tm_tet_across(e->mesh, tet[i], k);
+            if (across != TM_NONE &&
+                !unblock_edges(e, across / 4, edges_of_face[across % 4]))
+                return false;
+        }
+    return true;
 }
 
 /* Inserts the midpoint by its Delaunay cavity. */
@@ -283,8 +337,7 @@ static tm_status change_by_cavity(tm_lepp_engine *e, const tm_star *star,
     e->operations++;
     if (!tm_lepp_reserve(e, 0) || !tm_lepp_note(e, d->created, d->made))
         return tm_fail_memory(e->error);
-    tm_lepp_unblock(e, d->created, d->made);
-    return TM_OK;
+    return tm_lepp_unblock(e, d->created, d->made) ? TM_OK : tm_fail_memory(e->error);
 }
 
 /* Changes the star as chosen; measures what was made. */
@@ -294,7 +347,7 @@ static tm_status change(tm_lepp_engine *e, const tm_star *star, operation chosen
     if (e->options->algorithm == TM_LEPP_DELAUNAY)
         return change_by_cavity(e, star, p);
     size_t made = 2 * star->size;
-    if (!tm_lepp_reserve(e, made))
+    if (!tm_lepp_reserve(e, made) || !unblock_star(e, star))
         return tm_fail_memory(e->error);
     tm_status status;
     if (chosen == REMOVE_EDGE) {
@@ -306,7 +359,6 @@ static tm_status change(tm_lepp_engine *e, const tm_star *star, operation chosen
     }
     if (status != TM_OK)
         return status;
-    unblock_star(e, star);
     e->operations++;
     return tm_lepp_note(e, e->created, made) ? TM_OK : tm_fail_memory(e->error);
 }
@@ -314,13 +366,11 @@ static tm_status change(tm_lepp_engine *e, const tm_star *star, operation chosen
 tm_status tm_lepp_process_star(tm_lepp_engine *e, const tm_star *star, size_t visited)
 {
     double p[3];
-    uint32_t a = star->a, b = star->b;
     tm_lepp_algorithm algorithm = e->options->algorithm;
     bool may_swap = algorithm == TM_LEPP_SELECTIVE ||
                     (algorithm == TM_LEPP_SWAP_CENTROID && visited <= SWAPS_PER_TARGET);
-    uint32_t *round = tm_edge_map_get(&e->refused, a, b);
-    if (round) {
-        *round = e->round;
+    if (is_refused(e, star)) {
+        block(e, star);
         return TM_OK;
     }
     bool is_free = tm_star_is_free(e->mesh, star);
@@ -335,8 +385,6 @@ tm_status tm_lepp_process_star(tm_lepp_engine *e, const tm_star *star, size_t vi
     count_star(e, star, is_free, chosen);
     if (chosen != REFUSE)
         return change(e, star, chosen, p);
-    if (!tm_edge_map_reserve(&e->refused, 1))
-        return tm_fail_memory(e->error);
-    tm_edge_map_put(&e->refused, a, b, e->round);
+    block(e, star);
     return TM_OK;
 }

@@ -10,10 +10,15 @@ const uint8_t tm_edge_corner[6][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2},
 
 enum { CORNER_SUM = 0 + 1 + 2 + 3 };
 
+/* The edge between two corners. */
+static const uint8_t edge_between[4][4] = {
+    {0, 0, 1, 2}, {0, 0, 3, 4}, {1, 3, 0, 5}, {2, 4, 5, 0}};
+
 void tm_star_free(tm_star *star)
 {
     free(star->tet);
     free(star->ring);
+    free(star->edge);
     *star = (tm_star){0};
 }
 
@@ -32,6 +37,11 @@ static bool reserve(tm_star *star, size_t needed)
     if (!ring)
         return false;
     star->ring = ring;
+    size_t edge_room = star->room;
+    uint8_t *edge = tm_grow(star->edge, &edge_room, room, sizeof *edge);
+    if (!edge)
+        return false;
+    star->edge = edge;
     star->room = room;
     return true;
 }
@@ -58,11 +68,22 @@ static int walk(const tm_tet_mesh *mesh, uint32_t t, uint32_t behind, tm_star *s
         __builtin_prefetch(mesh->neighbour[u]);
         if (!reserve(star, star->size + 2))
             return -1;
+        uint32_t a = tm_tet_corner(mesh, u, star->a);
+        uint32_t b = tm_tet_corner(mesh, u, star->b);
+        star->edge[star->size] = edge_between[a][b];
         star->tet[star->size++] = u;
         star->ring[star->size] = mesh->tet[u][ahead];
-        behind = CORNER_SUM - ahead - tm_tet_corner(mesh, u, star->a) -
-                 tm_tet_corner(mesh, u, star->b);
+        behind = CORNER_SUM - ahead - a - b;
         t = u;
+    }
+}
+
+static void reverse_bytes(uint8_t *item, size_t count)
+{
+    for (size_t i = 0; i < count / 2; i++) {
+        uint8_t swap = item[i];
+        item[i] = item[count - 1 - i];
+        item[count - 1 - i] = swap;
     }
 }
 
@@ -85,6 +106,7 @@ bool tm_star_around(const tm_tet_mesh *mesh, uint32_t t, unsigned e, tm_star *st
     star->b = n[corner[1]];
     star->kept_face = false;
     star->tet[0] = t;
+    star->edge[0] = (uint8_t)e;
     star->ring[0] = n[corner[2]];
     star->ring[1] = n[corner[3]];
     star->size = 1;
@@ -95,10 +117,12 @@ bool tm_star_around(const tm_tet_mesh *mesh, uint32_t t, unsigned e, tm_star *st
     /* Open: what lies before t is found by walking back, and goes in front. */
     size_t after = star->size;
     reverse(star->tet, after);
+    reverse_bytes(star->edge, after);
     reverse(star->ring, after + 1);
     if (walk(mesh, t, corner[3], star) < 0)
         return false;
     reverse(star->tet, star->size);
+    reverse_bytes(star->edge, star->size);
     reverse(star->ring, star->size + 1);
     return true;
 }
