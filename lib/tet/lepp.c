@@ -177,12 +177,20 @@ bool tm_lepp_reserve(tm_lepp_engine *e, size_t more)
 
 static tm_status start(tm_lepp_engine *e)
 {
+    enum { SOME = 64 };
     tm_tet_mesh *mesh = e->mesh;
     if (!tm_lepp_reserve(e, 0))
         return tm_fail_memory(e->error);
-    for (uint32_t t = 0; t < mesh->slots; t++)
+    uint32_t some[SOME];
+    size_t count = 0;
+    for (uint32_t t = 0; t < mesh->slots; t++) {
         if (tm_tet_lives(mesh, t))
-            tm_lepp_measure(e, t);
+            some[count++] = t;
+        if (count == SOME || t + 1 == mesh->slots) {
+            tm_lepp_measure(e, some, count);
+            count = 0;
+        }
+    }
     e->report->bad_before = count_bad(e);
     if (e->options->algorithm == TM_LEPP_DELAUNAY) {
         e->delaunay = tm_delaunay_for(mesh);

@@ -87,8 +87,8 @@ typedef struct tm_lepp_engine {
     tm_lepp_sweeper sweeper;
 } tm_lepp_engine;
 
-/* Measures a tetrahedron: its mark and quality. */
-void tm_lepp_measure(tm_lepp_engine *e, uint32_t t);
+/* Measures tetrahedra: their marks and qualities. */
+void tm_lepp_measure(tm_lepp_engine *e, const uint32_t *tet, size_t count);
 
 /* Room in the engine's arrays for so many more slots, and created tetrahedra; false where
  * memory is out. */

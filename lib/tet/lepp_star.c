@@ -4,6 +4,7 @@
 
 #include "../geom/predicates.h"
 #include "../geom/vector.h"
+#include "mesh_measure.h"
 #include "star_insertion.h"
 
 #include <float.h>
@@ -23,40 +24,27 @@ static const unsigned edges_of_face[4] = {
 /* What is to be done with a terminal star. */
 typedef enum { REFUSE, REMOVE_EDGE, INSERT_CENTROID, INSERT_MIDPOINT } operation;
 
-/* The longest edge of a tetrahedron, 0 … 5. */
-static uint8_t longest_edge(const tm_tet_mesh *mesh, uint32_t t)
-{
-    const uint32_t *n = mesh->tet[t];
-    unsigned longest = 0;
-    double longest_length = -1;
-    uint64_t longest_key = 0;
-    for (unsigned e = 0; e < 6; e++) {
-        uint32_t a = n[tm_edge_corner[e][0]], b = n[tm_edge_corner[e][1]];
-        double length = tm_distance2(mesh->xyz[a], mesh->xyz[b]);
-        if (length < longest_length)
-            continue;
-        uint64_t key = tm_edge_key(a, b);
-        if (length > longest_length || key > longest_key) {
-            longest = e;
-            longest_length = length;
-            longest_key = key;
-        }
-    }
-    return (uint8_t)longest;
-}
-
-void tm_lepp_measure(tm_lepp_engine *e, uint32_t t)
+void tm_lepp_measure(tm_lepp_engine *e, const uint32_t *tet, size_t count)
 {
     const tm_tet_mesh *mesh = e->mesh;
-    const uint32_t *n = mesh->tet[t];
-    const double *a = mesh->xyz[n[0]], *b = mesh->xyz[n[1]];
-    const double *c = mesh->xyz[n[2]], *d = mesh->xyz[n[3]];
-    double sine2 = tm_tet_sine2(a, b, c, d);
-    e->quality[t] = e->options->measure == TM_MEASURE_DIHEDRAL
-                        ? sine2
-                        : tm_tet_measure_of(e->options->measure, a, b, c, d);
-    e->mark[t] =
-        (uint16_t)(longest_edge(mesh, t) | (sine2 < e->bad_below ? TM_LEPP_BAD : 0));
+    double sine2[TM_MEASURED_AT_ONCE];
+    uint8_t longest[TM_MEASURED_AT_ONCE];
+    for (size_t i = 0, some; i < count; i += some) {
+        some = count - i < TM_MEASURED_AT_ONCE ? count - i : TM_MEASURED_AT_ONCE;
+        tm_tet_mesh_measure(mesh, tet + i, some, sine2, longest);
+        for (size_t k = 0; k < some; k++) {
+            uint32_t t = tet[i + k];
+            e->quality[t] = sine2[k];
+            e->mark[t] =
+                (uint16_t)(longest[k] | (sine2[k] < e->bad_below ? TM_LEPP_BAD : 0));
+        }
+    }
+    for (size_t i = 0; i < count && e->options->measure != TM_MEASURE_DIHEDRAL; i++) {
+        const uint32_t *n = mesh->tet[tet[i]];
+        e->quality[tet[i]] =
+            tm_tet_measure_of(e->options->measure, mesh->xyz[n[0]], mesh->xyz[n[1]],
+                              mesh->xyz[n[2]], mesh->xyz[n[3]]);
+    }
 }
 
 /* How good the tetrahedra must be that replace the star. */
@@ -73,18 +61,20 @@ static double least_quality(const tm_lepp_engine *e, const tm_star *star)
 }
 
 /* Chooses the point to insert: the centroid where it is allowed and valid, else the
- * midpoint. REFUSE where that is not valid either. */
+ * midpoint. REFUSE where that is not valid either. *quality is what its insertion would
+ * make, or 0 where that is below `least`. */
 static operation choose_point(tm_lepp_engine *e, const tm_star *star, bool is_free,
-                              double p[3])
+                              double least, double p[3], double *quality)
 {
     const tm_tet_mesh *mesh = e->mesh;
     tm_lepp_algorithm algorithm = e->options->algorithm;
+    tm_tet_measure measure = e->options->measure;
     if (algorithm != TM_LEPP_BISECTION && algorithm != TM_LEPP_DELAUNAY && is_free) {
         if (algorithm == TM_LEPP_WCENTROID)
             tm_star_wcentroid(mesh, star, p);
         else
             tm_star_centroid(mesh, star, p);
-        if (tm_star_sees(mesh, star, p))
+        if (tm_star_try_insertion(mesh, star, p, measure, least, quality))
             return INSERT_CENTROID;
         if (tm_star_contains(mesh, star, p))
             e->report->tangled++;
@@ -92,7 +82,8 @@ static operation choose_point(tm_lepp_engine *e, const tm_star *star, bool is_fr
             e->report->outside++;
     }
     tm_star_midpoint(mesh, star, p);
-    return tm_star_sees(mesh, star, p) ? INSERT_MIDPOINT : REFUSE;
+    return tm_star_try_insertion(mesh, star, p, measure, least, quality) ? INSERT_MIDPOINT
+                                                                         : REFUSE;
 }
 
 /* Whether the two tetrahedra on triangle i k j of the ring are positive. */
@@ -141,9 +132,7 @@ static operation choose(tm_lepp_engine *e, const tm_star *star, bool is_free,
     double least = least_quality(e, star), inserted = 0;
     if (least == HUGE_VAL)
         return REFUSE;
-    operation insertion = choose_point(e, star, is_free, p);
-    if (insertion != REFUSE)
-        inserted = tm_star_insertion_quality(mesh, star, p, e->options->measure, least);
+    operation insertion = choose_point(e, star, is_free, least, p, &inserted);
     e->report->too_large += star->closed && star->size > TM_REMOVAL_MAX;
     if (may_swap && is_free && tm_edge_is_removable(star)) {
         if (tm_edge_removal_plan(mesh, star, e->options->measure, fmax(least, inserted),
@@ -301,9 +290,9 @@ static bool is_refused(const tm_lepp_engine *e, const tm_star *star)
 
 bool tm_lepp_note(tm_lepp_engine *e, const uint32_t *tet, size_t count)
 {
+    tm_lepp_measure(e, tet, count);
     for (size_t i = 0; i < count; i++) {
         uint32_t t = tet[i];
-        tm_lepp_measure(e, t);
         if (t < e->graph.room)
             e->graph.stamp[t] = 0; /* another one than the path may have seen */
         if (e->reintroduce && (e->mark[t] & TM_LEPP_BAD) && !tm_lepp_add_target(e, t))
