@@ -228,7 +228,7 @@ static bool count_faces_at_edges(const tm_tet_mesh *mesh, tm_edge_map *faces_at)
 }
 
 /* Locks the edges with more than two boundary faces: there the mesh touches itself, and
- * a star walk sees only a part of the tetrahedra. Looks for marked edges inside. */
+ * a star walk sees only a part of the tetrahedra. Looks for edges of .edge inside. */
 static tm_status look_at_edges(tm_tet_mesh *mesh, tm_error *error)
 {
     tm_edge_map faces_at = {0};
@@ -243,9 +243,10 @@ static tm_status look_at_edges(tm_tet_mesh *mesh, tm_error *error)
                             (uint32_t)slot->key, 0);
     }
     for (size_t e = 0; e < mesh->edges && done; e++)
-        if (mesh->edge[e].marker != 0 &&
-            !tm_edge_map_get(&faces_at, mesh->edge[e].node[0], mesh->edge[e].node[1]))
-            mesh->inner_marked_edges = true;
+        if (!tm_edge_map_get(&faces_at, mesh->edge[e].node[0], mesh->edge[e].node[1])) {
+            mesh->inner_edges = true;
+            mesh->inner_marked_edges |= mesh->edge[e].marker != 0;
+        }
     tm_edge_map_free(&faces_at);
     return done ? TM_OK : tm_fail_memory(error);
 }

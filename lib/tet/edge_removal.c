@@ -253,6 +253,7 @@ tm_status tm_edge_removal_apply(tm_tet_mesh *mesh, const tm_star *star,
     save_outer_faces(&r);
     take_slots(&r);
     build(&r, 0, star->size - 1, TM_NONE, TM_NONE);
-    tm_tet_mesh_forget_edge(mesh, star->a, star->b);
+    if (mesh->inner_edges || !star->closed || star->kept_face)
+        tm_tet_mesh_forget_edge(mesh, star->a, star->b);
     return TM_OK;
 }

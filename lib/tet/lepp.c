@@ -229,12 +229,14 @@ tm_status tm_lepp_improve(tm_tet_mesh *mesh, const tm_lepp_options *options,
                           tm_lepp_report *report, tm_error *error)
 {
     *report = (tm_lepp_report){.tets_before = mesh->tets};
-    tm_lepp_engine e = {.mesh = mesh,
-                        .options = options,
-                        .report = report,
-                        .error = error,
-                        .bad_below = tm_bad_sine2(options->angle),
-                        .most_tets = tm_tet_mesh_most(mesh, options->max_growth)};
+    tm_lepp_engine e = {
+        .mesh = mesh,
+        .options = options,
+        .report = report,
+        .error = error,
+        .bad_below = tm_bad_sine2(options->angle),
+        .gain = tm_gain_of(options->measure, fmax(options->factor, 1 + TM_LEPP_GAIN)),
+        .most_tets = tm_tet_mesh_most(mesh, options->max_growth)};
     tm_status status = start(&e);
     if (status == TM_OK) {
         status = run(&e);

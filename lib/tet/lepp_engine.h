@@ -7,6 +7,8 @@
 
 #include "lepp.h"
 
+#include "../quality/tet_gain.h"
+
 #include "ball.h"
 #include "delaunay_insertion.h"
 #include "edge_removal.h"
@@ -67,6 +69,7 @@ typedef struct tm_lepp_engine {
     tm_lepp_report *report;
     tm_error *error;
     double bad_below; /* sin² */
+    tm_gain gain;     /* what selective asks for */
     size_t most_tets; /* the mesh never grows beyond */
     uint16_t *mark;   /* [mesh->slots] */
     double *quality;  /* [mesh->slots], by options->measure */

@@ -47,17 +47,12 @@ void tm_lepp_measure(tm_lepp_engine *e, const uint32_t *tet, size_t count)
     }
 }
 
-/* How good the tetrahedra must be that replace the star. */
-static double least_quality(const tm_lepp_engine *e, const tm_star *star)
+static double worst_quality(const tm_lepp_engine *e, const tm_star *star)
 {
-    if (e->options->algorithm != TM_LEPP_SELECTIVE)
-        return DBL_MIN;
     double worst = HUGE_VAL;
     for (size_t i = 0; i < star->size; i++)
-        worst = fmin(worst, e->quality[star->tet[i]]);
-    double factor = fmax(e->options->factor, 1 + TM_LEPP_GAIN);
-    double times = tm_tet_measure_times(e->options->measure, worst, factor);
-    return times > 0 ? nextafter(times, HUGE_VAL) : DBL_MIN;
+        worst = tm_lesser(worst, e->quality[star->tet[i]]);
+    return worst;
 }
 
 /* Chooses the point to insert: the centroid where it is allowed and valid, else the
@@ -115,7 +110,8 @@ static bool has_removal(const tm_tet_mesh *mesh, const tm_star *star)
     return can[0][n - 1];
 }
 
-/* The better of the best edge removal and the insertion, if it is good enough. */
+/* The better of the best edge removal and the insertion, if it is good enough. What that
+ * is exactly is only asked where something is better than a lower bound of it. */
 static operation choose(tm_lepp_engine *e, const tm_star *star, bool is_free,
                         bool may_swap, double p[3])
 {
@@ -129,18 +125,23 @@ static operation choose(tm_lepp_engine *e, const tm_star *star, bool is_free,
         e->report->above_max++;
         return REFUSE;
     }
-    double least = least_quality(e, star), inserted = 0;
+    bool must_gain = e->options->algorithm == TM_LEPP_SELECTIVE;
+    double worst = must_gain ? worst_quality(e, star) : 0;
+    double least = must_gain ? tm_gain_bound(&e->gain, worst) : DBL_MIN, inserted = 0;
     if (least == HUGE_VAL)
         return REFUSE;
     operation insertion = choose_point(e, star, is_free, least, p, &inserted);
     e->report->too_large += star->closed && star->size > TM_REMOVAL_MAX;
     if (may_swap && is_free && tm_edge_is_removable(star)) {
-        if (tm_edge_removal_plan(mesh, star, e->options->measure, fmax(least, inserted),
-                                 &e->removal))
+        if (tm_edge_removal_plan(mesh, star, e->options->measure,
+                                 inserted > least ? inserted : least, &e->removal) &&
+            (!must_gain || e->removal.quality >= tm_gain_least(&e->gain, worst)))
             return REMOVE_EDGE;
         e->report->no_swap += e->options->count_invalid_swaps && !has_removal(mesh, star);
     }
-    return inserted >= least ? insertion : REFUSE;
+    if (inserted < least)
+        return REFUSE;
+    return !must_gain || inserted >= tm_gain_least(&e->gain, worst) ? insertion : REFUSE;
 }
 
 /* Whether what was chosen makes no angle that the mesh had none of. */
