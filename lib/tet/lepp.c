@@ -96,14 +96,6 @@ static tm_status run_passes(tm_lepp_engine *e)
     return status;
 }
 
-/* Makes the edges refinable again that are only refused. */
-static void start_round(tm_lepp_engine *e)
-{
-    for (size_t t = 0; t < e->mesh->slots; t++)
-        if (!(e->mark[t] & TM_LEPP_SETTLED))
-            e->mark[t] &= (uint16_t)~TM_LEPP_BLOCKED;
-}
-
 /* Algorithm 7.1: sweeps, then one pass with no edge blocked; so many times, or until
  * neither changes anything. */
 static tm_status run_with_sweeps(tm_lepp_engine *e)
@@ -116,7 +108,7 @@ static tm_status run_with_sweeps(tm_lepp_engine *e)
     bool idle = false;
     while (status == TM_OK && !idle && e->report->passes < most) {
         size_t before = tm_lepp_changes(e->report);
-        start_round(e);
+        tm_lepp_start_round(e);
         if (o->sweeps & TM_SWEEP_SMOOTH)
             status = tm_lepp_smooth(e);
         if (status == TM_OK && o->sweeps & TM_SWEEP_SWAP)
@@ -140,7 +132,7 @@ static tm_status run_until_converged(tm_lepp_engine *e)
     tm_status status = find_targets(e);
     do {
         fresh = tm_lepp_operations(e->report);
-        start_round(e);
+        tm_lepp_start_round(e);
         do {
             before = tm_lepp_operations(e->report);
             if (status == TM_OK)
@@ -215,6 +207,7 @@ static void free_engine(tm_lepp_engine *e)
     free(e->mark);
     free(e->quality);
     tm_star_free(&e->around);
+    tm_edge_map_free(&e->refused);
     for (size_t i = 0; i < e->path_room; i++)
         tm_star_free(&e->path[i].star);
     free(e->path);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the files of LEPP share, for these only: lepp.c (targets and passes), lepp_path.c
- * (from a target to terminal stars), lepp_star.c (what is done with one of them), and the
- * sweeps between passes, lepp_smooth.c and lepp_swap.c. */
+ * (from a target to terminal stars), lepp_star.c (what is done with one of them),
+ * lepp_block.c (where nothing is to be done), and the sweeps between passes,
+ * lepp_smooth.c and lepp_swap.c. */
 #ifndef TM_TET_LEPP_ENGINE_H
 #define TM_TET_LEPP_ENGINE_H
 
@@ -75,7 +76,10 @@ typedef struct tm_lepp_engine {
     double *quality;  /* [mesh->slots], by options->measure */
     size_t mark_room, quality_room;
 
-    tm_star around;     /* of an edge that is made refinable */
+    tm_star around;      /* of an edge that is made refinable */
+    tm_edge_map refused; /* of the edges where the mesh is not manifold: the round in
+                            which they were found so */
+    uint32_t round;
     tm_lepp_step *path; /* [path_room]; the stars keep their memory */
     tm_tet_marks graph; /* TM_LEPP_FULL: tetrahedra of the target's Lepp3D */
     size_t depth, path_room;
@@ -100,6 +104,18 @@ bool tm_lepp_reserve(tm_lepp_engine *e, size_t more);
 /* Measures tetrahedra that were made or changed; those that are bad join S if that grows.
  * False where memory is out. */
 bool tm_lepp_note(tm_lepp_engine *e, const uint32_t *tet, size_t count);
+
+/* Nothing is done at a terminal star: its edge is refused, and not refinable in this
+ * round. */
+tm_status tm_lepp_block(tm_lepp_engine *e, const tm_star *star);
+bool tm_lepp_is_refused(const tm_lepp_engine *e, const tm_star *star);
+
+/* Makes the edges refinable again that are not settled. */
+void tm_lepp_start_round(tm_lepp_engine *e);
+
+/* Makes the edges of a star that is about to change refinable; false where memory is out.
+ * Its own edge is not blocked: a path does not lead to one that is. */
+bool tm_lepp_unblock_star(tm_lepp_engine *e, const tm_star *star);
 
 /* Makes the edges of tetrahedra that were measured anew refinable again; false where
  * memory is out. */
@@ -136,9 +152,11 @@ static inline bool tm_lepp_may_grow(const tm_lepp_engine *e, size_t more)
 }
 
 /* Whether the longest edge of a tetrahedron is not refinable. */
+bool tm_lepp_is_blocked_by_nodes(const tm_lepp_engine *e, uint32_t t);
 static inline bool tm_lepp_is_blocked(const tm_lepp_engine *e, uint32_t t)
 {
-    return e->mark[t] & TM_LEPP_BLOCKED;
+    return e->mark[t] & TM_LEPP_BLOCKED ||
+           (e->refused.count > 0 && tm_lepp_is_blocked_by_nodes(e, t));
 }
 
 /* Where a value is counted in a histogram whose last bin is for all larger ones. */

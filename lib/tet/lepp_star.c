@@ -13,14 +13,6 @@
  * alone may undo each other for ever, insertions end as bisection does. */
 enum { SWAPS_PER_TARGET = 64 };
 
-/* The bits of all six edges, and those of the three of each face. */
-enum { ALL_REFUSED = 63 * TM_LEPP_REFUSED };
-static const unsigned edges_of_face[4] = {
-    TM_LEPP_REFUSED << 3 | TM_LEPP_REFUSED << 4 | TM_LEPP_REFUSED << 5,
-    TM_LEPP_REFUSED << 1 | TM_LEPP_REFUSED << 2 | TM_LEPP_REFUSED << 5,
-    TM_LEPP_REFUSED << 0 | TM_LEPP_REFUSED << 2 | TM_LEPP_REFUSED << 4,
-    TM_LEPP_REFUSED << 0 | TM_LEPP_REFUSED << 1 | TM_LEPP_REFUSED << 3};
-
 /* What is to be done with a terminal star. */
 typedef enum { REFUSE, REMOVE_EDGE, INSERT_CENTROID, INSERT_MIDPOINT } operation;
 
@@ -235,60 +227,6 @@ static void count_star(tm_lepp_engine *e, const tm_star *star, bool is_free,
     r->open_insertion_size[size] += !star->closed && inserted;
 }
 
-/* Makes those of the edges of t refinable whose bits are given. */
-static bool unblock_edges(tm_lepp_engine *e, uint32_t t, unsigned edges)
-{
-    for (unsigned left = e->mark[t] & edges; left != 0; left &= left - 1) {
-        unsigned edge = (unsigned)__builtin_ctz(left / TM_LEPP_REFUSED);
-        tm_star *star = &e->around;
-        if (!tm_star_around(e->mesh, t, edge, star))
-            return false;
-        for (size_t i = 0; i < star->size; i++) {
-            uint16_t *mark = &e->mark[star->tet[i]];
-            unsigned gone = (unsigned)TM_LEPP_REFUSED << star->edge[i];
-            if ((*mark & TM_LEPP_LONGEST) == star->edge[i])
-                gone |= TM_LEPP_BLOCKED | TM_LEPP_SETTLED;
-            *mark &= (uint16_t)~gone;
-        }
-    }
-    return true;
-}
-
-/* The same for a star that is about to change: the edges on its outside. The one that
- * goes is not refused: a path does not lead there. */
-static bool unblock_star(tm_lepp_engine *e, const tm_star *star)
-{
-    for (size_t i = 0; i < star->size; i++)
-        if (!unblock_edges(e, star->tet[i], ALL_REFUSED))
-            return false;
-    return true;
-}
-
-/* Nothing is done at a star: its edge is refused, and not refinable in this round. With
- * selective it stays so until the star changes if it is the longest edge of all around:
- * to come back in another round would find the same. (The other algorithms may not leave
- * that out: swap-centroid counts how often it was somewhere.) */
-static void block(tm_lepp_engine *e, const tm_star *star)
-{
-    bool is_longest = true;
-    for (size_t i = 0; i < star->size; i++)
-        is_longest &= (e->mark[star->tet[i]] & TM_LEPP_LONGEST) == star->edge[i];
-    bool settled = is_longest && e->options->algorithm == TM_LEPP_SELECTIVE;
-    unsigned blocked = TM_LEPP_BLOCKED | (settled ? TM_LEPP_SETTLED : 0);
-    for (size_t i = 0; i < star->size; i++) {
-        uint16_t *mark = &e->mark[star->tet[i]];
-        unsigned more = (unsigned)TM_LEPP_REFUSED << star->edge[i];
-        if ((*mark & TM_LEPP_LONGEST) == star->edge[i])
-            more |= blocked;
-        *mark |= (uint16_t)more;
-    }
-}
-
-static bool is_refused(const tm_lepp_engine *e, const tm_star *star)
-{
-    return e->mark[star->tet[0]] & TM_LEPP_REFUSED << star->edge[0];
-}
-
 bool tm_lepp_note(tm_lepp_engine *e, const uint32_t *tet, size_t count)
 {
     tm_lepp_measure(e, tet, count);
@@ -299,20 +237,6 @@ bool tm_lepp_note(tm_lepp_engine *e, const uint32_t *tet, size_t count)
         if (e->reintroduce && (e->mark[t] & TM_LEPP_BAD) && !tm_lepp_add_target(e, t))
             return false;
     }
-    return true;
-}
-
-/* They have no marks of refused edges any more; but what else is around such an edge has,
- * and of that a neighbour of them is a part. */
-bool tm_lepp_unblock(tm_lepp_engine *e, const uint32_t *tet, size_t count)
-{
-    for (size_t i = 0; i < count; i++)
-        for (uint32_t k = 0; k < 4; k++) {
-            uint32_t across = tm_tet_across(e->mesh, tet[i], k);
-            if (across != TM_NONE &&
-                !unblock_edges(e, across / 4, edges_of_face[across % 4]))
-                return false;
-        }
     return true;
 }
 
@@ -337,7 +261,7 @@ static tm_status change(tm_lepp_engine *e, const tm_star *star, operation chosen
     if (e->options->algorithm == TM_LEPP_DELAUNAY)
         return change_by_cavity(e, star, p);
     size_t made = 2 * star->size;
-    if (!tm_lepp_reserve(e, made) || !unblock_star(e, star))
+    if (!tm_lepp_reserve(e, made) || !tm_lepp_unblock_star(e, star))
         return tm_fail_memory(e->error);
     tm_status status;
     if (chosen == REMOVE_EDGE) {
@@ -359,10 +283,8 @@ tm_status tm_lepp_process_star(tm_lepp_engine *e, const tm_star *star, size_t vi
     tm_lepp_algorithm algorithm = e->options->algorithm;
     bool may_swap = algorithm == TM_LEPP_SELECTIVE ||
                     (algorithm == TM_LEPP_SWAP_CENTROID && visited <= SWAPS_PER_TARGET);
-    if (is_refused(e, star)) {
-        block(e, star);
-        return TM_OK;
-    }
+    if (tm_lepp_is_refused(e, star))
+        return tm_lepp_block(e, star);
     bool is_free = tm_star_is_free(e->mesh, star);
     operation chosen = choose(e, star, is_free, may_swap, p);
     if (chosen != REFUSE) {
@@ -375,6 +297,5 @@ tm_status tm_lepp_process_star(tm_lepp_engine *e, const tm_star *star, size_t vi
     count_star(e, star, is_free, chosen);
     if (chosen != REFUSE)
         return change(e, star, chosen, p);
-    block(e, star);
-    return TM_OK;
+    return tm_lepp_block(e, star);
 }
