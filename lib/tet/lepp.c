@@ -23,11 +23,18 @@ bool tm_lepp_add_target(tm_lepp_engine *e, uint32_t t)
 static tm_status improve_all(tm_lepp_engine *e)
 {
     tm_status status = TM_OK;
+    bool is_simple = e->options->path == TM_LEPP_SIMPLE;
     e->report->passes++;
     for (size_t i = 0; i < e->targets && status == TM_OK; i++) {
         uint32_t t = e->target[i];
-        if (tm_tet_lives(e->mesh, t) && (e->mark[t] & TM_LEPP_BAD))
+        if (!(e->mark[t] & TM_LEPP_BAD) || !tm_tet_lives(e->mesh, t))
+            continue;
+        if (is_simple && tm_lepp_is_blocked(e, t)) { /* as most are: no path at all */
+            e->report->targets++;
+            e->report->visited[0]++;
+        } else {
             status = tm_lepp_follow(e, t);
+        }
     }
     return status;
 }
