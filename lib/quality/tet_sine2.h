@@ -16,6 +16,10 @@
 
 #include <stdbool.h>
 
+/* Products of lengths and areas outside of these are not trusted. */
+#define TM_SINE2_LOW  1e-250
+#define TM_SINE2_HIGH 1e250
+
 typedef double tm_pair __attribute__((vector_size(2 * sizeof(double))));
 
 typedef struct tm_vector_pair {
@@ -79,9 +83,7 @@ static inline double tm_tet_sine2_measure(const double a[3], const double b[3],
     const double least_1 = tm_lesser(tm_lesser(at_ab_cd[1], at_ac_bd[1]), at_ad_bc[1]);
     const double least = tm_lesser(least_0, least_1);
 
-    const double low = 1e-250;
-    const double high = 1e250;
-    *measured = low < least && least < high;
+    *measured = TM_SINE2_LOW < least && least < TM_SINE2_HIGH;
     const double determinant = normal_d_a.x[0] * ad_bc.x[0] +
                                normal_d_a.y[0] * ad_bc.y[0] +
                                normal_d_a.z[0] * ad_bc.z[0];

@@ -5,6 +5,7 @@
 #include "../base/array.h"
 #include "../geom/predicates.h"
 #include "face_order.h"
+#include "face_pairs.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -131,8 +132,9 @@ static tm_status connect_run(tm_tet_mesh *mesh, const tm_face_entry *run, size_t
     return TM_OK;
 }
 
-static tm_status connect_faces(tm_tet_mesh *mesh, const uint32_t (*listed)[3],
-                               size_t listed_count, unsigned base, tm_error *error)
+/* The way that finds what is wrong, and says so. */
+static tm_status connect_in_order(tm_tet_mesh *mesh, const uint32_t (*listed)[3],
+                                  size_t listed_count, unsigned base, tm_error *error)
 {
     tm_face_order order;
     tm_status status =
@@ -149,6 +151,26 @@ static tm_status connect_faces(tm_tet_mesh *mesh, const uint32_t (*listed)[3],
         }
     }
     tm_face_order_free(&order);
+    return status;
+}
+
+/* *folded: there may be two tetrahedra on the same side of a face. */
+static tm_status connect_faces(tm_tet_mesh *mesh, const uint32_t (*listed)[3],
+                               size_t listed_count, unsigned base, bool *folded,
+                               tm_error *error)
+{
+    tm_face_pairs pairs;
+    tm_status status = tm_face_pairs_find(&pairs, mesh, listed, listed_count, error);
+    *folded = pairs.folded || !pairs.whole;
+    if (status == TM_OK && !pairs.whole)
+        status = connect_in_order(mesh, listed, listed_count, base, error);
+    for (size_t i = 0; i < pairs.opens && status == TM_OK && pairs.whole; i++) {
+        uint32_t h = pairs.open[i];
+        uint32_t half[2] = {h, mesh->neighbour[h / 4][h % 4]};
+        size_t count = half[1] == TM_NONE ? 1 : 2;
+        status = connect_face(mesh, half, count, TM_NONE, error);
+    }
+    tm_face_pairs_free(&pairs);
     return status;
 }
 
@@ -204,52 +226,6 @@ static tm_status check_sides(const tm_tet_mesh *mesh, unsigned base, tm_error *e
     return TM_OK;
 }
 
-static bool is_on_boundary(const tm_kept_face *face)
-{
-    return (face->side[0] == TM_NONE) != (face->side[1] == TM_NONE);
-}
-
-/* Counts the boundary faces at each of their edges. */
-static bool count_faces_at_edges(const tm_tet_mesh *mesh, tm_edge_map *faces_at)
-{
-    for (size_t f = 0; f < mesh->faces; f++) {
-        const tm_kept_face *face = &mesh->face[f];
-        if (!is_on_boundary(face))
-            continue;
-        if (!tm_edge_map_reserve(faces_at, 3))
-            return false;
-        for (int i = 0; i < 3; i++) {
-            uint32_t a = face->node[i], b = face->node[(i + 1) % 3];
-            const uint32_t *count = tm_edge_map_get(faces_at, a, b);
-            tm_edge_map_put(faces_at, a, b, count ? *count + 1 : 1);
-        }
-    }
-    return true;
-}
-
-/* Locks the edges with more than two boundary faces: there the mesh touches itself, and
- * a star walk sees only a part of the tetrahedra. Looks for marked edges inside. */
-static tm_status look_at_edges(tm_tet_mesh *mesh, tm_error *error)
-{
-    tm_edge_map faces_at = {0};
-    bool done = count_faces_at_edges(mesh, &faces_at);
-    for (size_t s = 0; s < faces_at.room && done; s++) {
-        const tm_edge_slot *slot = &faces_at.slot[s];
-        if (slot->key == 0 || slot->value <= 2)
-            continue;
-        done = tm_edge_map_reserve(&mesh->locked, 1);
-        if (done)
-            tm_edge_map_put(&mesh->locked, (uint32_t)(slot->key >> 32),
-                            (uint32_t)slot->key, 0);
-    }
-    for (size_t e = 0; e < mesh->edges && done; e++)
-        if (mesh->edge[e].marker != 0 &&
-            !tm_edge_map_get(&faces_at, mesh->edge[e].node[0], mesh->edge[e].node[1]))
-            mesh->inner_marked_edges = true;
-    tm_edge_map_free(&faces_at);
-    return done ? TM_OK : tm_fail_memory(error);
-}
-
 /* Forgets the rows of .face that need not stay. */
 static void drop_faces(tm_tet_mesh *mesh, size_t listed_count)
 {
@@ -270,6 +246,7 @@ static void drop_faces(tm_tet_mesh *mesh, size_t listed_count)
 tm_status tm_tet_mesh_connect(tm_tet_mesh *mesh, unsigned base, tm_error *error)
 {
     size_t listed_count = mesh->faces;
+    bool folded = true;
     uint32_t(*listed)[3] = tm_new(listed_count, sizeof *listed);
     if (!listed)
         return tm_fail_memory(error);
@@ -277,16 +254,17 @@ tm_status tm_tet_mesh_connect(tm_tet_mesh *mesh, unsigned base, tm_error *error)
         memcpy(listed[f], mesh->face[f].node, sizeof listed[f]);
     tm_status status = orient(mesh, base, error);
     if (status == TM_OK)
-        status =
-            connect_faces(mesh, (const uint32_t(*)[3])listed, listed_count, base, error);
+        status = connect_faces(mesh, (const uint32_t(*)[3])listed, listed_count, base,
+                               &folded, error);
     free(listed);
     if (status == TM_OK) {
         turn_flat(mesh);
-        status = check_sides(mesh, base, error);
+        if (folded || mesh->flat > 0)
+            status = check_sides(mesh, base, error);
     }
     if (status == TM_OK && mesh->dropped_faces > 0)
         drop_faces(mesh, listed_count);
     if (status == TM_OK)
-        status = look_at_edges(mesh, error);
+        status = tm_tet_mesh_look_at_edges(mesh, error);
     return status;
 }

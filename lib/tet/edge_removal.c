@@ -2,6 +2,7 @@
 #include "edge_removal.h"
 
 #include "../geom/predicates.h"
+#include "../quality/tet_four.h"
 
 #include <string.h>
 
@@ -66,6 +67,12 @@ bool tm_edge_removal_plan(const tm_tet_mesh *mesh, const tm_star *star,
                           tm_tet_measure measure, double least, tm_edge_removal *plan)
 {
     size_t n = star->size;
+    if (measure == TM_MEASURE_DIHEDRAL && tm_has_four()) {
+        if (!tm_edge_removal_plan_four(mesh, star, least, plan))
+            return false;
+        plan->quality = plan->best[0][n - 1];
+        return is_valid(mesh, star, plan, 0, n - 1);
+    }
     for (size_t i = 0; i + 1 < n; i++)
         plan->best[i][i + 1] = HUGE_VAL;
     for (size_t length = 2; length < n; length++) {
@@ -246,6 +253,7 @@ tm_status tm_edge_removal_apply(tm_tet_mesh *mesh, const tm_star *star,
     save_outer_faces(&r);
     take_slots(&r);
     build(&r, 0, star->size - 1, TM_NONE, TM_NONE);
-    tm_tet_mesh_forget_edge(mesh, star->a, star->b);
+    if (mesh->inner_edges || !star->closed || star->kept_face)
+        tm_tet_mesh_forget_edge(mesh, star->a, star->b);
     return TM_OK;
 }

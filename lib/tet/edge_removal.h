@@ -32,6 +32,10 @@ static inline bool tm_edge_is_removable(const tm_star *star)
 bool tm_edge_removal_plan(const tm_tet_mesh *mesh, const tm_star *star,
                           tm_tet_measure measure, double least, tm_edge_removal *plan);
 
+/* What that does without the exact signs, for TM_MEASURE_DIHEDRAL where tm_has_four(). */
+bool tm_edge_removal_plan_four(const tm_tet_mesh *mesh, const tm_star *star, double least,
+                               tm_edge_removal *plan);
+
 /* The same for a sum: finds the triangulation whose tetrahedra have the least
  * tm_improve_cost() in all, below `most`, while each is at least `least` good and exactly
  * positive. plan->quality is that sum. The star may be open: its ring is triangulated

@@ -23,11 +23,18 @@ bool tm_lepp_add_target(tm_lepp_engine *e, uint32_t t)
 static tm_status improve_all(tm_lepp_engine *e)
 {
     tm_status status = TM_OK;
+    bool is_simple = e->options->path == TM_LEPP_SIMPLE;
     e->report->passes++;
     for (size_t i = 0; i < e->targets && status == TM_OK; i++) {
         uint32_t t = e->target[i];
-        if (tm_tet_lives(e->mesh, t) && (e->mark[t] & TM_LEPP_BAD))
+        if (!(e->mark[t] & TM_LEPP_BAD) || !tm_tet_lives(e->mesh, t))
+            continue;
+        if (is_simple && tm_lepp_is_blocked(e, t)) { /* as most are: no path at all */
+            e->report->targets++;
+            e->report->visited[0]++;
+        } else {
             status = tm_lepp_follow(e, t);
+        }
     }
     return status;
 }
@@ -79,7 +86,7 @@ static void keep_targets(tm_lepp_engine *e)
     }
     e->targets = kept;
     for (size_t i = 0; i < kept; i++)
-        e->mark[e->target[i]] &= (uint8_t)~TM_LEPP_QUEUED;
+        e->mark[e->target[i]] &= (uint16_t)~TM_LEPP_QUEUED;
 }
 
 static tm_status run_passes(tm_lepp_engine *e)
@@ -108,7 +115,7 @@ static tm_status run_with_sweeps(tm_lepp_engine *e)
     bool idle = false;
     while (status == TM_OK && !idle && e->report->passes < most) {
         size_t before = tm_lepp_changes(e->report);
-        e->round++;
+        tm_lepp_start_round(e);
         if (o->sweeps & TM_SWEEP_SMOOTH)
             status = tm_lepp_smooth(e);
         if (status == TM_OK && o->sweeps & TM_SWEEP_SWAP)
@@ -132,7 +139,7 @@ static tm_status run_until_converged(tm_lepp_engine *e)
     tm_status status = find_targets(e);
     do {
         fresh = tm_lepp_operations(e->report);
-        e->round++;
+        tm_lepp_start_round(e);
         do {
             before = tm_lepp_operations(e->report);
             if (status == TM_OK)
@@ -158,7 +165,7 @@ static tm_status run(tm_lepp_engine *e)
 bool tm_lepp_reserve(tm_lepp_engine *e, size_t more)
 {
     size_t slots = e->mesh->slots + more;
-    uint8_t *mark = tm_grow(e->mark, &e->mark_room, slots, sizeof *mark);
+    uint16_t *mark = tm_grow(e->mark, &e->mark_room, slots, sizeof *mark);
     e->mark = mark ? mark : e->mark;
     double *quality = tm_grow(e->quality, &e->quality_room, slots, sizeof *quality);
     e->quality = quality ? quality : e->quality;
@@ -169,12 +176,20 @@ bool tm_lepp_reserve(tm_lepp_engine *e, size_t more)
 
 static tm_status start(tm_lepp_engine *e)
 {
+    enum { SOME = 64 };
     tm_tet_mesh *mesh = e->mesh;
     if (!tm_lepp_reserve(e, 0))
         return tm_fail_memory(e->error);
-    for (uint32_t t = 0; t < mesh->slots; t++)
+    uint32_t some[SOME];
+    size_t count = 0;
+    for (uint32_t t = 0; t < mesh->slots; t++) {
         if (tm_tet_lives(mesh, t))
-            tm_lepp_measure(e, t);
+            some[count++] = t;
+        if (count == SOME || t + 1 == mesh->slots) {
+            tm_lepp_measure(e, some, count);
+            count = 0;
+        }
+    }
     e->report->bad_before = count_bad(e);
     if (e->options->algorithm == TM_LEPP_DELAUNAY) {
         e->delaunay = tm_delaunay_for(mesh);
@@ -182,10 +197,7 @@ static tm_status start(tm_lepp_engine *e)
     }
     if (e->options->sweeps)
         tm_lepp_measure_angles(e);
-    /* As many edges as that are refused; later growth would cost a second table. */
-    return tm_edge_map_reserve(&e->refused, e->report->bad_before)
-               ? TM_OK
-               : tm_fail_memory(e->error);
+    return TM_OK;
 }
 
 static void finish(tm_lepp_engine *e)
@@ -201,6 +213,7 @@ static void free_engine(tm_lepp_engine *e)
 {
     free(e->mark);
     free(e->quality);
+    tm_star_free(&e->around);
     tm_edge_map_free(&e->refused);
     for (size_t i = 0; i < e->path_room; i++)
         tm_star_free(&e->path[i].star);
@@ -216,12 +229,14 @@ tm_status tm_lepp_improve(tm_tet_mesh *mesh, const tm_lepp_options *options,
                           tm_lepp_report *report, tm_error *error)
 {
     *report = (tm_lepp_report){.tets_before = mesh->tets};
-    tm_lepp_engine e = {.mesh = mesh,
-                        .options = options,
-                        .report = report,
-                        .error = error,
-                        .bad_below = tm_bad_sine2(options->angle),
-                        .most_tets = tm_tet_mesh_most(mesh, options->max_growth)};
+    tm_lepp_engine e = {
+        .mesh = mesh,
+        .options = options,
+        .report = report,
+        .error = error,
+        .bad_below = tm_bad_sine2(options->angle),
+        .gain = tm_gain_of(options->measure, fmax(options->factor, 1 + TM_LEPP_GAIN)),
+        .most_tets = tm_tet_mesh_most(mesh, options->max_growth)};
     tm_status status = start(&e);
     if (status == TM_OK) {
         status = run(&e);

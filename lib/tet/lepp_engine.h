@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the files of LEPP share, for these only: lepp.c (targets and passes), lepp_path.c
- * (from a target to terminal stars), lepp_star.c (what is done with one of them), and the
- * sweeps between passes, lepp_smooth.c and lepp_swap.c. */
+ * (from a target to terminal stars), lepp_star.c (what is done with one of them),
+ * lepp_block.c (where nothing is to be done), and the sweeps between passes,
+ * lepp_smooth.c and lepp_swap.c. */
 #ifndef TM_TET_LEPP_ENGINE_H
 #define TM_TET_LEPP_ENGINE_H
 
 #include "lepp.h"
+
+#include "../quality/tet_gain.h"
 
 #include "ball.h"
 #include "delaunay_insertion.h"
@@ -19,8 +22,21 @@
 enum { TM_LEPP_VISITS_MAX = 100000 };
 
 /* What is remembered of each tetrahedron beside its quality: its longest edge, 0 … 5, and
- * these bits. One byte, because paths look at it most. */
-enum { TM_LEPP_LONGEST = 7, TM_LEPP_BAD = 8, TM_LEPP_QUEUED = 16 };
+ * these bits. Two bytes, because paths look at it most.
+ *
+ * An edge is refused from when nothing was done at its star until that star changes. All
+ * tetrahedra around have a bit for it: a hash table of edges would be asked for something
+ * that is not there most of the time. Those whose longest edge it is have BLOCKED too
+ * where it is not refinable in this round, and SETTLED where it is that in all later
+ * ones. */
+enum {
+    TM_LEPP_LONGEST = 7,
+    TM_LEPP_BAD = 1 << 3,
+    TM_LEPP_QUEUED = 1 << 4,
+    TM_LEPP_BLOCKED = 1 << 5,
+    TM_LEPP_SETTLED = 1 << 6,
+    TM_LEPP_REFUSED = 1 << 8 /* edge 0; edge k is k bits above */
+};
 
 /* A step of the path: the tetrahedron and its longest edge, and how far the star of that
  * has been searched for the next step. */
@@ -54,16 +70,16 @@ typedef struct tm_lepp_engine {
     tm_lepp_report *report;
     tm_error *error;
     double bad_below; /* sin² */
+    tm_gain gain;     /* what selective asks for */
     size_t most_tets; /* the mesh never grows beyond */
-    uint8_t *mark;    /* [mesh->slots] */
+    uint16_t *mark;   /* [mesh->slots] */
     double *quality;  /* [mesh->slots], by options->measure */
     size_t mark_room, quality_room;
 
-    /* Edges whose star has not changed since it was refused, with the round in which it
-     * was found so: those of the current round are the non-refinable ones. */
-    tm_edge_map refused;
+    tm_star around;      /* of an edge that is made refinable */
+    tm_edge_map refused; /* of the edges where the mesh is not manifold: the round in
+                            which they were found so */
     uint32_t round;
-
     tm_lepp_step *path; /* [path_room]; the stars keep their memory */
     tm_tet_marks graph; /* TM_LEPP_FULL: tetrahedra of the target's Lepp3D */
     size_t depth, path_room;
@@ -78,8 +94,8 @@ typedef struct tm_lepp_engine {
     tm_lepp_sweeper sweeper;
 } tm_lepp_engine;
 
-/* Measures a tetrahedron: its mark and quality. */
-void tm_lepp_measure(tm_lepp_engine *e, uint32_t t);
+/* Measures tetrahedra: their marks and qualities. */
+void tm_lepp_measure(tm_lepp_engine *e, const uint32_t *tet, size_t count);
 
 /* Room in the engine's arrays for so many more slots, and created tetrahedra; false where
  * memory is out. */
@@ -89,8 +105,21 @@ bool tm_lepp_reserve(tm_lepp_engine *e, size_t more);
  * False where memory is out. */
 bool tm_lepp_note(tm_lepp_engine *e, const uint32_t *tet, size_t count);
 
-/* Makes the edges of tetrahedra refinable again. */
-void tm_lepp_unblock(tm_lepp_engine *e, const uint32_t *tet, size_t count);
+/* Nothing is done at a terminal star: its edge is refused, and not refinable in this
+ * round. */
+tm_status tm_lepp_block(tm_lepp_engine *e, const tm_star *star);
+bool tm_lepp_is_refused(const tm_lepp_engine *e, const tm_star *star);
+
+/* Makes the edges refinable again that are not settled. */
+void tm_lepp_start_round(tm_lepp_engine *e);
+
+/* Makes the edges of a star that is about to change refinable; false where memory is out.
+ * Its own edge is not blocked: a path does not lead to one that is. */
+bool tm_lepp_unblock_star(tm_lepp_engine *e, const tm_star *star);
+
+/* Makes the edges of tetrahedra that were measured anew refinable again; false where
+ * memory is out. */
+bool tm_lepp_unblock(tm_lepp_engine *e, const uint32_t *tet, size_t count);
 
 /* Appends a tetrahedron to S; false where memory is out. */
 bool tm_lepp_add_target(tm_lepp_engine *e, uint32_t t);
@@ -122,10 +151,12 @@ static inline bool tm_lepp_may_grow(const tm_lepp_engine *e, size_t more)
     return e->mesh->tets + more <= e->most_tets;
 }
 
-static inline bool tm_lepp_is_blocked(const tm_lepp_engine *e, uint32_t a, uint32_t b)
+/* Whether the longest edge of a tetrahedron is not refinable. */
+bool tm_lepp_is_blocked_by_nodes(const tm_lepp_engine *e, uint32_t t);
+static inline bool tm_lepp_is_blocked(const tm_lepp_engine *e, uint32_t t)
 {
-    const uint32_t *round = tm_edge_map_get(&e->refused, a, b);
-    return round && *round == e->round;
+    return e->mark[t] & TM_LEPP_BLOCKED ||
+           (e->refused.count > 0 && tm_lepp_is_blocked_by_nodes(e, t));
 }
 
 /* Where a value is counted in a histogram whose last bin is for all larger ones. */

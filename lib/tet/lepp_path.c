@@ -39,23 +39,23 @@ static bool push(tm_lepp_engine *e, uint32_t t)
     return true;
 }
 
-/* Whether a tetrahedron around the edge of the step is one to step to: its own longest
+/* Whether tetrahedron i around the edge of the step is one to step to: its own longest
  * edge is another one, and refinable. All around contain the edge, so theirs is longer if
  * it is another one. */
-static bool leads_on(const tm_lepp_engine *e, const tm_lepp_step *step, uint32_t t)
+static inline bool leads_on(const tm_lepp_engine *e, const tm_lepp_step *step, size_t i)
 {
-    uint32_t a, b;
-    longest_edge_of(e, t, &a, &b);
-    return !is_same_edge(step->a, step->b, a, b) && !tm_lepp_is_blocked(e, a, b);
+    uint32_t t = step->star.tet[i];
+    return !tm_lepp_is_blocked(e, t) &&
+           (e->mark[t] & TM_LEPP_LONGEST) != step->star.edge[i];
 }
 
 /* A tetrahedron to step to; TM_NONE where the edge is terminal. */
 static uint32_t next_on_path(const tm_lepp_engine *e, tm_lepp_step *step)
 {
     while (step->searched < step->star.size) {
-        uint32_t t = step->star.tet[step->searched++];
-        if (leads_on(e, step, t))
-            return t;
+        size_t i = step->searched++;
+        if (leads_on(e, step, i))
+            return step->star.tet[i];
     }
     return TM_NONE;
 }
@@ -73,7 +73,7 @@ static bool refresh(tm_lepp_engine *e, tm_lepp_step *step, tm_status *status)
         if (!is_same_edge(step->a, step->b, a, b))
             return false;
     }
-    if (tm_lepp_is_blocked(e, step->a, step->b))
+    if (tm_lepp_is_blocked(e, step->t))
         return false;
     if (step->operations != e->operations) {
         step->operations = e->operations;
@@ -104,9 +104,9 @@ static tm_status search(tm_lepp_engine *e, size_t from)
         }
         bool is_terminal = true;
         for (size_t i = 0; i < e->path[s].star.size; i++) {
-            uint32_t t = e->path[s].star.tet[i];
-            if (!leads_on(e, &e->path[s], t))
+            if (!leads_on(e, &e->path[s], i))
                 continue;
+            uint32_t t = e->path[s].star.tet[i];
             is_terminal = false;
             if (is_new_in_graph(e, t) && !push(e, t))
                 return tm_fail_memory(e->error);

@@ -166,8 +166,8 @@ static bool move(tm_lepp_engine *e, const double p[3])
         memcpy(mesh->node_attribute + s->ball.node * width, value, width * sizeof *value);
     }
     memcpy(mesh->xyz[s->ball.node], p, sizeof mesh->xyz[0]);
-    tm_lepp_unblock(e, s->ball.tet, s->ball.size);
-    return tm_lepp_note(e, s->ball.tet, s->ball.size);
+    return tm_lepp_note(e, s->ball.tet, s->ball.size) &&
+           tm_lepp_unblock(e, s->ball.tet, s->ball.size);
 }
 
 static tm_status smooth_node(tm_lepp_engine *e, uint32_t v, size_t sweep)

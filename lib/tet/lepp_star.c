@@ -4,6 +4,7 @@
 
 #include "../geom/predicates.h"
 #include "../geom/vector.h"
+#include "mesh_measure.h"
 #include "star_insertion.h"
 
 #include <float.h>
@@ -15,68 +16,52 @@ enum { SWAPS_PER_TARGET = 64 };
 /* What is to be done with a terminal star. */
 typedef enum { REFUSE, REMOVE_EDGE, INSERT_CENTROID, INSERT_MIDPOINT } operation;
 
-/* The longest edge of a tetrahedron, 0 … 5. */
-static uint8_t longest_edge(const tm_tet_mesh *mesh, uint32_t t)
-{
-    const uint32_t *n = mesh->tet[t];
-    unsigned longest = 0;
-    double longest_length = -1;
-    uint64_t longest_key = 0;
-    for (unsigned e = 0; e < 6; e++) {
-        uint32_t a = n[tm_edge_corner[e][0]], b = n[tm_edge_corner[e][1]];
-        double length = tm_distance2(mesh->xyz[a], mesh->xyz[b]);
-        if (length < longest_length)
-            continue;
-        uint64_t key = tm_edge_key(a, b);
-        if (length > longest_length || key > longest_key) {
-            longest = e;
-            longest_length = length;
-            longest_key = key;
-        }
-    }
-    return (uint8_t)longest;
-}
-
-void tm_lepp_measure(tm_lepp_engine *e, uint32_t t)
+void tm_lepp_measure(tm_lepp_engine *e, const uint32_t *tet, size_t count)
 {
     const tm_tet_mesh *mesh = e->mesh;
-    const uint32_t *n = mesh->tet[t];
-    const double *a = mesh->xyz[n[0]], *b = mesh->xyz[n[1]];
-    const double *c = mesh->xyz[n[2]], *d = mesh->xyz[n[3]];
-    double sine2 = tm_tet_sine2(a, b, c, d);
-    e->quality[t] = e->options->measure == TM_MEASURE_DIHEDRAL
-                        ? sine2
-                        : tm_tet_measure_of(e->options->measure, a, b, c, d);
-    e->mark[t] =
-        (uint8_t)(longest_edge(mesh, t) | (sine2 < e->bad_below ? TM_LEPP_BAD : 0));
+    double sine2[TM_MEASURED_AT_ONCE];
+    uint8_t longest[TM_MEASURED_AT_ONCE];
+    for (size_t i = 0, some; i < count; i += some) {
+        some = count - i < TM_MEASURED_AT_ONCE ? count - i : TM_MEASURED_AT_ONCE;
+        tm_tet_mesh_measure(mesh, tet + i, some, sine2, longest);
+        for (size_t k = 0; k < some; k++) {
+            uint32_t t = tet[i + k];
+            e->quality[t] = sine2[k];
+            e->mark[t] =
+                (uint16_t)(longest[k] | (sine2[k] < e->bad_below ? TM_LEPP_BAD : 0));
+        }
+    }
+    for (size_t i = 0; i < count && e->options->measure != TM_MEASURE_DIHEDRAL; i++) {
+        const uint32_t *n = mesh->tet[tet[i]];
+        e->quality[tet[i]] =
+            tm_tet_measure_of(e->options->measure, mesh->xyz[n[0]], mesh->xyz[n[1]],
+                              mesh->xyz[n[2]], mesh->xyz[n[3]]);
+    }
 }
 
-/* How good the tetrahedra must be that replace the star. */
-static double least_quality(const tm_lepp_engine *e, const tm_star *star)
+static double worst_quality(const tm_lepp_engine *e, const tm_star *star)
 {
-    if (e->options->algorithm != TM_LEPP_SELECTIVE)
-        return DBL_MIN;
     double worst = HUGE_VAL;
     for (size_t i = 0; i < star->size; i++)
-        worst = fmin(worst, e->quality[star->tet[i]]);
-    double factor = fmax(e->options->factor, 1 + TM_LEPP_GAIN);
-    double times = tm_tet_measure_times(e->options->measure, worst, factor);
-    return times > 0 ? nextafter(times, HUGE_VAL) : DBL_MIN;
+        worst = tm_lesser(worst, e->quality[star->tet[i]]);
+    return worst;
 }
 
 /* Chooses the point to insert: the centroid where it is allowed and valid, else the
- * midpoint. REFUSE where that is not valid either. */
+ * midpoint. REFUSE where that is not valid either. *quality is what its insertion would
+ * make, or 0 where that is below `least`. */
 static operation choose_point(tm_lepp_engine *e, const tm_star *star, bool is_free,
-                              double p[3])
+                              double least, double p[3], double *quality)
 {
     const tm_tet_mesh *mesh = e->mesh;
     tm_lepp_algorithm algorithm = e->options->algorithm;
+    tm_tet_measure measure = e->options->measure;
     if (algorithm != TM_LEPP_BISECTION && algorithm != TM_LEPP_DELAUNAY && is_free) {
         if (algorithm == TM_LEPP_WCENTROID)
             tm_star_wcentroid(mesh, star, p);
         else
             tm_star_centroid(mesh, star, p);
-        if (tm_star_sees(mesh, star, p))
+        if (tm_star_try_insertion(mesh, star, p, measure, least, quality))
             return INSERT_CENTROID;
         if (tm_star_contains(mesh, star, p))
             e->report->tangled++;
@@ -84,7 +69,8 @@ static operation choose_point(tm_lepp_engine *e, const tm_star *star, bool is_fr
             e->report->outside++;
     }
     tm_star_midpoint(mesh, star, p);
-    return tm_star_sees(mesh, star, p) ? INSERT_MIDPOINT : REFUSE;
+    return tm_star_try_insertion(mesh, star, p, measure, least, quality) ? INSERT_MIDPOINT
+                                                                         : REFUSE;
 }
 
 /* Whether the two tetrahedra on triangle i k j of the ring are positive. */
@@ -116,7 +102,8 @@ static bool has_removal(const tm_tet_mesh *mesh, const tm_star *star)
     return can[0][n - 1];
 }
 
-/* The better of the best edge removal and the insertion, if it is good enough. */
+/* The better of the best edge removal and the insertion, if it is good enough. What that
+ * is exactly is only asked where something is better than a lower bound of it. */
 static operation choose(tm_lepp_engine *e, const tm_star *star, bool is_free,
                         bool may_swap, double p[3])
 {
@@ -130,20 +117,23 @@ static operation choose(tm_lepp_engine *e, const tm_star *star, bool is_free,
         e->report->above_max++;
         return REFUSE;
     }
-    double least = least_quality(e, star), inserted = 0;
+    bool must_gain = e->options->algorithm == TM_LEPP_SELECTIVE;
+    double worst = must_gain ? worst_quality(e, star) : 0;
+    double least = must_gain ? tm_gain_bound(&e->gain, worst) : DBL_MIN, inserted = 0;
     if (least == HUGE_VAL)
         return REFUSE;
-    operation insertion = choose_point(e, star, is_free, p);
-    if (insertion != REFUSE)
-        inserted = tm_star_insertion_quality(mesh, star, p, e->options->measure, least);
+    operation insertion = choose_point(e, star, is_free, least, p, &inserted);
     e->report->too_large += star->closed && star->size > TM_REMOVAL_MAX;
     if (may_swap && is_free && tm_edge_is_removable(star)) {
-        if (tm_edge_removal_plan(mesh, star, e->options->measure, fmax(least, inserted),
-                                 &e->removal))
+        if (tm_edge_removal_plan(mesh, star, e->options->measure,
+                                 inserted > least ? inserted : least, &e->removal) &&
+            (!must_gain || e->removal.quality >= tm_gain_least(&e->gain, worst)))
             return REMOVE_EDGE;
         e->report->no_swap += e->options->count_invalid_swaps && !has_removal(mesh, star);
     }
-    return inserted >= least ? insertion : REFUSE;
+    if (inserted < least)
+        return REFUSE;
+    return !must_gain || inserted >= tm_gain_least(&e->gain, worst) ? insertion : REFUSE;
 }
 
 /* Whether what was chosen makes no angle that the mesh had none of. */
@@ -237,39 +227,17 @@ static void count_star(tm_lepp_engine *e, const tm_star *star, bool is_free,
     r->open_insertion_size[size] += !star->closed && inserted;
 }
 
-/* Frees the edges of the tetrahedra that an operation made. Those that it made new were
- * never blocked, and the one it removed was not: a path does not lead there. */
-static void unblock_star(tm_lepp_engine *e, const tm_star *star)
-{
-    for (size_t i = 0; i <= star->size; i++) {
-        tm_edge_map_remove(&e->refused, star->a, star->ring[i]);
-        tm_edge_map_remove(&e->refused, star->b, star->ring[i]);
-        if (i < star->size)
-            tm_edge_map_remove(&e->refused, star->ring[i], star->ring[i + 1]);
-    }
-}
-
 bool tm_lepp_note(tm_lepp_engine *e, const uint32_t *tet, size_t count)
 {
+    tm_lepp_measure(e, tet, count);
     for (size_t i = 0; i < count; i++) {
         uint32_t t = tet[i];
-        tm_lepp_measure(e, t);
         if (t < e->graph.room)
             e->graph.stamp[t] = 0; /* another one than the path may have seen */
         if (e->reintroduce && (e->mark[t] & TM_LEPP_BAD) && !tm_lepp_add_target(e, t))
             return false;
     }
     return true;
-}
-
-void tm_lepp_unblock(tm_lepp_engine *e, const uint32_t *tet, size_t count)
-{
-    for (size_t i = 0; i < count && e->refused.count > 0; i++) {
-        const uint32_t *n = e->mesh->tet[tet[i]];
-        for (int k = 0; k < TM_TET_EDGES; k++)
-            tm_edge_map_remove(&e->refused, n[tm_edge_corner[k][0]],
-                               n[tm_edge_corner[k][1]]);
-    }
 }
 
 /* Inserts the midpoint by its Delaunay cavity. */
@@ -283,8 +251,7 @@ static tm_status change_by_cavity(tm_lepp_engine *e, const tm_star *star,
     e->operations++;
     if (!tm_lepp_reserve(e, 0) || !tm_lepp_note(e, d->created, d->made))
         return tm_fail_memory(e->error);
-    tm_lepp_unblock(e, d->created, d->made);
-    return TM_OK;
+    return tm_lepp_unblock(e, d->created, d->made) ? TM_OK : tm_fail_memory(e->error);
 }
 
 /* Changes the star as chosen; measures what was made. */
@@ -294,7 +261,7 @@ static tm_status change(tm_lepp_engine *e, const tm_star *star, operation chosen
     if (e->options->algorithm == TM_LEPP_DELAUNAY)
         return change_by_cavity(e, star, p);
     size_t made = 2 * star->size;
-    if (!tm_lepp_reserve(e, made))
+    if (!tm_lepp_reserve(e, made) || !tm_lepp_unblock_star(e, star))
         return tm_fail_memory(e->error);
     tm_status status;
     if (chosen == REMOVE_EDGE) {
@@ -306,7 +273,6 @@ static tm_status change(tm_lepp_engine *e, const tm_star *star, operation chosen
     }
     if (status != TM_OK)
         return status;
-    unblock_star(e, star);
     e->operations++;
     return tm_lepp_note(e, e->created, made) ? TM_OK : tm_fail_memory(e->error);
 }
@@ -314,15 +280,11 @@ static tm_status change(tm_lepp_engine *e, const tm_star *star, operation chosen
 tm_status tm_lepp_process_star(tm_lepp_engine *e, const tm_star *star, size_t visited)
 {
     double p[3];
-    uint32_t a = star->a, b = star->b;
     tm_lepp_algorithm algorithm = e->options->algorithm;
     bool may_swap = algorithm == TM_LEPP_SELECTIVE ||
                     (algorithm == TM_LEPP_SWAP_CENTROID && visited <= SWAPS_PER_TARGET);
-    uint32_t *round = tm_edge_map_get(&e->refused, a, b);
-    if (round) {
-        *round = e->round;
-        return TM_OK;
-    }
+    if (tm_lepp_is_refused(e, star))
+        return tm_lepp_block(e, star);
     bool is_free = tm_star_is_free(e->mesh, star);
     operation chosen = choose(e, star, is_free, may_swap, p);
     if (chosen != REFUSE) {
@@ -335,8 +297,5 @@ tm_status tm_lepp_process_star(tm_lepp_engine *e, const tm_star *star, size_t vi
     count_star(e, star, is_free, chosen);
     if (chosen != REFUSE)
         return change(e, star, chosen, p);
-    if (!tm_edge_map_reserve(&e->refused, 1))
-        return tm_fail_memory(e->error);
-    tm_edge_map_put(&e->refused, a, b, e->round);
-    return TM_OK;
+    return tm_lepp_block(e, star);
 }

@@ -72,8 +72,10 @@ static tm_status consider(tm_lepp_engine *e, const swap *s, size_t sweep, bool *
     *done = true;
     report->done[sweep]++;
     report->on_surface += s->renewals > 0;
-    tm_lepp_unblock(e, e->created, s->count);
-    return tm_lepp_note(e, e->created, s->count) ? TM_OK : tm_fail_memory(e->error);
+    return tm_lepp_note(e, e->created, s->count) &&
+                   tm_lepp_unblock(e, e->created, s->count)
+               ? TM_OK
+               : tm_fail_memory(e->error);
 }
 
 /* 2-3: face i of t, whose edges are joined to the edge between the two far nodes. */

@@ -65,7 +65,8 @@ typedef struct tm_tet_mesh {
     size_t edge_room;
     tm_marked_edge *edge;
     bool edge_markers;
-    bool inner_marked_edges; /* some edge with a marker is not on the boundary */
+    bool inner_edges;        /* some edge is not on the boundary */
+    bool inner_marked_edges; /* some such edge has a marker */
     tm_edge_map edge_of;     /* two nodes -> edge[…] */
     tm_edge_map locked;      /* edges where the mesh is not manifold: never changed */
 

@@ -10,10 +10,15 @@ const uint8_t tm_edge_corner[6][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2},
 
 enum { CORNER_SUM = 0 + 1 + 2 + 3 };
 
+/* The edge between two corners. */
+static const uint8_t edge_between[4][4] = {
+    {0, 0, 1, 2}, {0, 0, 3, 4}, {1, 3, 0, 5}, {2, 4, 5, 0}};
+
 void tm_star_free(tm_star *star)
 {
     free(star->tet);
     free(star->ring);
+    free(star->edge);
     *star = (tm_star){0};
 }
 
@@ -32,74 +37,129 @@ static bool reserve(tm_star *star, size_t needed)
     if (!ring)
         return false;
     star->ring = ring;
+    size_t edge_room = star->room;
+    uint8_t *edge = tm_grow(star->edge, &edge_room, room, sizeof *edge);
+    if (!edge)
+        return false;
+    star->edge = edge;
     star->room = room;
     return true;
 }
 
-/* Walks from tetrahedron t around the edge, entering each next one through the face
- * opposite corner `behind` of the one before, until the boundary or t again. Appends the
- * tetrahedra after t and the ring nodes after the two of t. 1: closed, 0: boundary,
- * -1: no memory. */
-static int walk(const tm_tet_mesh *mesh, uint32_t t, uint32_t behind, tm_star *star)
+/* An end of what is found of a star: the tetrahedron, and its corner opposite the face
+ * through which the walk goes on. */
+typedef struct {
+    uint32_t t;
+    uint32_t behind;
+} star_end;
+
+/* The half face beyond the end; TM_NONE on the boundary. */
+static inline uint32_t look_beyond(const tm_tet_mesh *mesh, const star_end *end,
+                                   bool *kept_face)
 {
-    uint32_t first = t;
-    for (;;) {
-        uint32_t across = mesh->neighbour[t][behind];
-        if (across & TM_FACE_BIT) {
-            star->kept_face = true;
-            across = tm_tet_across(mesh, t, behind);
-            if (across == TM_NONE)
-                return 0;
-        }
-        uint32_t u = across / 4, ahead = across % 4;
-        if (u == first)
-            return 1;
-        /* The corners of u say which neighbour is next: do not wait for both in turn. */
-        __builtin_prefetch(mesh->neighbour[u]);
-        if (!reserve(star, star->size + 2))
-            return -1;
-        star->tet[star->size++] = u;
-        star->ring[star->size] = mesh->tet[u][ahead];
-        behind = CORNER_SUM - ahead - tm_tet_corner(mesh, u, star->a) -
-                 tm_tet_corner(mesh, u, star->b);
-        t = u;
+    uint32_t across = mesh->neighbour[end->t][end->behind];
+    if (!(across & TM_FACE_BIT))
+        return across;
+    *kept_face = true;
+    return tm_tet_across(mesh, end->t, end->behind);
+}
+
+/* Steps through that half face; the place in the star that this is becomes known. */
+static inline void step_beyond(const tm_tet_mesh *mesh, tm_star *star, star_end *end,
+                               uint32_t across, size_t place, size_t ring_place)
+{
+    uint32_t u = across / 4, ahead = across % 4;
+    /* The corners of u say which neighbour is next: do not wait for both in turn. */
+    __builtin_prefetch(mesh->neighbour[u]);
+    uint32_t a = tm_tet_corner(mesh, u, star->a), b = tm_tet_corner(mesh, u, star->b);
+    star->tet[place] = u;
+    star->edge[place] = edge_between[a][b];
+    star->ring[ring_place] = mesh->tet[u][ahead];
+    *end = (star_end){u, CORNER_SUM - ahead - a - b};
+}
+
+/* Moves the tetrahedra from `from` on, and the ring nodes before or behind them, to `to`
+ * which is lower. */
+static void move_down(tm_star *star, size_t from, size_t to, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        star->tet[to + i] = star->tet[from + i];
+        star->ring[to + i] = star->ring[from + i];
+        star->edge[to + i] = star->edge[from + i];
     }
 }
 
-static void reverse(uint32_t *item, size_t count)
+static void move_up(tm_star *star, size_t from, size_t to, size_t count)
 {
-    for (size_t i = 0; i < count / 2; i++) {
-        uint32_t swap = item[i];
-        item[i] = item[count - 1 - i];
-        item[count - 1 - i] = swap;
+    for (size_t i = count; i-- > 0;) {
+        star->tet[to + i] = star->tet[from + i];
+        star->ring[to + i] = star->ring[from + i];
+        star->edge[to + i] = star->edge[from + i];
     }
 }
 
+/* More room; the `back` last items stay the last ones. */
+static bool widen(tm_star *star, size_t back)
+{
+    size_t room = star->room;
+    if (!reserve(star, 2 * room))
+        return false;
+    move_up(star, room - back, star->room - back, back);
+    return true;
+}
+
+/* Walks both ways in turn, so that one need not wait for the other's memory: what is
+ * ahead of t is put behind it, what comes before it at the end of the arrays. */
 bool tm_star_around(const tm_tet_mesh *mesh, uint32_t t, unsigned e, tm_star *star)
 {
+    enum { FIRST_ROOM = 32 };
     const uint8_t *corner = tm_edge_corner[e];
     const uint32_t *n = mesh->tet[t];
-    if (!reserve(star, 2))
+    if (!reserve(star, FIRST_ROOM))
         return false;
     star->a = n[corner[0]];
     star->b = n[corner[1]];
-    star->kept_face = false;
     star->tet[0] = t;
+    star->edge[0] = (uint8_t)e;
     star->ring[0] = n[corner[2]];
     star->ring[1] = n[corner[3]];
-    star->size = 1;
-    int end = walk(mesh, t, corner[2], star);
-    star->closed = end == 1;
-    if (end != 0)
-        return end == 1;
-    /* Open: what lies before t is found by walking back, and goes in front. */
-    size_t after = star->size;
-    reverse(star->tet, after);
-    reverse(star->ring, after + 1);
-    if (walk(mesh, t, corner[3], star) < 0)
-        return false;
-    reverse(star->tet, star->size);
-    reverse(star->ring, star->size + 1);
+    star_end front = {t, corner[2]}, rear = {t, corner[3]};
+    size_t ahead = 1, back = 0;
+    bool kept = false, closed = false, front_ends = false, rear_ends = false;
+    while (!closed && !(front_ends && rear_ends)) {
+        if (ahead + 2 * back + 4 > star->room && !widen(star, back))
+            return false;
+        if (!front_ends) {
+            uint32_t across = look_beyond(mesh, &front, &kept);
+            front_ends = across == TM_NONE;
+            closed = !front_ends && across / 4 == rear.t;
+            if (!front_ends && !closed) {
+                step_beyond(mesh, star, &front, across, ahead, ahead + 1);
+                ahead++;
+            }
+        }
+        if (!closed && !rear_ends) {
+            uint32_t across = look_beyond(mesh, &rear, &kept);
+            rear_ends = across == TM_NONE;
+            closed = !rear_ends && across / 4 == front.t;
+            if (!rear_ends && !closed) {
+                back++;
+                step_beyond(mesh, star, &rear, across, star->room - back,
+                            star->room - back);
+            }
+        }
+    }
+    star->kept_face = kept;
+    star->closed = closed;
+    star->size = ahead + back;
+    if (closed) {
+        move_down(star, star->room - back, ahead, back);
+        star->ring[star->size] = star->ring[0];
+    } else if (back > 0) {
+        star->ring[ahead + back] = star->ring[ahead];
+        move_up(star, 0, back, ahead);
+        move_down(star, star->room - back, 0, back);
+    }
     return true;
 }
 

@@ -16,6 +16,7 @@ typedef struct tm_star {
     bool kept_face; /* a face that has to stay is at the edge: always if not closed */
     uint32_t *tet;
     uint32_t *ring;
+    uint8_t *edge; /* which edge of tetrahedron i it is, 0 … 5 */
     size_t room;
 } tm_star;
 

@@ -8,13 +8,18 @@
 
 void tm_star_centroid(const tm_tet_mesh *mesh, const tm_star *star, double p[3])
 {
+    const double *a = mesh->xyz[star->a], *b = mesh->xyz[star->b];
     size_t rings = star->size + !star->closed;
-    for (int k = 0; k < 3; k++) {
-        double sum = mesh->xyz[star->a][k] + mesh->xyz[star->b][k];
-        for (size_t i = 0; i < rings; i++)
-            sum += mesh->xyz[star->ring[i]][k];
-        p[k] = sum / (double)(rings + 2);
+    double x = a[0] + b[0], y = a[1] + b[1], z = a[2] + b[2];
+    for (size_t i = 0; i < rings; i++) {
+        const double *r = mesh->xyz[star->ring[i]];
+        x += r[0];
+        y += r[1];
+        z += r[2];
     }
+    p[0] = x / (double)(rings + 2);
+    p[1] = y / (double)(rings + 2);
+    p[2] = z / (double)(rings + 2);
 }
 
 void tm_star_wcentroid(const tm_tet_mesh *mesh, const tm_star *star, double p[3])
@@ -218,7 +223,7 @@ tm_status tm_star_insert(tm_tet_mesh *mesh, const tm_star *star, const double p[
     uint32_t v = add_node(mesh, star, p, on_edge);
     if (on_edge)
         split_edge(mesh, star->a, star->b, v);
-    else
+    else if (mesh->inner_edges)
         tm_tet_mesh_forget_edge(mesh, star->a, star->b);
     uint32_t *upper = created + star->size;
     for (size_t i = 0; i < star->size; i++) {

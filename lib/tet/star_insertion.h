@@ -28,6 +28,11 @@ bool tm_star_contains(const tm_tet_mesh *mesh, const tm_star *star, const double
 double tm_star_insertion_quality(const tm_tet_mesh *mesh, const tm_star *star,
                                  const double p[3], tm_tet_measure measure, double least);
 
+/* Both: tm_star_sees(), and if so, *quality as above. O(n). */
+bool tm_star_try_insertion(const tm_tet_mesh *mesh, const tm_star *star,
+                           const double p[3], tm_tet_measure measure, double least,
+                           double *quality);
+
 /* Inserts p, which tm_star_sees(), as a new node: the corner of created[0] that replaces
  * star->b. With on_edge, p is the midpoint of the edge: faces that stay, and an edge of
  * .edge, are split, and p gets the marker of the edge, or of a face; else

@@ -39,6 +39,10 @@ static void check_star(const tm_tet_mesh *mesh, const tm_star *star)
             assert_int_equal(
                 mesh->tet[star->tet[i]][tm_tet_corner(mesh, star->tet[i], expected[k])],
                 expected[k]);
+        const uint8_t *end = tm_edge_corner[star->edge[i]];
+        uint32_t v = mesh->tet[star->tet[i]][end[0]];
+        uint32_t w = mesh->tet[star->tet[i]][end[1]];
+        assert_true((v == star->a && w == star->b) || (v == star->b && w == star->a));
     }
     if (star->closed)
         assert_int_equal(star->ring[0], star->ring[star->size]);
@@ -143,8 +147,9 @@ static double best_of_all(const tm_tet_mesh *mesh, const tm_star *star, size_t i
     return best;
 }
 
-/* n tetrahedra around an edge, with a random ring; checked to be positive. */
-static bool random_star(tm_stream *stream, tm_tet_mesh *mesh, size_t n)
+/* The first `tets` of n tetrahedra around an edge, with a random ring; checked to be
+ * positive. */
+static bool random_star(tm_stream *stream, tm_tet_mesh *mesh, size_t n, size_t tets)
 {
     tm_stream_init(stream);
     tm_stream_add(stream, ".node");
@@ -152,7 +157,7 @@ static bool random_star(tm_stream *stream, tm_tet_mesh *mesh, size_t n)
     tm_block *node = tm_stream_find(stream, ".node");
     tm_block *ele = tm_stream_find(stream, ".ele");
     assert_int_equal(tm_block_allocate(node, n + 2, 0, NULL), TM_OK);
-    assert_int_equal(tm_block_allocate(ele, n, 0, NULL), TM_OK);
+    assert_int_equal(tm_block_allocate(ele, tets, 0, NULL), TM_OK);
     const double turn = 8 * atan(1);
     node->real[2] = -1 - random_unit();
     node->real[5] = 1 + random_unit();
@@ -161,6 +166,8 @@ static bool random_star(tm_stream *stream, tm_tet_mesh *mesh, size_t n)
         double r = 0.5 + random_unit();
         double *p = node->real + 3 * (i + 2);
         p[0] = r * cos(angle), p[1] = r * sin(angle), p[2] = 0.4 * random_unit();
+        if (i >= tets)
+            continue;
         uint32_t *t = ele->integer + 4 * i;
         t[0] = 0, t[1] = 1, t[2] = (uint32_t)i + 2, t[3] = (uint32_t)((i + 1) % n) + 2;
     }
@@ -184,7 +191,7 @@ static void test_best_removal(void **state)
         for (int k = 0; k < TIMES; k++) {
             tm_stream stream;
             tm_tet_mesh mesh;
-            if (!random_star(&stream, &mesh, n))
+            if (!random_star(&stream, &mesh, n, n))
                 continue;
             assert_true(tm_star_around(&mesh, 0, 0, &star));
             assert_true(star.closed && star.size == n);
@@ -210,6 +217,58 @@ static void test_best_removal(void **state)
     assert_true(found > TIMES);
     tm_star_free(&star);
     free(removal);
+}
+
+/* Both at once say what each says, of random points near the edge. */
+static void check_insertion(const tm_tet_mesh *mesh, const tm_star *star)
+{
+    for (int k = 0; k < 20; k++) {
+        double scale = 0.5 * random_unit(), quality;
+        double p[3] = {scale * (random_unit() - 0.5), scale * (random_unit() - 0.5),
+                       random_unit() - 0.5};
+        double least = random_below(2) ? 1e-9 : 0.1 * random_unit();
+        bool sees = tm_star_sees(mesh, star, p);
+        double expected =
+            tm_star_insertion_quality(mesh, star, p, TM_MEASURE_DIHEDRAL, least);
+        assert_int_equal(
+            tm_star_try_insertion(mesh, star, p, TM_MEASURE_DIHEDRAL, least, &quality),
+            sees);
+        if (sees)
+            assert_true(quality == expected);
+    }
+}
+
+/* Closed and open stars of all sizes, walked from each of their tetrahedra. */
+static void test_stars_of_all_sizes(void **state)
+{
+    (void)state;
+    enum { LARGEST = 130 };
+    size_t found[2] = {0, 0};
+    for (size_t n = 3; n <= LARGEST; n++)
+        for (size_t missing = 0; missing < 3 && missing + 1 < n; missing++) {
+            tm_stream stream;
+            tm_tet_mesh mesh;
+            if (!random_star(&stream, &mesh, n, n - missing))
+                continue;
+            for (uint32_t t = 0; t < mesh.slots; t++) {
+                tm_star star = {0}; /* new: its room has to grow */
+                unsigned e = 0;
+                while (mesh.tet[t][tm_edge_corner[e][0]] > 1 ||
+                       mesh.tet[t][tm_edge_corner[e][1]] > 1)
+                    e++;
+                assert_true(tm_star_around(&mesh, t, e, &star));
+                assert_int_equal(star.closed, missing == 0);
+                assert_true(missing > 0 || star.tet[0] == t);
+                check_star(&mesh, &star);
+                if (t == 0)
+                    check_insertion(&mesh, &star);
+                tm_star_free(&star);
+            }
+            found[missing > 0]++;
+            tm_tet_mesh_free(&mesh);
+            tm_stream_free(&stream);
+        }
+    assert_true(found[0] > 20 && found[1] > 20);
 }
 
 static void test_edge_map(void **state)
@@ -243,9 +302,9 @@ static void test_edge_map(void **state)
 int main(void)
 {
     random_start();
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_edge_map),
-                                       cmocka_unit_test(test_best_removal),
-                                       cmocka_unit_test(test_operations),
-                                       cmocka_unit_test(test_operations_with_regions)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_edge_map), cmocka_unit_test(test_best_removal),
+        cmocka_unit_test(test_stars_of_all_sizes), cmocka_unit_test(test_operations),
+        cmocka_unit_test(test_operations_with_regions)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

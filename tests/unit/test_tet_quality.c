@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Dihedral angles, sin² and volume quality of tetrahedra with known ones, and of random
  * ones against each other. */
+#include "../../lib/geom/predicates.h"
 #include "../../lib/geom/vector.h"
+#include "../../lib/quality/tet_four.h"
+#include "../../lib/quality/tet_gain.h"
 #include "../../lib/quality/tet_quality.h"
 #include "random.h"
 
@@ -336,6 +339,113 @@ static void test_random_bad_alike(void **state)
     assert_true(found[0] > 0 && found[1] > 0);
 }
 
+/* The quick bound is below what is asked for, and near; where that cannot be reached, so
+ * says the bound. */
+static void test_bound_of_gain(void **state)
+{
+    (void)state;
+    static const double factors[] = {1 + 1e-5, 1.1, 1.5, 2, 3, 10, 100};
+    for (size_t f = 0; f < sizeof factors / sizeof *factors; f++) {
+        const tm_gain gain = tm_gain_of(TM_MEASURE_DIHEDRAL, factors[f]);
+        const double sine = sin(pi / 2 / factors[f]), most = sine * sine;
+        assert_true(tm_gain_bound(&gain, 0) == DBL_MIN);
+        for (int n = 0; n < 20000; n++) {
+            double value = random_unit() * most * 1.05;
+            if (n % 4 == 0)
+                value *= value * value;
+            double bound = tm_gain_bound(&gain, value),
+                   least = tm_gain_least(&gain, value);
+            assert_true(bound <= least);
+            assert_true(least == HUGE_VAL ? bound == HUGE_VAL : bound > least - 0.02);
+        }
+    }
+    const tm_gain volume = tm_gain_of(TM_MEASURE_VOLUME, 2);
+    assert_true(tm_gain_bound(&volume, 0.25) == nextafter(0.5, 1));
+    assert_true(tm_gain_bound(&volume, 0) == DBL_MIN);
+}
+
+#ifdef TM_FOUR_IS_THERE
+
+TM_FOUR static void measure_four(tetrahedron t[4], double sine2_of[4],
+                                 double length2[TM_TET_EDGES][4], unsigned *valid,
+                                 unsigned *positive)
+{
+    tm_vector_four corner[CORNERS];
+    for (int v = 0; v < CORNERS; v++)
+        corner[v] = tm_four_points(t[0][v], t[1][v], t[2][v], t[3][v]);
+    const tm_four_measure m = tm_four_sine2(corner[0], corner[1], corner[2], corner[3]);
+    _mm256_storeu_pd(sine2_of, m.sine2);
+    for (int e = 0; e < TM_TET_EDGES; e++)
+        _mm256_storeu_pd(length2[e], m.length2[e]);
+    *valid = tm_four_bits(m.valid);
+    *positive = tm_four_positive(&m);
+}
+
+/* Random ones, some of them flat, nearly flat, negative, or degenerate to a triangle, an
+ * edge or a point; of all scales. */
+static void any_tetrahedron(tetrahedron t)
+{
+    random_tetrahedron(t);
+    unsigned shape = random_below(8);
+    for (int i = 0; i < DIMENSIONS; i++) {
+        if (shape < 2)
+            t[3][i] = (t[0][i] + t[1][i]) / 2 + (shape ? 1e-9 * random_unit() : 0);
+        if (shape == 2)
+            t[2][i] = t[1][i];
+        if (shape == 3 && random_below(8) == 0)
+            t[1][i] = t[2][i] = t[3][i] = t[0][i];
+    }
+    if (random_below(4) > 0)
+        return;
+    int exponent = (int)random_below(700) - 350;
+    for (int v = 0; v < CORNERS; v++)
+        for (int i = 0; i < DIMENSIONS; i++)
+            t[v][i] = ldexp(t[v][i], exponent);
+}
+
+static void test_four_are_as_each(void **state)
+{
+    (void)state;
+    if (!tm_has_four())
+        skip();
+    size_t valid_ones = 0, positive_ones = 0;
+    for (int n = 0; n < 50000; n++) {
+        tetrahedron t[4];
+        double sine2_of[4], length2[TM_TET_EDGES][4];
+        unsigned valid, positive;
+        for (int k = 0; k < 4; k++)
+            any_tetrahedron(t[k]);
+        measure_four(t, sine2_of, length2, &valid, &positive);
+        for (unsigned k = 0; k < 4; k++) {
+            bool measured;
+            double one =
+                tm_tet_sine2_measure(t[k][0], t[k][1], t[k][2], t[k][3], &measured);
+            assert_int_equal(valid >> k & 1, measured);
+            assert_memory_equal(&sine2_of[k], &one, sizeof one);
+            for (int e = 0; e < TM_TET_EDGES; e++)
+                assert_true(length2[e][k] ==
+                            tm_distance2(t[k][tm_tet_edge_corner[e][0]],
+                                         t[k][tm_tet_edge_corner[e][1]]));
+            if (positive >> k & 1)
+                assert_int_equal(tm_orient3d_exact(t[k][0], t[k][1], t[k][2], t[k][3]),
+                                 1);
+            valid_ones += measured;
+            positive_ones += positive >> k & 1;
+        }
+    }
+    assert_true(valid_ones > 100000 && positive_ones > 50000);
+}
+
+#else
+
+static void test_four_are_as_each(void **state)
+{
+    (void)state;
+    skip();
+}
+
+#endif
+
 int main(void)
 {
     random_start();
@@ -351,6 +461,8 @@ int main(void)
         cmocka_unit_test(test_scale_and_shift),
         cmocka_unit_test(test_the_limit),
         cmocka_unit_test(test_random_bad_alike),
+        cmocka_unit_test(test_bound_of_gain),
+        cmocka_unit_test(test_four_are_as_each),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
