@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* lepp-improve: tetrahedra in, better tetrahedra out. */
 #include "common/filter.h"
+#include "common/tet_input.h"
 
 #include "../lib/base/json.h"
 #include "../lib/quality/tet_statistics.h"
@@ -70,19 +71,6 @@ typedef struct {
     tm_lepp_options lepp;
 } settings;
 
-/* The place of a word in a list, or a usage error. */
-static int find_word(const filter *f, const char *option, const char *const *word,
-                     int count, const char *given)
-{
-    char all[256] = "";
-    for (int k = 0; k < count; k++) {
-        if (strcmp(word[k], given) == 0)
-            return k;
-        snprintf(all + strlen(all), sizeof all - strlen(all), k ? ", %s" : "%s", word[k]);
-    }
-    filter_usage_error(f, "%s: '%s' is none of %s", option, given, all);
-}
-
 static void set_stop(const filter *f, settings *o, const char *text)
 {
     if (strcmp(text, "original") == 0) {
@@ -109,7 +97,7 @@ static unsigned find_ops(const filter *f, const char *list)
     for (;;) {
         size_t length = strcspn(list, ",");
         snprintf(word, sizeof word, "%.*s", (int)length, list);
-        ops |= 1u << find_word(f, "--ops", tm_improve_op_name, TM_IMPROVE_OPS, word);
+        ops |= 1u << filter_word(f, "--ops", tm_improve_op_name, TM_IMPROVE_OPS, word);
         if (list[length] == '\0')
             return ops;
         list += length + 1;
@@ -123,7 +111,7 @@ static const char *const sweeps[] = {"smooth", "face-swap", "both"};
 static void set_option(filter *f, settings *o, int c)
 {
     if (c == 'a') {
-        int a = find_word(f, "-a", algorithms, ALGORITHMS + 1, optarg);
+        int a = filter_word(f, "-a", algorithms, ALGORITHMS + 1, optarg);
         o->is_improve = a == IMPROVE;
         o->lepp.algorithm = o->is_improve ? TM_LEPP_SELECTIVE : (tm_lepp_algorithm)a;
     } else if (c == 'm') {
@@ -131,7 +119,7 @@ static void set_option(filter *f, settings *o, int c)
     } else if (c == 't') {
         o->lepp.angle = o->improve.angle = filter_number(f, "-t", optarg, 0, right_angle);
     } else if (c == 'Q') {
-        o->lepp.measure = (tm_tet_measure)find_word(f, "-Q", measures, 2, optarg);
+        o->lepp.measure = (tm_tet_measure)filter_word(f, "-Q", measures, 2, optarg);
         o->improve.measure = o->lepp.measure;
     } else if (c == 's') {
         set_stop(f, o, optarg);
@@ -142,9 +130,9 @@ static void set_option(filter *f, settings *o, int c)
             filter_number(f, "--max-growth", optarg, least_growth, most_growth);
         o->improve.max_growth = o->lepp.max_growth;
     } else if (c == PATH) {
-        o->lepp.path = (tm_lepp_path)find_word(f, "--path", paths, 2, optarg);
+        o->lepp.path = (tm_lepp_path)filter_word(f, "--path", paths, 2, optarg);
     } else if (c == WITH) {
-        o->lepp.sweeps = 1u + (unsigned)find_word(f, "--with", sweeps, 3, optarg);
+        o->lepp.sweeps = 1u + (unsigned)filter_word(f, "--with", sweeps, 3, optarg);
     } else if (c == MAX_STAR) {
         o->lepp.max_star = (size_t)filter_integer(f, "--max-star", optarg, 1, INT32_MAX);
     }
@@ -207,38 +195,6 @@ static void measure(const filter *f, const double (*xyz)[3], size_t nodes,
         filter_fail(f, &error);
 }
 
-/* What the reading of the mesh found worth saying. */
-static void note_input(const filter *f, const tm_tet_mesh *mesh)
-{
-    if (mesh->turned)
-        filter_note(f, "%zu tetrahedra were left-handed and are turned", mesh->turned);
-    if (mesh->flat)
-        filter_note(f, "%zu tetrahedra are flat", mesh->flat);
-    if (mesh->dropped_faces)
-        filter_note(f, "%zu inner faces without marker are dropped from .face",
-                    mesh->dropped_faces);
-    if (mesh->dangling)
-        filter_note(f, "%zu rows of .face are no face of a tetrahedron; they stay",
-                    mesh->dangling);
-    if (mesh->locked.count)
-        filter_note(f, "%zu edges where the mesh only touches itself are left alone",
-                    mesh->locked.count);
-}
-
-/* Drops the main mesh's blocks that are not known here: they may refer to the
- * tetrahedra, which have other numbers now. */
-static void drop_unknown(const filter *f, tm_stream *stream)
-{
-    for (size_t b = stream->blocks; b > 0; b--) {
-        tm_block *block = &stream->block[b - 1];
-        if (block->kind != TM_UNKNOWN || block->name[0] != '.')
-            continue;
-        filter_note(f, "%s is dropped: the tetrahedra have other numbers now",
-                    block->name);
-        tm_stream_remove(stream, block);
-    }
-}
-
 /* What was done, by the engine that did it. */
 typedef struct {
     tm_improve_report improve;
@@ -283,11 +239,7 @@ static void improve(filter *f, tm_stream *stream, const settings *o, result *r)
 {
     tm_error error;
     tm_tet_mesh mesh;
-    if (tm_tet_mesh_take(&mesh, stream, &error) != TM_OK) {
-        snprintf(error.file, sizeof error.file, "%s", filter_input_name(f));
-        filter_fail(f, &error);
-    }
-    note_input(f, &mesh);
+    take_tet_mesh(f, stream, &mesh);
     measure(f, (const double(*)[3])mesh.xyz, mesh.nodes, (const uint32_t(*)[4])mesh.tet,
             mesh.slots, o->improve.angle, &r->before);
     r->seconds = -cpu_seconds();
@@ -402,7 +354,7 @@ int main(int argc, char **argv)
     result r;
     improve(&f, &stream, &o, &r);
     if (r.changes > 0)
-        drop_unknown(&f, &stream);
+        drop_unknown_blocks(&f, &stream, "the tetrahedra have other numbers now");
 
     const tm_block *node = tm_stream_find(&stream, ".node");
     const tm_block *ele = tm_stream_find(&stream, ".ele");

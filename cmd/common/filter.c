@@ -121,6 +121,18 @@ long filter_integer(const filter *f, const char *option, const char *text, long 
     return (long)value;
 }
 
+int filter_word(const filter *f, const char *option, const char *const *word, int count,
+                const char *given)
+{
+    char all[256] = "";
+    for (int k = 0; k < count; k++) {
+        if (strcmp(word[k], given) == 0)
+            return k;
+        snprintf(all + strlen(all), sizeof all - strlen(all), k ? ", %s" : "%s", word[k]);
+    }
+    filter_usage_error(f, "%s: '%s' is none of %s", option, given, all);
+}
+
 /* A standard descriptor that the caller closed would be given to the next file that is
  * opened; it gets one on which every read or write fails instead. */
 static void occupy_standard_descriptors(void)

@@ -86,6 +86,10 @@ double filter_number(const filter *f, const char *option, const char *text, doub
 long filter_integer(const filter *f, const char *option, const char *text, long lo,
                     long hi);
 
+/* An option argument as its place in a list of words, else a usage error. */
+int filter_word(const filter *f, const char *option, const char *const *word, int count,
+                const char *given);
+
 /* "name: message", then exit 2, pointing to --help. */
 _Noreturn void filter_usage_error(const filter *f, const char *format, ...)
     __attribute__((format(printf, 2, 3)));

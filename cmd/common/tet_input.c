@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tet_input.h"
+
+/* What the reading of the mesh found worth saying. */
+static void note_input(const filter *f, const tm_tet_mesh *mesh)
+{
+    if (mesh->turned)
+        filter_note(f, "%zu tetrahedra were left-handed and are turned", mesh->turned);
+    if (mesh->flat)
+        filter_note(f, "%zu tetrahedra are flat", mesh->flat);
+    if (mesh->dropped_faces)
+        filter_note(f, "%zu inner faces without marker are dropped from .face",
+                    mesh->dropped_faces);
+    if (mesh->dangling)
+        filter_note(f, "%zu rows of .face are no face of a tetrahedron; they stay",
+                    mesh->dangling);
+    if (mesh->locked.count)
+        filter_note(f, "%zu edges where the mesh only touches itself are left alone",
+                    mesh->locked.count);
+}
+
+void take_tet_mesh(const filter *f, tm_stream *stream, tm_tet_mesh *mesh)
+{
+    tm_error error;
+    if (tm_tet_mesh_take(mesh, stream, &error) != TM_OK) {
+        snprintf(error.file, sizeof error.file, "%s", filter_input_name(f));
+        filter_fail(f, &error);
+    }
+    note_input(f, mesh);
+}
+
+void drop_unknown_blocks(const filter *f, tm_stream *stream, const char *why)
+{
+    for (size_t b = stream->blocks; b > 0; b--) {
+        tm_block *block = &stream->block[b - 1];
+        if (block->kind != TM_UNKNOWN || block->name[0] != '.')
+            continue;
+        filter_note(f, "%s is dropped: %s", block->name, why);
+        tm_stream_remove(stream, block);
+    }
+}

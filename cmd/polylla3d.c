@@ -1,0 +1,260 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* polylla3d: tetrahedra in, polyhedra out. */
+#include "common/filter.h"
+#include "common/tet_input.h"
+
+#include "../lib/base/json.h"
+#include "../lib/poly/facets.h"
+#include "../lib/tet/facet.h"
+#include "../lib/tet/mesh_order.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    MODE = FILTER_OWN,
+    FACE_METRIC,
+    NO_REPAIR,
+    STAR,
+    ABSORB,
+    MAX_TETS,
+    NO_SWALLOW,
+    MERGE_COPLANAR,
+    IGNORE_MARKERS,
+    LABEL
+};
+
+static const struct option options[] = {
+    {"mode", required_argument, NULL, MODE},
+    {"face-metric", required_argument, NULL, FACE_METRIC},
+    {"no-repair", no_argument, NULL, NO_REPAIR},
+    {"star", no_argument, NULL, STAR},
+    {"absorb", no_argument, NULL, ABSORB},
+    {"max-tets", required_argument, NULL, MAX_TETS},
+    {"no-swallow", no_argument, NULL, NO_SWALLOW},
+    {"merge-coplanar", optional_argument, NULL, MERGE_COPLANAR},
+    {"ignore-markers", no_argument, NULL, IGNORE_MARKERS},
+    {"label", no_argument, NULL, LABEL},
+    FILTER_OPTIONS};
+
+static const char own_help[] =
+    "      --mode MODE     how tetrahedra are joined: terminal (default), one "
+    "polyhedron\n"
+    "                      for each terminal edge; edge, by their longest edge; face,\n"
+    "                      across their best face; cavity, by their circumcentres\n"
+    "      --face-metric M the best face of --mode face: area (default) or inradius\n"
+    "      --star          each star-shaped with respect to a ball\n"
+    "      --absorb        single tetrahedra join the polyhedra beside them\n"
+    "      --max-tets N    of N tetrahedra at most\n"
+    "      --no-swallow    no node inside of a polyhedron\n"
+    "      --no-repair     leave what is no ball as it is\n"
+    "      --merge-coplanar[=DEG]  join faces between the same polyhedra that are in "
+    "one\n"
+    "                      plane, or whose normals differ by DEG at most\n"
+    "      --ignore-markers  join across marked faces inside\n"
+    "      --label         write the tetrahedra, with their polyhedron as attribute\n";
+
+typedef struct {
+    tm_poly_options poly;
+    bool merge, ignore_markers, label;
+    double degrees; /* of --merge-coplanar */
+} settings;
+
+static const double most_degrees = 30;
+
+static const char *const modes[] = {"terminal", "edge", "face", "cavity"};
+static const char *const metrics[] = {"area", "inradius"};
+
+static void set_option(filter *f, settings *o, int c)
+{
+    tm_poly_options *p = &o->poly;
+    if (c == MODE)
+        p->mode = (tm_poly_mode)filter_word(f, "--mode", modes, 4, optarg);
+    else if (c == FACE_METRIC)
+        p->face_metric =
+            (tm_face_metric)filter_word(f, "--face-metric", metrics, 2, optarg);
+    else if (c == NO_REPAIR)
+        p->repair = false;
+    else if (c == STAR)
+        p->star = true;
+    else if (c == ABSORB)
+        p->absorb = true;
+    else if (c == NO_SWALLOW)
+        p->no_swallow = true;
+    else if (c == MAX_TETS)
+        p->max_tets = (size_t)filter_integer(f, "--max-tets", optarg, 1, INT32_MAX);
+    else if (c == IGNORE_MARKERS)
+        o->ignore_markers = true;
+    else if (c == LABEL)
+        o->label = true;
+    else if (c == MERGE_COPLANAR) {
+        o->merge = true;
+        if (optarg)
+            o->degrees = filter_number(f, "--merge-coplanar", optarg, 0, most_degrees);
+    }
+}
+
+static settings read_options(filter *f)
+{
+    settings o = {.poly = {.repair = true}};
+    bool has_metric = false;
+    int c;
+    while ((c = filter_option(f)) != -1) {
+        set_option(f, &o, c);
+        has_metric |= c == FACE_METRIC;
+    }
+    const tm_poly_options *p = &o.poly;
+    if (has_metric && p->mode != TM_POLY_FACE)
+        filter_usage_error(f, "--face-metric is for --mode face");
+    if (!p->repair && (p->star || p->absorb || p->no_swallow || p->max_tets || o.merge))
+        filter_usage_error(f, "--star, --absorb, --no-swallow, --max-tets and "
+                              "--merge-coplanar are of the repair: not with --no-repair");
+    if (o.label && o.merge)
+        filter_usage_error(f, "--merge-coplanar is for faces: --label writes none");
+    return o;
+}
+
+/* Puts the blocks of the polyhedra in the place of those of the tetrahedra. */
+static void put_facets(filter *f, tm_stream *stream, const tm_block made[2])
+{
+    static const char *const gone[2] = {".ele", ".face"};
+    for (int k = 0; k < 2; k++) {
+        tm_block *block = tm_stream_find(stream, gone[k]);
+        if (block)
+            tm_stream_remove(stream, block);
+    }
+    for (int k = 0; k < 2; k++) {
+        tm_error error;
+        tm_block *block = tm_stream_add(stream, made[k].name);
+        if (!block) {
+            tm_fail_memory(&error);
+            filter_fail(f, &error);
+        }
+        *block = made[k];
+    }
+}
+
+/* Appends the polyhedra of the tetrahedra to their attributes. */
+static void put_labels(filter *f, tm_stream *stream, const tm_partition *partition)
+{
+    tm_error error;
+    tm_block *ele = tm_stream_find(stream, ".ele");
+    if (!ele)
+        return;
+    size_t width = ele->attributes;
+    double *attribute = malloc((width + 1) * ele->count * sizeof *attribute + 1);
+    if (!attribute) {
+        tm_fail_memory(&error);
+        filter_fail(f, &error);
+    }
+    for (size_t t = 0; t < ele->count; t++) {
+        for (size_t k = 0; k < width; k++)
+            attribute[t * (width + 1) + k] = ele->attribute[t * width + k];
+        attribute[t * (width + 1) + width] = partition->cell[t] + stream->base;
+    }
+    free(ele->attribute);
+    ele->attribute = attribute;
+    ele->attributes = width + 1;
+}
+
+/* What was done, for the note, the history and --json. */
+typedef struct {
+    tm_poly_report poly;
+    size_t facets, joined, lost;
+} result;
+
+static void make_facets(filter *f, const settings *o, const tm_tet_mesh *mesh,
+                        const tm_partition *partition, tm_block made[2], result *r)
+{
+    tm_error error;
+    tm_coplanar plane = {o->degrees, tm_facet_flatness(mesh)};
+    tm_status status =
+        tm_partition_facets(partition, mesh, &made[0], &made[1], &r->lost, &error);
+    if (status == TM_OK && o->merge)
+        status = tm_merge_coplanar(mesh, &plane, &made[0], &made[1], &r->joined, &error);
+    if (status != TM_OK)
+        filter_fail(f, &error);
+    r->facets = made[0].count;
+}
+
+/* Makes polyhedra of the stream's tetrahedra. */
+static void convert(filter *f, tm_stream *stream, const settings *o, result *r)
+{
+    tm_error error;
+    tm_tet_mesh mesh;
+    tm_partition partition;
+    const tm_block *face = tm_stream_find(stream, ".face");
+    tm_block made[2] = {
+        {.name = ".facet", .kind = TM_FACET, .markers = face && face->markers},
+        {.name = ".cell", .kind = TM_CELL}};
+    *r = (result){0};
+    take_tet_mesh(f, stream, &mesh);
+    if (!o->label && tm_tet_mesh_sort(&mesh, &error) != TM_OK)
+        filter_fail(f, &error);
+    if (o->ignore_markers)
+        tm_ignore_markers(&mesh);
+    if (tm_partition_make(&partition, &mesh, &o->poly, &r->poly, &error) != TM_OK)
+        filter_fail(f, &error);
+    if (!o->label)
+        make_facets(f, o, &mesh, &partition, made, r);
+    if (tm_tet_mesh_give(&mesh, stream, &error) != TM_OK)
+        filter_fail(f, &error);
+    if (o->label)
+        put_labels(f, stream, &partition);
+    else
+        put_facets(f, stream, made);
+    tm_partition_free(&partition);
+}
+
+static void write_json(filter *f, const result *r)
+{
+    tm_text text = {0};
+    tm_json json = {.text = &text};
+    const tm_poly_report *p = &r->poly;
+    tm_json_open(&json, NULL, '{');
+    tm_json_integer(&json, "tets", (int64_t)p->tets);
+    tm_json_integer(&json, "regions", (int64_t)p->regions);
+    tm_json_integer(&json, "regions_taken_apart", (int64_t)p->taken_apart);
+    tm_json_integer(&json, "absorbed", (int64_t)p->absorbed);
+    tm_json_integer(&json, "polyhedra", (int64_t)p->cells);
+    tm_json_integer(&json, "facets", (int64_t)r->facets);
+    tm_json_integer(&json, "facets_joined", (int64_t)r->joined);
+    tm_json_close(&json, '}');
+    tm_text_string(&text, "\n");
+    filter_write_json(f, &text);
+    tm_text_free(&text);
+}
+
+int main(int argc, char **argv)
+{
+    filter f = {.name = "polylla3d",
+                .synopsis = "[--mode terminal|edge|face|cavity] [--no-repair] [--star] "
+                            "[--absorb] [--max-tets N] [--no-swallow] "
+                            "[--merge-coplanar[=DEG]] [FILE]",
+                .purpose = "Joins tetrahedra to polyhedra.",
+                .help = own_help,
+                .options = options,
+                .letters = FILTER_LETTERS};
+    filter_start(&f, argc, argv);
+    settings o = read_options(&f);
+    filter_operands(&f);
+    tm_stream stream;
+    filter_read(&f, &stream);
+
+    result r;
+    convert(&f, &stream, &o, &r);
+    drop_unknown_blocks(&f, &stream, "the tetrahedra are polyhedra now");
+    if (r.lost > 0)
+        filter_note(&f, "%zu marked faces are inside of a polyhedron and dropped",
+                    r.lost);
+    char summary[256];
+    double cells = (double)r.poly.cells;
+    snprintf(summary, sizeof summary, "%zu tetrahedra -> %zu polyhedra, %.2f each",
+             r.poly.tets, r.poly.cells, cells > 0 ? (double)r.poly.tets / cells : 0);
+    filter_note(&f, "%s", summary);
+    if (f.json)
+        write_json(&f, &r);
+    filter_write(&f, &stream, "%s", summary);
+    tm_stream_free(&stream);
+    return filter_finish(&f, EXIT_SUCCESS);
+}

@@ -1,0 +1,277 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Polygons of triangles in one plane, grown triangle by triangle: one is added if it has
+ * one edge of the polygon and its third node is not in it, or two edges of it; then the
+ * node between these goes inside. So the polygon stays a disc. */
+#include "facets.h"
+
+#include "../base/array.h"
+#include "../geom/vector.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { CORNERS = 3 };
+
+typedef struct {
+    const tm_tet_mesh *mesh;
+    const tm_coplanar *plane;
+    const tm_block *facet; /* triangles */
+    tm_edge_map edges;     /* 4 facet + corner, of the facets of one pair of cells */
+    uint32_t (*beyond)[CORNERS]; /* the facet at edge i, i+1 of each, or TM_NONE */
+    uint32_t *polygon;           /* of each facet, or TM_NONE */
+    uint32_t *node_polygon;      /* [nodes]: the last one that has it */
+    uint32_t *queue;             /* facets */
+    size_t queue_room;
+    /* of the polygon that is grown */
+    uint32_t id;
+    const double *on_plane;
+    double normal[3];
+} merger;
+
+static const uint32_t *nodes_of(const merger *m, uint32_t f)
+{
+    return m->facet->item + CORNERS * (size_t)f;
+}
+
+/* Whether two facets have the same cells and marker. */
+static bool is_alike(const tm_block *facet, uint32_t f, uint32_t g)
+{
+    return memcmp(facet->integer + 2 * (size_t)f, facet->integer + 2 * (size_t)g,
+                  2 * sizeof *facet->integer) == 0 &&
+           (!facet->markers || facet->marker[f] == facet->marker[g]);
+}
+
+static bool has_marked_edge(const merger *m, uint32_t a, uint32_t b)
+{
+    const tm_marked_edge *edge = tm_tet_mesh_edge(m->mesh, a, b);
+    return edge && edge->marker != 0;
+}
+
+/* Finds the facets beyond the edges of those from..to, which have one first cell. An edge
+ * is met by two alike facets, by others too: each pair of cells has its own slot. */
+static bool find_neighbours(merger *m, uint32_t from, uint32_t to)
+{
+    for (uint32_t f = from; f < to; f++)
+        for (int i = 0; i < CORNERS; i++)
+            m->beyond[f][i] = TM_NONE;
+    tm_edge_map_free(&m->edges);
+    if (!tm_edge_map_reserve(&m->edges, CORNERS * (size_t)(to - from)))
+        return false;
+    for (uint32_t f = from; f < to; f++)
+        for (uint32_t i = 0; i < CORNERS; i++) {
+            const uint32_t *n = nodes_of(m, f);
+            uint32_t a = n[i], b = n[(i + 1) % CORNERS];
+            uint32_t *other = tm_edge_map_get(&m->edges, a, b);
+            if (!other) {
+                tm_edge_map_put(&m->edges, a, b, 4 * f + i);
+            } else if (is_alike(m->facet, f, *other / 4) && !has_marked_edge(m, a, b)) {
+                m->beyond[f][i] = *other / 4;
+                m->beyond[*other / 4][*other % 4] = f;
+            }
+        }
+    return true;
+}
+
+static bool set_plane(merger *m, uint32_t f)
+{
+    const uint32_t *n = nodes_of(m, f);
+    const double(*xyz)[3] = (const double(*)[3])m->mesh->xyz;
+    m->on_plane = xyz[n[0]];
+    tm_triangle_normal(m->normal, xyz[n[0]], xyz[n[1]], xyz[n[2]]);
+    double length = tm_norm(m->normal);
+    for (int x = 0; x < 3; x++)
+        m->normal[x] /= length;
+    return length > 0;
+}
+
+/* Whether facet f is in the plane. */
+static bool is_in_plane(const merger *m, uint32_t f)
+{
+    const uint32_t *n = nodes_of(m, f);
+    const double(*xyz)[3] = (const double(*)[3])m->mesh->xyz;
+    const double half_turn = 180, pi = acos(-1);
+    double normal[3], to[3];
+    tm_triangle_normal(normal, xyz[n[0]], xyz[n[1]], xyz[n[2]]);
+    double along = tm_dot(normal, m->normal), length = tm_norm(normal);
+    if (m->plane->degrees > 0)
+        return along >= cos(m->plane->degrees * pi / half_turn) * length && length > 0;
+    for (int i = 0; i < CORNERS; i++) {
+        tm_subtract(to, xyz[n[i]], m->on_plane);
+        if (!(fabs(tm_dot(to, m->normal)) <= m->plane->flatness))
+            return false;
+    }
+    return along > 0;
+}
+
+/* Whether the polygon stays a disc with facet f. */
+static bool meets_in_path(const merger *m, uint32_t f)
+{
+    int shared = 0, last = 0;
+    for (int i = 0; i < CORNERS; i++) {
+        uint32_t g = m->beyond[f][i];
+        if (g == TM_NONE || m->polygon[g] != m->id)
+            continue;
+        shared++;
+        last = i;
+    }
+    uint32_t third = nodes_of(m, f)[(last + 2) % CORNERS];
+    return shared == 2 || (shared == 1 && m->node_polygon[third] != m->id);
+}
+
+static bool grow_polygon(merger *m, uint32_t first)
+{
+    size_t queued = 0;
+    bool has_plane = set_plane(m, first);
+    for (uint32_t f = first, next = 0;; f = m->queue[next++]) {
+        if (f == first ||
+            (m->polygon[f] == TM_NONE && is_in_plane(m, f) && meets_in_path(m, f))) {
+            uint32_t *queue =
+                tm_grow(m->queue, &m->queue_room, queued + CORNERS, sizeof *queue);
+            if (!queue)
+                return false;
+            m->queue = queue;
+            m->polygon[f] = m->id;
+            for (int i = 0; i < CORNERS; i++) {
+                m->node_polygon[nodes_of(m, f)[i]] = m->id;
+                if (m->beyond[f][i] != TM_NONE && has_plane)
+                    queue[queued++] = m->beyond[f][i];
+            }
+        }
+        if (next == queued)
+            return true;
+    }
+}
+
+/* The border of a polygon from facet f, whose edge i is on it: walks around each node to
+ * the next edge on the border. Returns how many nodes, which are written. */
+static size_t write_border(const merger *m, uint32_t f, int i, uint32_t *node)
+{
+    uint32_t first = f;
+    int first_edge = i;
+    size_t count = 0;
+    do {
+        node[count++] = nodes_of(m, f)[i];
+        i = (i + 1) % CORNERS;
+        for (;;) { /* inside: go on in the next facet around the node */
+            uint32_t g = m->beyond[f][i], at = nodes_of(m, f)[i];
+            if (g == TM_NONE || m->polygon[g] != m->polygon[f])
+                break;
+            f = g;
+            i = 0;
+            while (nodes_of(m, f)[i] != at)
+                i++;
+        }
+    } while (f != first || i != first_edge);
+    return count;
+}
+
+/* The first edge of facet f that is on the border of its polygon; CORNERS: none is. */
+static int border_edge(const merger *m, uint32_t f)
+{
+    int i = 0;
+    while (i < CORNERS && m->beyond[f][i] != TM_NONE &&
+           m->polygon[m->beyond[f][i]] == m->polygon[f])
+        i++;
+    return i;
+}
+
+/* Writes the polygons; first[p] is a facet of polygon p that is on its border. */
+static void write_polygons(const merger *m, const uint32_t *first, tm_block *to)
+{
+    for (size_t p = 0; p < to->count; p++) {
+        uint32_t f = first[p];
+        size_t start = to->start[p];
+        to->start[p + 1] =
+            start + write_border(m, f, border_edge(m, f), to->item + start);
+        memcpy(to->integer + 2 * p, m->facet->integer + 2 * (size_t)f,
+               2 * sizeof *to->integer);
+        if (to->markers)
+            to->marker[p] = m->facet->marker[f];
+    }
+}
+
+/* Finds the polygons; *polygons is how many. */
+static bool find_polygons(merger *m, size_t *polygons)
+{
+    const uint32_t *cells = m->facet->integer;
+    *polygons = 0;
+    for (size_t v = 0; v < m->mesh->nodes; v++)
+        m->node_polygon[v] = TM_NONE;
+    for (size_t f = 0; f < m->facet->count; f++)
+        m->polygon[f] = TM_NONE;
+    for (uint32_t from = 0, to = 0; from < m->facet->count; from = to) {
+        while (to < m->facet->count && cells[2 * to] == cells[2 * from])
+            to++;
+        if (!find_neighbours(m, from, to))
+            return false;
+        for (uint32_t f = from; f < to; f++) {
+            if (m->polygon[f] != TM_NONE)
+                continue;
+            m->id = (uint32_t)(*polygons)++;
+            if (!grow_polygon(m, f))
+                return false;
+        }
+    }
+    return true;
+}
+
+/* A facet on the border of each polygon. */
+static uint32_t *find_borders(const merger *m, size_t polygons)
+{
+    uint32_t *first = tm_new(polygons, sizeof *first);
+    for (size_t p = 0; p < polygons && first; p++)
+        first[p] = TM_NONE;
+    for (uint32_t f = 0; f < m->facet->count && first; f++)
+        if (first[m->polygon[f]] == TM_NONE && border_edge(m, f) < CORNERS)
+            first[m->polygon[f]] = f;
+    return first;
+}
+
+static tm_status merge(merger *m, tm_block *merged, tm_error *error)
+{
+    size_t facets = m->facet->count, polygons;
+    m->beyond = tm_new(facets, sizeof *m->beyond);
+    m->polygon = tm_new(facets, sizeof *m->polygon);
+    m->node_polygon = tm_new(m->mesh->nodes, sizeof *m->node_polygon);
+    if (!m->beyond || !m->polygon || !m->node_polygon || !find_polygons(m, &polygons))
+        return tm_fail_memory(error);
+    uint32_t *first = find_borders(m, polygons);
+    tm_status status = first ? TM_OK : tm_fail_memory(error);
+    if (status == TM_OK)
+        status = tm_block_allocate(merged, polygons, CORNERS * facets, error);
+    if (status == TM_OK)
+        write_polygons(m, first, merged);
+    free(first);
+    return status;
+}
+
+tm_status tm_merge_coplanar(const tm_tet_mesh *mesh, const tm_coplanar *plane,
+                            tm_block *facet, tm_block *cell, size_t *joined,
+                            tm_error *error)
+{
+    merger m = {.mesh = mesh, .plane = plane, .facet = facet};
+    tm_block merged = *facet, cells = *cell;
+    merged.integer = merged.item = NULL;
+    merged.start = NULL;
+    merged.marker = NULL;
+    tm_status status = merge(&m, &merged, error);
+    tm_edge_map_free(&m.edges);
+    free(m.beyond);
+    free(m.polygon);
+    free(m.node_polygon);
+    free(m.queue);
+    *joined = facet->count - merged.count;
+    /* The new facets take the place of the old ones; the cells keep their attributes. */
+    free(facet->integer);
+    free(facet->item);
+    free(facet->start);
+    free(facet->marker);
+    *facet = merged;
+    if (status != TM_OK)
+        return status;
+    cell->attribute = NULL;
+    status = tm_cells_from_facets(facet, cell, cells.count, error);
+    free(cell->attribute);
+    cell->attribute = cells.attribute;
+    return status;
+}

@@ -1,0 +1,283 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "partition.h"
+
+#include "../base/array.h"
+#include "shelling.h"
+#include "simple.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Pieces of so many tetrahedra are absorbed. */
+enum { SMALL = 8 };
+
+/* Sets of tetrahedra as lists: those of set s are item[start[s] … start[s+1]). */
+typedef struct {
+    size_t sets;
+    uint32_t *start;
+    uint32_t *item;
+} lists;
+
+static void free_lists(lists *l)
+{
+    free(l->start);
+    free(l->item);
+}
+
+/* By the set of each tetrahedron; each list ascends. */
+static bool make_lists(lists *l, const uint32_t *set, size_t tets, size_t sets)
+{
+    l->sets = sets;
+    l->start = calloc(sets + 2, sizeof *l->start);
+    l->item = tm_new(tets, sizeof *l->item);
+    if (!l->start || !l->item)
+        return false;
+    uint32_t *end = l->start + 1; /* while they are filled, start[s + 1] */
+    for (size_t t = 0; t < tets; t++)
+        end[set[t] + 1]++;
+    for (size_t s = 0; s < sets; s++)
+        end[s + 1] += end[s];
+    for (uint32_t t = 0; t < tets; t++)
+        l->item[end[set[t]]++] = t;
+    return true;
+}
+
+static tm_status label_regions(const tm_tet_mesh *mesh, const tm_poly_options *options,
+                               uint32_t *label, size_t *regions, tm_error *error)
+{
+    switch (options->mode) {
+    case TM_POLY_EDGE:
+        return tm_label_longest_edge(mesh, label, regions, error);
+    case TM_POLY_FACE:
+        return tm_label_best_face(mesh, options->face_metric, label, regions, error);
+    case TM_POLY_CAVITY:
+        return tm_label_cavity(mesh, label, regions, error);
+    default:
+        return tm_label_terminal(mesh, label, regions, error);
+    }
+}
+
+/* What the repair works with. */
+typedef struct {
+    const tm_tet_mesh *mesh;
+    const tm_poly_options *options;
+    tm_poly_report *report;
+    tm_error *error;
+    uint32_t *label; /* of each tetrahedron that is in no piece yet, or may change */
+    size_t pieces;
+    tm_shelling shelling;
+} repair;
+
+/* Gives all of a region to one piece, if that is a ball. */
+static tm_status try_whole(repair *r, const uint32_t *tet, size_t count, uint32_t id,
+                           bool *simple)
+{
+    uint32_t *piece = r->shelling.piece;
+    uint32_t *old = tm_new(count, sizeof *old);
+    if (!old)
+        return tm_fail_memory(r->error);
+    for (size_t k = 0; k < count; k++) {
+        old[k] = piece[tet[k]];
+        piece[tet[k]] = id;
+    }
+    tm_status status =
+        tm_tets_are_simple(r->mesh, piece, id, tet, count, simple, r->error);
+    for (size_t k = 0; k < count && !*simple; k++)
+        piece[tet[k]] = old[k];
+    free(old);
+    return status;
+}
+
+/* Whether a kept face is between two tetrahedra of the region. */
+static bool has_face_inside(const repair *r, const uint32_t *tet, size_t count)
+{
+    const uint32_t *piece = r->shelling.piece;
+    for (size_t k = 0; k < count; k++)
+        for (uint32_t i = 0; i < 4; i++) {
+            uint32_t across = tm_tet_across(r->mesh, tet[k], i);
+            if (r->mesh->neighbour[tet[k]][i] & TM_FACE_BIT && across != TM_NONE &&
+                piece[across / 4] >= piece[tet[0]] && piece[across / 4] != TM_NONE)
+                return true;
+        }
+    return false;
+}
+
+/* Takes one region apart. */
+static tm_status take_apart(repair *r, const uint32_t *tet, size_t count)
+{
+    const tm_poly_options *o = r->options;
+    uint32_t first = (uint32_t)r->pieces, region = r->label[tet[0]];
+    bool only_simple = !o->star && !o->no_swallow && o->max_tets == 0, simple = false;
+    for (size_t k = 0; k < count; k++) {
+        if (r->shelling.piece[tet[k]] != TM_NONE)
+            continue;
+        r->label[tet[k]] = TM_NONE;
+        if (!tm_shelling_begin(&r->shelling, (uint32_t)r->pieces++, tet[k]) ||
+            !tm_shelling_grow(&r->shelling, r->label, region))
+            return tm_fail_memory(r->error);
+    }
+    if (r->pieces == first + 1)
+        return TM_OK;
+    if (only_simple && !has_face_inside(r, tet, count)) {
+        tm_status status = try_whole(r, tet, count, first, &simple);
+        if (status != TM_OK)
+            return status;
+    }
+    if (simple)
+        r->pieces = first + 1;
+    r->report->taken_apart += !simple;
+    return TM_OK;
+}
+
+static tm_status take_all_apart(repair *r, size_t regions)
+{
+    lists l = {0};
+    tm_status status = TM_OK;
+    if (!make_lists(&l, r->label, r->mesh->slots, regions))
+        status = tm_fail_memory(r->error);
+    for (size_t k = 0; k < regions && status == TM_OK; k++)
+        status = take_apart(r, l.item + l.start[k], l.start[k + 1] - l.start[k]);
+    free_lists(&l);
+    return status;
+}
+
+/* Lets piece p take up small ones beside it, each whole. size[q] is that of piece q, 0
+ * where it has been taken up, and large where it must not be. */
+static tm_status take_up(repair *r, const lists *l, uint32_t p, uint32_t *size)
+{
+    tm_shelling *s = &r->shelling;
+    uint32_t had = l->start[p + 1] - l->start[p];
+    if (!tm_shelling_resume(s, p, l->item + l->start[p], had))
+        return tm_fail_memory(r->error);
+    for (size_t next = 0; next < s->queued; next++) {
+        uint32_t q = s->piece[s->queue[next]];
+        bool taken;
+        if (q == p || size[q] > SMALL)
+            continue;
+        if (!tm_shelling_take(s, l->item + l->start[q], size[q], &taken))
+            return tm_fail_memory(r->error);
+        if (taken)
+            size[q] = 0;
+    }
+    r->report->absorbed += s->size - had;
+    if (s->size > had)
+        size[p] = SMALL + 1; /* its list is not all of it */
+    return TM_OK;
+}
+
+/* Small pieces join those beside them: first larger ones take them up, then small ones.
+ */
+static tm_status absorb(repair *r)
+{
+    lists l = {0};
+    tm_status status = TM_OK;
+    uint32_t *size = tm_new(r->pieces, sizeof *size);
+    if (!size || !make_lists(&l, r->shelling.piece, r->mesh->slots, r->pieces))
+        status = tm_fail_memory(r->error);
+    for (size_t p = 0; p < r->pieces && status == TM_OK; p++)
+        size[p] = l.start[p + 1] - l.start[p];
+    for (int round = 0; round < 2; round++)
+        for (uint32_t p = 0; p < l.sets && status == TM_OK; p++)
+            if (round == 0 ? l.start[p + 1] - l.start[p] > SMALL
+                           : size[p] > 0 && size[p] <= SMALL)
+                status = take_up(r, &l, p, size);
+    free(size);
+    free_lists(&l);
+    return status;
+}
+
+/* Numbers the sets in the order of their first tetrahedra; `sets` is above all. */
+static tm_status renumber(uint32_t *set, size_t tets, size_t sets, size_t *count,
+                          tm_error *error)
+{
+    uint32_t *name = tm_new(sets, sizeof *name);
+    if (!name)
+        return tm_fail_memory(error);
+    for (size_t s = 0; s < sets; s++)
+        name[s] = TM_NONE;
+    *count = 0;
+    for (size_t t = 0; t < tets; t++) {
+        if (name[set[t]] == TM_NONE)
+            name[set[t]] = (uint32_t)(*count)++;
+        set[t] = name[set[t]];
+    }
+    free(name);
+    return TM_OK;
+}
+
+static tm_status repair_regions(tm_partition *partition, const tm_tet_mesh *mesh,
+                                const tm_poly_options *options, tm_poly_report *report,
+                                tm_error *error)
+{
+    repair r = {.mesh = mesh,
+                .options = options,
+                .report = report,
+                .error = error,
+                .label = partition->cell};
+    tm_status status = tm_shelling_start(&r.shelling, mesh, options, error);
+    if (status == TM_OK)
+        status = take_all_apart(&r, report->regions);
+    if (status == TM_OK && options->absorb)
+        status = absorb(&r);
+    if (status == TM_OK) {
+        memcpy(partition->cell, r.shelling.piece, mesh->slots * sizeof *partition->cell);
+        partition->cells = r.pieces;
+    }
+    tm_shelling_free(&r.shelling);
+    return status;
+}
+
+void tm_ignore_markers(tm_tet_mesh *mesh)
+{
+    size_t width = mesh->regions;
+    for (size_t f = 0; f < mesh->faces; f++) {
+        tm_kept_face *face = &mesh->face[f];
+        if (face->side[0] == TM_NONE || face->side[1] == TM_NONE)
+            continue;
+        if (width > 0 && memcmp(mesh->region + face->side[0] / 4 * width,
+                                mesh->region + face->side[1] / 4 * width,
+                                width * sizeof *mesh->region) != 0)
+            continue;
+        tm_tet_join(mesh, face->side[0], face->side[1]);
+        face->side[0] = face->side[1] = TM_NONE;
+        face->listed = false;
+    }
+}
+
+void tm_partition_free(tm_partition *partition)
+{
+    free(partition->cell);
+    free(partition->order);
+    *partition = (tm_partition){0};
+}
+
+static tm_status order_by_cell(tm_partition *partition, size_t tets, tm_error *error)
+{
+    lists l = {0};
+    bool done = make_lists(&l, partition->cell, tets, partition->cells);
+    free(l.start);
+    partition->order = l.item;
+    return done ? TM_OK : tm_fail_memory(error);
+}
+
+tm_status tm_partition_make(tm_partition *partition, const tm_tet_mesh *mesh,
+                            const tm_poly_options *options, tm_poly_report *report,
+                            tm_error *error)
+{
+    *report = (tm_poly_report){.tets = mesh->tets};
+    *partition = (tm_partition){.cell = tm_new(mesh->slots, sizeof *partition->cell)};
+    if (!partition->cell)
+        return tm_fail_memory(error);
+    tm_status status =
+        label_regions(mesh, options, partition->cell, &report->regions, error);
+    partition->cells = report->regions;
+    if (status == TM_OK && options->repair)
+        status = repair_regions(partition, mesh, options, report, error);
+    if (status == TM_OK)
+        status = renumber(partition->cell, mesh->slots, partition->cells,
+                          &partition->cells, error);
+    if (status == TM_OK)
+        status = order_by_cell(partition, mesh->slots, error);
+    report->cells = partition->cells;
+    return status;
+}

@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A mesh of tetrahedra cut into polyhedra: each is a set of tetrahedra. First regions are
+ * found, then each region is repaired: taken apart into pieces that are balls.
+ *
+ * No polyhedron goes across a face that is kept (mesh.h): regions of the mesh and marked
+ * faces bound it. C. Cerda, Polylla 3D, Universidad de Chile (2022); S. Salinas-Fernández
+ * and others, POLYLLA: polygonal meshing algorithm based on terminal-edge regions,
+ * Engineering with Computers (2022).
+ *
+ * All of it is faster if the mesh is in the order of a space-filling curve
+ * (tm_tet_mesh_sort()). */
+#ifndef TM_POLY_PARTITION_H
+#define TM_POLY_PARTITION_H
+
+#include "../tet/mesh.h"
+
+/* How regions are found. */
+typedef enum tm_poly_mode {
+    TM_POLY_TERMINAL, /* one for each terminal edge: fans and their outlets */
+    TM_POLY_EDGE,     /* tetrahedra with one longest edge: what the 2022 program did */
+    TM_POLY_FACE,     /* joined across the best face of each tetrahedron */
+    TM_POLY_CAVITY    /* circumcentres in the circumscribed sphere of a seed */
+} tm_poly_mode;
+
+/* Which face is best. */
+typedef enum tm_face_metric { TM_FACE_AREA, TM_FACE_INRADIUS } tm_face_metric;
+
+typedef struct tm_poly_options {
+    tm_poly_mode mode;
+    tm_face_metric face_metric;
+    bool repair;     /* the rest is for this */
+    bool star;       /* star-shaped with respect to a ball */
+    bool absorb;     /* single tetrahedra join a polyhedron beside them */
+    bool no_swallow; /* no node inside of a polyhedron */
+    size_t max_tets; /* in one polyhedron; 0: any number */
+} tm_poly_options;
+
+typedef struct tm_poly_report {
+    size_t tets, regions, cells;
+    size_t taken_apart; /* regions that were no ball, or no star, or too large */
+    size_t absorbed;    /* tetrahedra */
+    size_t not_star;    /* with star: flat tetrahedra, that are in no star */
+} tm_poly_report;
+
+typedef struct tm_partition {
+    size_t cells;
+    uint32_t *cell;  /* [slots]: 0 … cells-1, in the order of their first tetrahedra */
+    uint32_t *order; /* [slots]: tetrahedra by their cells, ascending in each */
+} tm_partition;
+
+/* Cuts a mesh without dead slots. *partition is to be freed also after an error. Expected
+ * O(tetrahedra) while stars of edges are small; cavity O(n log n). */
+tm_status tm_partition_make(tm_partition *partition, const tm_tet_mesh *mesh,
+                            const tm_poly_options *options, tm_poly_report *report,
+                            tm_error *error);
+void tm_partition_free(tm_partition *partition);
+
+/* Marked faces inside of one region of the mesh are no longer kept. */
+void tm_ignore_markers(tm_tet_mesh *mesh);
+
+/* The steps of it. */
+
+/* Labels each tetrahedron by its region, 0 … *regions-1 in any order. */
+tm_status tm_label_terminal(const tm_tet_mesh *mesh, uint32_t *label, size_t *regions,
+                            tm_error *error);
+tm_status tm_label_longest_edge(const tm_tet_mesh *mesh, uint32_t *label, size_t *regions,
+                                tm_error *error);
+tm_status tm_label_best_face(const tm_tet_mesh *mesh, tm_face_metric metric,
+                             uint32_t *label, size_t *regions, tm_error *error);
+tm_status tm_label_cavity(const tm_tet_mesh *mesh, uint32_t *label, size_t *regions,
+                          tm_error *error);
+
+#endif

@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Pieces of a mesh that are balls, grown tetrahedron by tetrahedron (shelling). A
+ * tetrahedron that shares m faces with the piece is added only if what they share is a
+ * disc: for m = 1 its fourth node is not in the piece, for m = 2 its edge in neither
+ * shared face is not, for m = 3 always; then a node goes inside. The piece stays a ball.
+ *
+ * With `star` the intersection of the inner half-spaces of the piece's faces holds a
+ * ball: the piece is star-shaped with respect to it. A point in it is kept, and asked
+ * first; where it is outside of a new face, the best point is looked for (kernel.h). */
+#ifndef TM_POLY_SHELLING_H
+#define TM_POLY_SHELLING_H
+
+#include "../tet/star.h"
+#include "partition.h"
+
+typedef struct tm_shelling {
+    const tm_tet_mesh *mesh;
+    const tm_poly_options *options;
+    uint32_t *piece;      /* [slots]: of each tetrahedron, or TM_NONE */
+    uint32_t *node_piece; /* [nodes]: the last piece that was grown and has the node */
+    uint32_t id;          /* of the piece that is grown */
+    size_t size;
+    uint32_t *member; /* [size] */
+    size_t member_room;
+    uint32_t *queue; /* tetrahedra at the piece */
+    size_t queued, queue_room;
+    double low[3], high[3]; /* the piece is between */
+    double origin[3];       /* of what follows */
+    double centre[3];       /* star: a point that is so deep inside of all faces; */
+    double depth;           /* negative: none is known */
+    double (*plane)[4];
+    size_t plane_room;
+    tm_star star;
+} tm_shelling;
+
+/* Nothing is in a piece. tm_shelling_free() also after an error. */
+tm_status tm_shelling_start(tm_shelling *s, const tm_tet_mesh *mesh,
+                            const tm_poly_options *options, tm_error *error);
+void tm_shelling_free(tm_shelling *s);
+
+/* Begins the piece `id` with tetrahedron t. False where memory is out, as below. */
+bool tm_shelling_begin(tm_shelling *s, uint32_t id, uint32_t t);
+
+/* Takes up a piece again, by its tetrahedra. */
+bool tm_shelling_resume(tm_shelling *s, uint32_t id, const uint32_t *member, size_t size);
+
+/* Adds what can be added of the tetrahedra with label[t] == name, until nothing can;
+ * these get the label TM_NONE. O(1) for each that is looked at while stars of edges are
+ * small; with `star` sometimes O(size). */
+bool tm_shelling_grow(tm_shelling *s, uint32_t *label, uint32_t name);
+
+/* Adds all of some tetrahedra, TM_SHELLING_TAKE at most, or none; *taken tells. */
+enum { TM_SHELLING_TAKE = 8 };
+bool tm_shelling_take(tm_shelling *s, const uint32_t *tet, size_t count, bool *taken);
+
+#endif
