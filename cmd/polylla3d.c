@@ -44,7 +44,7 @@ static const char own_help[] =
     "                      across their best face; cavity, by their circumcentres\n"
     "      --face-metric M the best face of --mode face: area (default) or inradius\n"
     "      --star          each star-shaped with respect to a ball\n"
-    "      --absorb        single tetrahedra join the polyhedra beside them\n"
+    "      --absorb        those of a few tetrahedra join others beside them\n"
     "      --max-tets N    of N tetrahedra at most\n"
     "      --no-swallow    no node inside of a polyhedron\n"
     "      --no-repair     leave what is no ball as it is\n"
@@ -188,6 +188,11 @@ static void convert(filter *f, tm_stream *stream, const settings *o, result *r)
         {.name = ".facet", .kind = TM_FACET, .markers = face && face->markers},
         {.name = ".cell", .kind = TM_CELL}};
     *r = (result){0};
+    if (tm_stream_find(stream, ".facet") || tm_stream_find(stream, ".cell")) {
+        tm_fail_at(&error, TM_ERROR_INPUT, filter_input_name(f), 0, NULL,
+                   "a mesh of polyhedra already (tetrahedra would be right)");
+        filter_fail(f, &error);
+    }
     take_tet_mesh(f, stream, &mesh);
     if (!o->label && tm_tet_mesh_sort(&mesh, &error) != TM_OK)
         filter_fail(f, &error);
@@ -216,6 +221,7 @@ static void write_json(filter *f, const result *r)
     tm_json_integer(&json, "regions", (int64_t)p->regions);
     tm_json_integer(&json, "regions_taken_apart", (int64_t)p->taken_apart);
     tm_json_integer(&json, "absorbed", (int64_t)p->absorbed);
+    tm_json_integer(&json, "not_star_shaped", (int64_t)p->not_star);
     tm_json_integer(&json, "polyhedra", (int64_t)p->cells);
     tm_json_integer(&json, "facets", (int64_t)r->facets);
     tm_json_integer(&json, "facets_joined", (int64_t)r->joined);
@@ -230,7 +236,8 @@ int main(int argc, char **argv)
     filter f = {.name = "polylla3d",
                 .synopsis = "[--mode terminal|edge|face|cavity] [--no-repair] [--star] "
                             "[--absorb] [--max-tets N] [--no-swallow] "
-                            "[--merge-coplanar[=DEG]] [FILE]",
+                            "[--merge-coplanar[=DEG]] [--ignore-markers] [--label] "
+                            "[--face-metric area|inradius] [FILE]",
                 .purpose = "Joins tetrahedra to polyhedra.",
                 .help = own_help,
                 .options = options,
@@ -247,6 +254,9 @@ int main(int argc, char **argv)
     if (r.lost > 0)
         filter_note(&f, "%zu marked faces are inside of a polyhedron and dropped",
                     r.lost);
+    bool is_missed = r.poly.not_star > 0;
+    if (is_missed)
+        filter_note(&f, "%zu polyhedra are no stars: flat tetrahedra", r.poly.not_star);
     char summary[256];
     double cells = (double)r.poly.cells;
     snprintf(summary, sizeof summary, "%zu tetrahedra -> %zu polyhedra, %.2f each",
@@ -256,5 +266,5 @@ int main(int argc, char **argv)
         write_json(&f, &r);
     filter_write(&f, &stream, "%s", summary);
     tm_stream_free(&stream);
-    return filter_finish(&f, EXIT_SUCCESS);
+    return filter_finish(&f, is_missed ? EXIT_GOAL : EXIT_SUCCESS);
 }

@@ -2,6 +2,7 @@
 #include "partition.h"
 
 #include "../base/array.h"
+#include "../geom/predicates.h"
 #include "shelling.h"
 #include "simple.h"
 
@@ -260,6 +261,23 @@ static tm_status order_by_cell(tm_partition *partition, size_t tets, tm_error *e
     return done ? TM_OK : tm_fail_memory(error);
 }
 
+/* Cells of one flat tetrahedron: all others are stars if that is asked for. */
+static size_t count_flat_cells(const tm_partition *partition, const tm_tet_mesh *mesh)
+{
+    const double(*xyz)[3] = (const double(*)[3])mesh->xyz;
+    const uint32_t *order = partition->order, *cell = partition->cell;
+    size_t count = 0;
+    for (size_t k = 0; k < mesh->slots && mesh->flat > 0; k++) {
+        uint32_t c = cell[order[k]];
+        if ((k > 0 && cell[order[k - 1]] == c) ||
+            (k + 1 < mesh->slots && cell[order[k + 1]] == c))
+            continue;
+        const uint32_t *n = mesh->tet[order[k]];
+        count += tm_orient3d(xyz[n[0]], xyz[n[1]], xyz[n[2]], xyz[n[3]]) == 0;
+    }
+    return count;
+}
+
 tm_status tm_partition_make(tm_partition *partition, const tm_tet_mesh *mesh,
                             const tm_poly_options *options, tm_poly_report *report,
                             tm_error *error)
@@ -279,5 +297,7 @@ tm_status tm_partition_make(tm_partition *partition, const tm_tet_mesh *mesh,
     if (status == TM_OK)
         status = order_by_cell(partition, mesh->slots, error);
     report->cells = partition->cells;
+    if (status == TM_OK && options->star)
+        report->not_star = count_flat_cells(partition, mesh);
     return status;
 }

@@ -3,7 +3,8 @@
  * found, then each region is repaired: taken apart into pieces that are balls.
  *
  * No polyhedron goes across a face that is kept (mesh.h): regions of the mesh and marked
- * faces bound it. C. Cerda, Polylla 3D, Universidad de Chile (2022); S. Salinas-Fernández
+ * faces bound it. A. E. Cerda, Generador de mallas de
+ * poliedros en tres dimensiones, Universidad de Chile (2022); S. Salinas-Fernández
  * and others, POLYLLA: polygonal meshing algorithm based on terminal-edge regions,
  * Engineering with Computers (2022).
  *
@@ -30,7 +31,7 @@ typedef struct tm_poly_options {
     tm_face_metric face_metric;
     bool repair;     /* the rest is for this */
     bool star;       /* star-shaped with respect to a ball */
-    bool absorb;     /* single tetrahedra join a polyhedron beside them */
+    bool absorb;     /* cells of a few tetrahedra join one beside them */
     bool no_swallow; /* no node inside of a polyhedron */
     size_t max_tets; /* in one polyhedron; 0: any number */
 } tm_poly_options;
@@ -39,7 +40,7 @@ typedef struct tm_poly_report {
     size_t tets, regions, cells;
     size_t taken_apart; /* regions that were no ball, or no star, or too large */
     size_t absorbed;    /* tetrahedra */
-    size_t not_star;    /* with star: flat tetrahedra, that are in no star */
+    size_t not_star;    /* with star: cells of one flat tetrahedron */
 } tm_poly_report;
 
 typedef struct tm_partition {

@@ -1,0 +1,356 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# polylla3d: what it makes is judged by a program that shares nothing with it.
+# shellcheck disable=SC2154 # run sets stderr
+
+bats_require_minimum_version 1.5.0
+
+setup_file() {
+    load helpers
+    cd "$BATS_FILE_TMPDIR" || exit
+    awk 'BEGIN {
+        srand(11)
+        print 600, 3
+        for (i = 1; i <= 600; i++) print i, rand(), rand(), rand()
+    }' >points.node
+    tetgen-mesh --no-history points.node >points.tm
+    surface sphere off | tetgen-mesh --no-history -q >sphere.tm
+    two_boxes_and_a_ring
+    grid 4 >grid.tm
+    cat >judge.py <<'END'
+"""judge.py POLYHEDRA TETRAHEDRA [simple]: every cell is closed and oriented, facets are
+between the cells that they name, volumes are positive and sum up, the boundary and the
+marked faces are there; with `simple` every cell is a ball; with `bent` facets need not be plane."""
+import collections, itertools, sys
+
+def blocks(path):
+    found, lines = {}, iter(open(path))
+    for line in lines:
+        if line[0] == '.' and line.strip() != '.end':
+            head = next(lines).split()
+            found[line.strip()] = head, [next(lines).split() for _ in range(int(head[0]))]
+    return found
+
+poly, tet = blocks(sys.argv[1]), blocks(sys.argv[2])
+assert poly['.node'] == tet['.node']
+base = int(poly['.node'][1][0][0])
+xyz = [[float(x) for x in row[1:4]] for row in poly['.node'][1]]
+facets = []
+for row in poly['.facet'][1]:
+    k = int(row[3])
+    nodes = [int(n) - base for n in row[4:4 + k]]
+    assert len(set(nodes)) == k >= 3
+    facets.append((int(row[1]) - base, int(row[2]), nodes, row[4 + k:]))
+def minus(a, b): return [p - q for p, q in zip(a, b)]
+def six_volumes(a, b, c, d):
+    u, v, w = minus(b, a), minus(c, a), minus(d, a)
+    return (u[0] * (v[1] * w[2] - v[2] * w[1]) - u[1] * (v[0] * w[2] - v[2] * w[0])
+            + u[2] * (v[0] * w[1] - v[1] * w[0]))
+named = collections.Counter()
+total = 0
+for c, row in enumerate(poly['.cell'][1]):
+    k = int(row[1])
+    edges, volume, nodes = collections.Counter(), 0, set()
+    neighbours = collections.defaultdict(list)
+    for f in (int(f) - base for f in row[2:2 + k]):
+        first, second, loop, _ = facets[f]
+        named[f] += 1
+        assert c == first or c + base == second
+        loop = loop if c == first else loop[::-1]
+        nodes.update(loop)
+        for a, b in zip(loop, loop[1:] + loop[:1]):
+            edges[a, b] += 1
+        for i in range(1, len(loop) - 1):
+            volume -= six_volumes([0, 0, 0], *(xyz[loop[j]] for j in (0, i + 1, i)))
+        for i, v in enumerate(loop):
+            neighbours[v].append((loop[i - 1], loop[(i + 1) % len(loop)]))
+    assert volume > 0 or 'bent' in sys.argv
+    total += volume
+    if 'simple' in sys.argv:
+        assert all(n == 1 and edges[b, a] == 1 for (a, b), n in list(edges.items()))
+        for v, corners in neighbours.items():
+            follow, at, steps = dict(corners), corners[0][0], 0
+            while True:
+                at, steps = follow[at], steps + 1
+                if at == corners[0][0]:
+                    break
+            assert steps == len(corners), 'a node with two fans'
+        assert len(nodes) - len(edges) // 2 + k == 2
+        reached, todo = set(), [next(iter(nodes))]
+        while todo:
+            v = todo.pop()
+            if v not in reached:
+                reached.add(v)
+                todo += [n for corner in neighbours[v] for n in corner]
+        assert reached == nodes
+    else:
+        assert all(n == edges[b, a] for (a, b), n in list(edges.items()))
+for f, (first, second, _, _) in enumerate(facets):
+    assert named[f] == (1 if second == -1 else 2), 'a facet without its cells'
+tets = [[int(n) - base for n in row[1:5]] for row in tet['.ele'][1]]
+whole = sum(abs(six_volumes(*(xyz[n] for n in t))) for t in tets)
+if 'bent' in sys.argv:
+    sys.exit()
+assert abs(total / whole - 1) < 1e-12, (total, whole)
+assert sum(float(row[2 + int(row[1])]) for row in poly['.cell'][1]) == len(tets)
+def area2(loop):
+    sums = [0, 0, 0]
+    for i in range(1, len(loop) - 1):
+        u, v = minus(xyz[loop[i]], xyz[loop[0]]), minus(xyz[loop[i + 1]], xyz[loop[0]])
+        for k in range(3):
+            sums[k] += u[k - 2] * v[k - 1] - u[k - 1] * v[k - 2]
+    return sum(s * s for s in sums) ** 0.5
+faces = collections.Counter(f for t in tets for f in itertools.combinations(sorted(t), 3))
+boundary = sum(area2(f) for f, n in faces.items() if n == 1)
+ours = sum(area2(loop) for _, second, loop, _ in facets if second == -1)
+assert abs(ours / boundary - 1) < 1e-12
+if '.face' in tet and int(tet['.face'][0][1]):
+    areas = collections.Counter(), collections.Counter()
+    for row in tet['.face'][1]:
+        areas[0][row[4]] += area2([int(n) - base for n in row[1:4]])
+    for _, _, loop, marker in facets:
+        areas[1][marker[0]] += area2(loop)
+    for marker, area in areas[0].items():
+        assert marker == '0' or abs(areas[1][marker] / area - 1) < 1e-12, marker
+END
+}
+
+setup() {
+    load helpers
+    cd "$BATS_FILE_TMPDIR" || exit
+    out=$BATS_TEST_TMPDIR
+}
+
+# boxes.tm: two boxes as two regions, one on the other; ring.tm: a box with a hole
+# through it and a cavity inside.
+two_boxes_and_a_ring() {
+    awk 'BEGIN {
+        print 12, 3, 0, 0
+        for (z = 0; z < 3; z++) for (y = 0; y < 2; y++) for (x = 0; x < 2; x++)
+            print ++n, x, y, z
+        print 11, 1
+        split("1 2 4 3 5 6 8 7 9 10 12 11", v)
+        m[1] = 11; m[2] = 20; m[3] = 12
+        for (i = 0; i < 3; i++)
+            print "1 0", m[i + 1] "\n4", v[4*i+1], v[4*i+2], v[4*i+3], v[4*i+4]
+        split("1 2 6 5 2 4 8 6 4 3 7 8 3 1 5 7 5 6 10 9 6 8 12 10 8 7 11 12 7 5 9 11", w)
+        for (i = 0; i < 8; i++)
+            print "1 0", 13 + i % 4 "\n4", w[4*i+1], w[4*i+2], w[4*i+3], w[4*i+4]
+        print 0; print 2
+        print 1, 0.5, 0.5, 0.5, 3
+        print 2, 0.5, 0.5, 1.5, 7
+    }' >boxes.poly
+    tetgen-mesh --no-history -q1.6 -a 0.01 --switches A boxes.poly >boxes.tm
+    grid 6 | awk '$1 ~ /^[0-9]+$/ && ele && NF >= 5 && !first { first = 1 } { print }
+        /^\.ele/ { ele = 1 }' >whole.tm
+    python3 - whole.tm >ring.tm <<'END'
+import sys
+lines = open(sys.argv[1]).read().split('\n')
+at = lines.index('.ele')
+nodes = [[float(x) for x in row.split()[1:4]] for row in lines[3:at]]
+def inside(tet):
+    x, y, z = (sum(nodes[n][k] for n in tet) / 4 for k in range(3))
+    hole = 2 < x < 4 and 2 < y < 4
+    cavity = 0 < x - 4 < 1 and 0 < y - 1 < 1 and 2 < z < 3
+    return not (hole or cavity)
+rows = [row.split()[1:5] for row in lines[at + 2:] if row and row[0] != '.']
+rows = [row for row in rows if inside([int(n) for n in row])]
+print('\n'.join(lines[:at + 1]))
+print(len(rows), 4, 0)
+for t, row in enumerate(rows):
+    print(t, *row)
+print('.end')
+END
+}
+
+# A cube of n³ cells of six tetrahedra each, counted from 0: grid N.
+grid() {
+    awk -v n="$1" 'function v(x, y, z) { return (z * (n + 1) + y) * (n + 1) + x }
+    BEGIN {
+        print "termesh 1\n.node\n" (n + 1) ^ 3, 3, 0, 0
+        for (z = 0; z <= n; z++) for (y = 0; y <= n; y++) for (x = 0; x <= n; x++)
+            print v(x, y, z), x, y, z
+        print ".ele\n" 6 * n ^ 3, 4, 0
+        split("1 3 3 2 2 6 6 4 4 5 5 1", path)
+        for (z = 0; z < n; z++) for (y = 0; y < n; y++) for (x = 0; x < n; x++)
+            for (k = 1; k <= 12; k += 2)
+                print t++, v(x, y, z), corner(path[k]), corner(path[k + 1]),
+                    v(x + 1, y + 1, z + 1)
+        print ".end"
+    }
+    function corner(c) { return v(x + c % 2, y + int(c / 2) % 2, z + int(c / 4)) }'
+}
+
+@test "in every mode and mesh, after repair: all balls, nothing lost" {
+    local mesh options
+    for mesh in points sphere boxes ring grid; do
+        while read -r options; do
+            # shellcheck disable=SC2086 # words
+            polylla3d -q $options "$mesh.tm" >"$out/poly.tm"
+            python3 judge.py "$out/poly.tm" "$mesh.tm" simple
+        done <<'END'
+
+--star
+--star --absorb
+--absorb --merge-coplanar
+--mode edge
+--mode face
+--mode face --face-metric inradius --no-swallow
+--mode cavity --star --absorb --merge-coplanar
+--max-tets 7
+END
+    done
+}
+
+@test "without repair: the regions as they are, nothing lost" {
+    local mode
+    for mode in terminal edge face cavity; do
+        polylla3d -q --no-repair --mode $mode --json "$out/$mode" points.tm >"$out/poly.tm"
+        python3 judge.py "$out/poly.tm" points.tm
+        [ "$(json "$out/$mode" regions)" -eq "$(json "$out/$mode" polyhedra)" ]
+    done
+    # One region for each terminal edge and for each longest edge.
+    python3 - points.tm >"$out/counts" <<'END'
+import sys
+lines = open(sys.argv[1]).read().split('\n')
+at = lines.index('.ele')
+xyz = [[float(x) for x in row.split()[1:4]] for row in lines[lines.index('.node') + 2:at]
+       if row[0] != '.']
+count = int(lines[at + 1].split()[0])
+def key(a, b): return (sum((p - q) ** 2 for p, q in zip(xyz[a], xyz[b])), max(a, b), min(a, b))
+longest, around = [], {}
+for row in lines[at + 2:at + 2 + count]:
+    n = [int(v) - 1 for v in row.split()[1:5]]
+    edges = [key(n[i], n[j]) for i in range(4) for j in range(i)]
+    longest.append(max(edges))
+    for e in edges:
+        around.setdefault(e, []).append(max(edges))
+print(sum(all(other == e for other in others) for e, others in around.items()),
+      len(set(longest)))
+END
+    read -r terminal longest <"$out/counts"
+    [ "$(json "$out/terminal" regions)" -eq "$terminal" ]
+    [ "$(json "$out/edge" regions)" -eq "$longest" ]
+}
+
+@test "regions and marked faces are between polyhedra, but for --ignore-markers" {
+    polylla3d -q boxes.tm >"$out/poly.tm"
+    # Each cell has one region, and their volumes are those of the boxes.
+    rows .cell "$out/poly.tm" | awk '{ print $(3 + $2 + 1) }' | sort -u >"$out/regions"
+    [ "$(tr '\n' ' ' <"$out/regions")" = '3 7 ' ]
+    # A marked face inside of one region.
+    cat >"$out/two.tm" <<'END'
+termesh 1
+.node
+5 3 0 0
+1 0 0 0
+2 1 0 0
+3 0 1 0
+4 0.3 0.3 0.5
+5 0.3 0.3 -0.5
+.ele
+2 4 0
+1 1 2 3 4
+2 1 3 2 5
+.face
+1 1
+1 1 2 3 8
+.end
+END
+    [ "$(polylla3d -q --mode face "$out/two.tm" | header .cell /dev/stdin)" = '2 1' ]
+    [ "$(polylla3d -q --mode face --ignore-markers "$out/two.tm" |
+        header .cell /dev/stdin)" = '1 1' ]
+    polylla3d -q --mode face "$out/two.tm" | rows .facet /dev/stdin |
+        grep -qE '^[0-9]+ 1 2 3 .* 8$'
+}
+
+@test "--max-tets, --no-swallow, --absorb keep their word" {
+    polylla3d -q --max-tets 5 points.tm | rows .cell /dev/stdin |
+        awk '$(3 + $2) > 5 { exit 1 }'
+    polylla3d -q --no-swallow points.tm >"$out/poly.tm"
+    [ "$(rows .facet "$out/poly.tm" | awk '{ for (i = 5; i < 5 + $4; i++) print $i }' |
+        sort -u | wc -l)" -eq 600 ]
+    polylla3d -q --star --json "$out/star" points.tm >"$out/poly.tm"
+    polylla3d -q --star --absorb --json "$out/absorb" points.tm >"$out/poly.tm"
+    [ "$(json "$out/absorb" polyhedra)" -lt "$(json "$out/star" polyhedra)" ]
+    [ "$(json "$out/absorb" absorbed)" -gt 0 ]
+}
+
+@test "--merge-coplanar: the sides of a box of one polyhedron" {
+    grid 1 | polylla3d -q --mode cavity --merge-coplanar >"$out/cube.tm"
+    [ "$(header .cell "$out/cube.tm")" = '1 1' ]
+    [ "$(rows .facet "$out/cube.tm" | awk '{ print $4 }' | sort | uniq -c | tr -s ' ')" = ' 6 4' ]
+    # With an angle there are fewer facets still, which are not plane then.
+    polylla3d -q --merge-coplanar --json "$out/0" sphere.tm >"$out/poly.tm"
+    polylla3d -q --merge-coplanar=20 --json "$out/20" sphere.tm >"$out/poly.tm"
+    [ "$(json "$out/20" facets_joined)" -gt "$(json "$out/0" facets_joined)" ]
+    python3 judge.py "$out/poly.tm" sphere.tm simple bent
+}
+
+@test "--label: the input with one attribute more, the same polyhedra" {
+    polylla3d -q --no-history --label points.tm >"$out/label.tm"
+    polylla3d -q --no-history --json "$out/json" points.tm >"$out/poly.tm"
+    [ "$(rows .ele "$out/label.tm" | awk '{ print $6 }' | sort -un | wc -l)" -gt 10 ]
+    diff <(rows .ele "$out/label.tm" | cut -d ' ' -f 1-5) <(rows .ele points.tm)
+    tet-stats -q "$out/label.tm" >"$out/text"
+}
+
+@test "the same bytes for one thread and for two, and for a pipe" {
+    polylla3d -q --no-history -j 1 --star boxes.tm >"$out/1.tm"
+    polylla3d -q --no-history -j 2 --star boxes.tm >"$out/2.tm"
+    polylla3d -q --no-history --star <boxes.tm | cat >"$out/3.tm"
+    cmp "$out/1.tm" "$out/2.tm"
+    cmp "$out/1.tm" "$out/3.tm"
+}
+
+@test "degenerate: nothing, one tetrahedron, a flat one, counted from 0" {
+    run -0 --separate-stderr polylla3d --no-history <<<$'termesh 1\n.end'
+    [ "$(grep -c '^0' <<<"$output")" -eq 2 ]
+    cat >"$out/flat.tm" <<'END'
+termesh 1
+.node
+5 3 0 0
+0 0 0 0
+1 1 0 0
+2 0 1 0
+3 0 0 1
+4 1 1 0
+.ele
+2 4 0
+0 0 1 2 3
+1 0 1 2 4
+.end
+END
+    run -0 --separate-stderr polylla3d "$out/flat.tm"
+    [[ $stderr == *"1 tetrahedra are flat"* ]]
+    run -1 --separate-stderr polylla3d --star --mode edge "$out/flat.tm"
+    [[ $stderr == *"1 polyhedra are no stars: flat tetrahedra"* ]]
+    [ "${lines[-1]}" = .end ]
+}
+
+@test "wrong meshes are exit 3, wrong options exit 2" {
+    local options head='termesh 1\n.node\n5 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n4 1 1 1\n'
+    # shellcheck disable=SC2059 # the format is text
+    printf "$head.ele\n2 4 0\n0 0 1 2 3\n1 0 1 2 4\n.end\n" >"$out/overlap.tm"
+    run -3 --separate-stderr polylla3d "$out/overlap.tm"
+    [ -z "$output" ]
+    [[ $stderr == "polylla3d: $out/overlap.tm: .ele: tetrahedra 0 and 1 overlap"* ]]
+    polylla3d -q points.tm >"$out/poly.tm"
+    run -3 --separate-stderr polylla3d "$out/poly.tm"
+    [[ $stderr == *"a mesh of polyhedra already"* ]]
+    while read -r options; do
+        # shellcheck disable=SC2086 # words
+        run -2 --separate-stderr polylla3d $options points.tm
+        [ -z "$output" ]
+        [[ ${stderr_lines[0]} == polylla3d:* ]]
+    done <<'END'
+--mode best
+--face-metric area
+--mode face --face-metric length
+--no-repair --star
+--no-repair --merge-coplanar
+--label --merge-coplanar
+--merge-coplanar=31
+--max-tets 0
+--nonsense
+END
+}
