@@ -3,6 +3,7 @@
 #ifndef TM_QUALITY_TET_COST_H
 #define TM_QUALITY_TET_COST_H
 
+#include "angle_limits.h"
 #include "tet_measure.h"
 
 #include <math.h>
@@ -10,15 +11,10 @@
 
 typedef struct tm_cost {
     tm_tet_measure measure;
-    double target;                  /* by measure: what is as good costs nothing */
-    double weight;                  /* of how bad it is, beside 1 for being bad */
-    double least_angle, most_angle; /* degrees: no dihedral angle may be beyond */
-    double safe;                    /* tm_tet_sine2() from which on none is */
+    double target;          /* by measure: what is as good costs nothing */
+    double weight;          /* of how bad it is, beside 1 for being bad */
+    tm_angle_limits limits; /* no angle may be beyond */
 } tm_cost;
-
-/* Whether all dihedral angles are within the limits. */
-bool tm_cost_allows(const tm_cost *cost, const double a[3], const double b[3],
-                    const double c[3], const double d[3]);
 
 /* The measure of a tetrahedron; 0 where it is below `least` or an angle is beyond the
  * limits. */
@@ -32,7 +28,7 @@ static inline double tm_cost_quality(const tm_cost *cost, double least, const do
                          : tm_tet_measure_of(cost->measure, a, b, c, d);
     if (quality < least || sine2 == 0)
         return 0;
-    return sine2 >= cost->safe || tm_cost_allows(cost, a, b, c, d) ? quality : 0;
+    return tm_angle_limits_hold(&cost->limits, sine2, a, b, c, d) ? quality : 0;
 }
 
 /* What a tetrahedron of that quality costs: 0 from the target on, 1 just below, and

@@ -178,45 +178,19 @@ void tm_improve_go_back(tm_improver *m, const tm_improve_state *state)
         note_all(m);
 }
 
-/* The sin² from which on a tetrahedron has no angle beyond the limits. */
-static double safe_sine2(const tm_cost *cost)
-{
-    const double right_angle = 90, straight_angle = 180;
-    if (cost->most_angle < right_angle)
-        return HUGE_VAL;
-    return fmax(tm_bad_sine2(cost->least_angle + TM_ANGLE_TOLERANCE),
-                tm_bad_sine2(straight_angle - cost->most_angle + TM_ANGLE_TOLERANCE));
-}
-
 void tm_improve_forbid(tm_improver *m, double degrees)
 {
-    const double straight_angle = 180;
-    tm_cost *cost = &m->cost;
-    cost->least_angle = fmax(cost->least_angle, degrees);
-    cost->most_angle = fmin(cost->most_angle, straight_angle - degrees);
-    cost->safe = safe_sine2(cost);
+    tm_angle_limits_narrow(&m->cost.limits, degrees);
 }
 
-/* The smallest and largest dihedral angle of the mesh, which are the limits. */
+/* No angle may be more extreme than those of the mesh. */
 static void find_limits(tm_improver *m)
 {
-    const double straight_angle = 180;
-    tm_cost *cost = &m->cost;
-    cost->least_angle = straight_angle;
-    cost->most_angle = 0;
-    cost->safe = HUGE_VAL;
+    const double(*x)[3] = (const double(*)[3])m->mesh->xyz;
+    m->cost.limits = tm_angle_limits_none();
     for (uint32_t t = 0; t < m->mesh->slots; t++) {
-        double angle[TM_TET_EDGES];
         const uint32_t *n = m->mesh->tet[t];
-        const double(*x)[3] = (const double(*)[3])m->mesh->xyz;
-        if (tm_tet_sine2(x[n[0]], x[n[1]], x[n[2]], x[n[3]]) > cost->safe)
-            continue;
-        tm_tet_dihedrals(x[n[0]], x[n[1]], x[n[2]], x[n[3]], angle);
-        for (int e = 0; e < TM_TET_EDGES; e++) {
-            cost->least_angle = fmin(cost->least_angle, angle[e]);
-            cost->most_angle = fmax(cost->most_angle, angle[e]);
-        }
-        cost->safe = safe_sine2(cost);
+        tm_angle_limits_include(&m->cost.limits, x[n[0]], x[n[1]], x[n[2]], x[n[3]]);
     }
 }
 

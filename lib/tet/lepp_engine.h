@@ -8,6 +8,8 @@
 
 #include "lepp.h"
 
+#include "../quality/angle_limits.h"
+
 #include "../quality/tet_gain.h"
 
 #include "ball.h"
@@ -51,7 +53,7 @@ typedef struct tm_lepp_step {
 
 /* What sweeps need beside. */
 typedef struct tm_lepp_sweeper {
-    double least_angle, most_angle; /* degrees, of the input: no change goes beyond */
+    tm_angle_limits limits; /* of the input: no change goes beyond */
     tm_features features;
     tm_ball ball;
     tm_tet_marks marks;
@@ -140,10 +142,6 @@ void tm_lepp_sweeper_free(tm_lepp_sweeper *s);
 
 /* Finds the extreme angles of the mesh. */
 void tm_lepp_measure_angles(tm_lepp_engine *e);
-
-/* Whether a tetrahedron has no smaller and no larger angle than the input. */
-bool tm_lepp_keeps_angles(const tm_lepp_engine *e, const double a[3], const double b[3],
-                          const double c[3], const double d[3]);
 
 /* Whether the mesh may have so many tetrahedra more. */
 static inline bool tm_lepp_may_grow(const tm_lepp_engine *e, size_t more)

@@ -23,32 +23,14 @@ void tm_lepp_sweeper_free(tm_lepp_sweeper *s)
 void tm_lepp_measure_angles(tm_lepp_engine *e)
 {
     const tm_tet_mesh *mesh = e->mesh;
-    const double flat = 180;
-    double least = flat, most = 0, angle[TM_TET_EDGES];
+    const double(*x)[3] = (const double(*)[3])mesh->xyz;
+    e->sweeper.limits = tm_angle_limits_none();
     for (uint32_t t = 0; t < mesh->slots; t++) {
         const uint32_t *n = mesh->tet[t];
-        if (!tm_tet_lives(mesh, t))
-            continue;
-        tm_tet_dihedrals(mesh->xyz[n[0]], mesh->xyz[n[1]], mesh->xyz[n[2]],
-                         mesh->xyz[n[3]], angle);
-        for (int i = 0; i < TM_TET_EDGES; i++) {
-            least = fmin(least, angle[i]);
-            most = fmax(most, angle[i]);
-        }
+        if (tm_tet_lives(mesh, t))
+            tm_angle_limits_include(&e->sweeper.limits, x[n[0]], x[n[1]], x[n[2]],
+                                    x[n[3]]);
     }
-    e->sweeper.least_angle = least;
-    e->sweeper.most_angle = most;
-}
-
-bool tm_lepp_keeps_angles(const tm_lepp_engine *e, const double a[3], const double b[3],
-                          const double c[3], const double d[3])
-{
-    double angle[TM_TET_EDGES];
-    tm_tet_dihedrals(a, b, c, d, angle);
-    for (int i = 0; i < TM_TET_EDGES; i++)
-        if (!(angle[i] >= e->sweeper.least_angle && angle[i] <= e->sweeper.most_angle))
-            return false;
-    return true;
 }
 
 /* A tetrahedron at each node, and marks for the nodes. */
@@ -144,8 +126,8 @@ static bool is_better(const tm_lepp_engine *e, const tm_hull *hull, const double
         return false;
     for (size_t k = 0; k < hull->count; k++) {
         const uint32_t *f = hull->face[k];
-        if (!tm_lepp_keeps_angles(e, hull->xyz[f[0]], hull->xyz[f[1]], hull->xyz[f[2]],
-                                  p))
+        if (!tm_angles_are_within(&e->sweeper.limits, hull->xyz[f[0]], hull->xyz[f[1]],
+                                  hull->xyz[f[2]], p))
             return false;
     }
     return true;

@@ -146,14 +146,15 @@ static bool keeps_angles(const tm_lepp_engine *e, const tm_star *star, operation
         uint32_t node[2 * TM_REMOVAL_MAX][4];
         size_t count = tm_edge_removal_list(star, &e->removal, node);
         for (size_t i = 0; i < count; i++)
-            if (!tm_lepp_keeps_angles(e, xyz[node[i][0]], xyz[node[i][1]],
-                                      xyz[node[i][2]], xyz[node[i][3]]))
+            if (!tm_angles_are_within(&e->sweeper.limits, xyz[node[i][0]],
+                                      xyz[node[i][1]], xyz[node[i][2]], xyz[node[i][3]]))
                 return false;
         return true;
     }
     for (size_t i = 0; i < star->size; i++) {
         const double *r = xyz[star->ring[i]], *s = xyz[star->ring[i + 1]];
-        if (!tm_lepp_keeps_angles(e, a, p, r, s) || !tm_lepp_keeps_angles(e, p, b, r, s))
+        if (!tm_angles_are_within(&e->sweeper.limits, a, p, r, s) ||
+            !tm_angles_are_within(&e->sweeper.limits, p, b, r, s))
             return false;
     }
     return true;

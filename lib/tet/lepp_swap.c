@@ -39,7 +39,8 @@ static bool is_better(const tm_lepp_engine *e, const swap *s)
         const uint32_t *n = s->node[k];
         const double *a = xyz[n[0]], *b = xyz[n[1]], *c = xyz[n[2]], *d = xyz[n[3]];
         double quality = tm_tet_measure_of(measure, a, b, c, d);
-        if (quality < least || !(quality > worst) || !tm_lepp_keeps_angles(e, a, b, c, d))
+        if (quality < least || !(quality > worst) ||
+            !tm_angles_are_within(&e->sweeper.limits, a, b, c, d))
             return false;
     }
     return true;

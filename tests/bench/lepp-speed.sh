@@ -24,7 +24,7 @@ printf 'lepp-improve, whole process    %6.3f s\n' "$ours"
 if [ -s "$work/peer" ]; then
     peer=$(median_of "$work/peer")
     printf 'Gmsh, default optimiser alone  %6.3f s\n' "$peer"
-    awk -v a="$ours" -v b="$peer" 'BEGIN { printf "ratio  %.3f (at most 0.2)\n", a / b }'
+    awk -v a="$ours" -v b="$peer" 'BEGIN { printf "ratio  %.3f (at most 0.1)\n", a / b }'
 else
     echo 'Gmsh: needs the package python3-gmsh'
 fi

@@ -209,3 +209,25 @@ many() {
         print ".end"
     }'
 }
+
+# Two unit cubes, one on the other; facet i has marker 10 + i, the one between them 20;
+# the upper one is region 7, the lower one region 3.
+two_boxes() {
+    awk 'BEGIN {
+        print 12, 3, 0, 1
+        for (z = 0; z < 3; z++) for (y = 0; y < 2; y++) for (x = 0; x < 2; x++)
+            print ++n, x, y, z, 100 + z
+        print 11, 1
+        split("1 2 4 3 5 6 8 7 9 10 12 11", v)
+        m[1] = 11; m[2] = 20; m[3] = 12
+        for (i = 0; i < 3; i++)
+            print "1 0", m[i + 1] "\n4", v[4*i+1], v[4*i+2], v[4*i+3], v[4*i+4]
+        split("1 2 6 5 2 4 8 6 4 3 7 8 3 1 5 7 5 6 10 9 6 8 12 10 8 7 11 12 7 5 9 11", w)
+        for (i = 0; i < 8; i++)
+            print "1 0", 13 + i % 4 "\n4", w[4*i+1], w[4*i+2], w[4*i+3], w[4*i+4]
+        print 0
+        print 2
+        print 1, 0.5, 0.5, 0.5, 3
+        print 2, 0.5, 0.5, 1.5, 7
+    }'
+}

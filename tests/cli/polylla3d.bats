@@ -123,22 +123,7 @@ setup() {
 # boxes.tm: two boxes as two regions, one on the other; ring.tm: a box with a hole
 # through it and a cavity inside.
 two_boxes_and_a_ring() {
-    awk 'BEGIN {
-        print 12, 3, 0, 0
-        for (z = 0; z < 3; z++) for (y = 0; y < 2; y++) for (x = 0; x < 2; x++)
-            print ++n, x, y, z
-        print 11, 1
-        split("1 2 4 3 5 6 8 7 9 10 12 11", v)
-        m[1] = 11; m[2] = 20; m[3] = 12
-        for (i = 0; i < 3; i++)
-            print "1 0", m[i + 1] "\n4", v[4*i+1], v[4*i+2], v[4*i+3], v[4*i+4]
-        split("1 2 6 5 2 4 8 6 4 3 7 8 3 1 5 7 5 6 10 9 6 8 12 10 8 7 11 12 7 5 9 11", w)
-        for (i = 0; i < 8; i++)
-            print "1 0", 13 + i % 4 "\n4", w[4*i+1], w[4*i+2], w[4*i+3], w[4*i+4]
-        print 0; print 2
-        print 1, 0.5, 0.5, 0.5, 3
-        print 2, 0.5, 0.5, 1.5, 7
-    }' >boxes.poly
+    two_boxes >boxes.poly
     tetgen-mesh --no-history -q1.6 -a 0.01 --switches A boxes.poly >boxes.tm
     grid 6 | awk '$1 ~ /^[0-9]+$/ && ele && NF >= 5 && !first { first = 1 } { print }
         /^\.ele/ { ele = 1 }' >whole.tm
