@@ -250,6 +250,10 @@ static void improve(filter *f, tm_stream *stream, const settings *o, result *r)
     r->seconds += cpu_seconds();
     r->changes =
         o->is_improve ? tm_improve_operations(&r->improve) : tm_lepp_changes(&r->lepp);
+    for (size_t b = 0; b < stream->blocks; b++)
+        if (tm_tet_mesh_invalidates(&mesh, &stream->block[b]))
+            filter_note(f, "%s is dropped: nodes have other numbers now",
+                        stream->block[b].name);
     if (tm_tet_mesh_give(&mesh, stream, &error) != TM_OK)
         filter_fail(f, &error);
 }

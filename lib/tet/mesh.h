@@ -116,6 +116,11 @@ tm_status tm_tet_mesh_take(tm_tet_mesh *mesh, tm_stream *stream, tm_error *error
  * order. */
 tm_status tm_tet_mesh_give(tm_tet_mesh *mesh, tm_stream *stream, tm_error *error);
 
+/* Whether a block of the stream refers to numbers that nodes will not have any more:
+ * other elements than tetrahedra, where nodes were removed. tm_tet_mesh_give() removes
+ * such blocks. */
+bool tm_tet_mesh_invalidates(const tm_tet_mesh *mesh, const tm_block *block);
+
 void tm_tet_mesh_free(tm_tet_mesh *mesh);
 
 /* How many tetrahedra are `growth` times those that the mesh has; for growth 0, or more

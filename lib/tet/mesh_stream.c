@@ -193,8 +193,17 @@ static tm_status give_edges(const tm_tet_mesh *mesh, tm_block *block, tm_error *
     return TM_OK;
 }
 
+bool tm_tet_mesh_invalidates(const tm_tet_mesh *mesh, const tm_block *block)
+{
+    return mesh->removed_nodes > 0 && block->name[0] == '.' && block->kind >= TM_MIX &&
+           block->kind < TM_UNKNOWN && block->kind != TM_ROOT;
+}
+
 tm_status tm_tet_mesh_give(tm_tet_mesh *mesh, tm_stream *stream, tm_error *error)
 {
+    for (size_t b = stream->blocks; b > 0; b--)
+        if (tm_tet_mesh_invalidates(mesh, &stream->block[b - 1]))
+            tm_stream_remove(stream, &stream->block[b - 1]);
     tm_block *node = tm_stream_find(stream, ".node");
     tm_block *ele = tm_stream_find(stream, ".ele");
     tm_block *face = tm_stream_find(stream, ".face");
