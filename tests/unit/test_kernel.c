@@ -298,8 +298,9 @@ static void test_unbounded(void **state)
 static void test_flat(void **state)
 {
     (void)state;
-    for (double height = 1; height > 1e-10; height /= 10) {
+    for (int digits = 0; digits < 10; digits++) {
         double plane[MOST][4], center[3], radius;
+        const double height = pow(10, -digits);
         const size_t count = box(plane, 1, 1, height);
         assert_true(tm_kernel_ball((const double(*)[4])plane, count, center, &radius));
         assert_true(fabs(radius - height / 2) < 1e-15);
