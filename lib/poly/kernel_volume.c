@@ -24,7 +24,8 @@ typedef struct face {
     double (*point)[2];
     double (*spare)[2];
     size_t points;
-    double reach2; /* of its farthest point from the inner point, squared */
+    double radius2; /* the distance of its farthest point from the foot, squared, */
+    double reach2;  /* and from the inner point */
 } face;
 
 /* Unit normals that differ by less are parallel. */
@@ -96,6 +97,7 @@ static void find_reach(face *f)
     for (size_t i = 0; i < f->points; i++)
         farthest = fmax(farthest, f->point[i][0] * f->point[i][0] +
                                       f->point[i][1] * f->point[i][1]);
+    f->radius2 = farthest;
     f->reach2 = farthest + f->plane->distance * f->plane->distance;
 }
 
@@ -134,15 +136,17 @@ static void clip(face *f, double a, double b, double c)
     find_reach(f);
 }
 
-/* Of parallel planes the nearest, which comes first, has the face. */
+/* Of parallel planes the nearest, which comes first, has the face. Most other lines pass
+ * by it. */
 static void cut(face *f, const tm_kernel_plane *other, bool is_nearer)
 {
     const double a = tm_dot(other->normal, f->u), b = tm_dot(other->normal, f->w);
     const double along = tm_dot(other->normal, f->plane->normal);
-    if (fabs(a) + fabs(b) > parallel)
-        clip(f, a, b, other->distance - f->plane->distance * along);
-    else if (along > 0 && is_nearer)
-        f->points = 0;
+    const double c = other->distance - f->plane->distance * along;
+    if (fabs(a) + fabs(b) <= parallel)
+        f->points = along > 0 && is_nearer ? 0 : f->points;
+    else if (c < 0 || c * c < f->radius2 * (a * a + b * b))
+        clip(f, a, b, c);
 }
 
 static double area(const face *f)

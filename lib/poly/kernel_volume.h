@@ -20,8 +20,8 @@ void tm_kernel_memory_free(tm_kernel_memory *memory);
  * kernel.h, or any other of a depth above 0. Planes may be there twice or nearly so.
  * Each face is a square on its plane that the others cut, nearest first, until they are
  * out of its reach; pyramids over the faces add up. Returns NULL where memory is out,
- * else memory->plane. O(count²) at worst, where no plane is out of reach: 0.1 s for
- * 10 000 planes; about O(count log count) of planes of which most cut nothing off. */
+ * else memory->plane. O(count²) at worst, where no plane is out of reach, as around a
+ * sphere: 40 µs for 50 planes, 0.4 s for 10 000. */
 void *tm_kernel_volume(tm_kernel_memory *memory, const double (*plane)[4], size_t count,
                        const double inner[3], double reach, double *volume);
 

@@ -94,7 +94,7 @@ static void test_kernel_volume(void **state)
     assert_true(close_to(volume_of((const double(*)[4])plane, count), 1.0 / 6));
 }
 
-/* A plane cuts it into two parts. */
+/* All planes twice change nothing; a plane cuts it into two parts. */
 static void test_kernel_volume_parts(void **state)
 {
     (void)state;
@@ -105,6 +105,11 @@ static void test_kernel_volume_parts(void **state)
         for (const size_t end = count + random_below(PLANES); count < end; count++)
             random_plane(plane[count], 0.2, 1);
         const double whole = volume_of((const double(*)[4])plane, count);
+        double twice[2 * MOST][4];
+        memcpy(twice, plane, count * sizeof *twice);
+        memcpy(twice + count, plane, count * sizeof *twice);
+        assert_true(fabs(volume_of((const double(*)[4])twice, 2 * count) - whole) <
+                    1e-10);
         random_plane(plane[count], -0.5, 0.5);
         double parts = volume_of((const double(*)[4])plane, count + 1);
         for (int k = 0; k < 4; k++)
