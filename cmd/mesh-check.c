@@ -2,6 +2,7 @@
 /* mesh-check: what is wrong with a mesh, as exit status and as a list. */
 #include "common/filter.h"
 
+#include "../lib/poly/poly_examine.h"
 #include "../lib/tet/examine.h"
 
 #include <string.h>
@@ -11,20 +12,21 @@ static const struct option long_options[] = {FILTER_OPTIONS};
 /* Elements that are not examined: an error where they are all that there is. */
 static void refuse_other_elements(const filter *f, const tm_stream *stream)
 {
-    static const char *const others[] = {".mix", ".cell"};
-    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
-        if (!tm_stream_find(stream, others[i]))
-            continue;
-        if (tm_stream_find(stream, ".ele")) {
-            filter_note(f, "%s: %s is not examined, only .ele", filter_input_name(f),
-                        others[i]);
-            continue;
-        }
-        tm_error error;
-        tm_fail_at(&error, TM_ERROR_INPUT, filter_input_name(f), 0, others[i],
-                   "mesh-check reads tetrahedra (.ele)");
-        filter_fail(f, &error);
+    const bool tetrahedra = tm_stream_find(stream, ".ele");
+    const bool polyhedra = tm_stream_find(stream, ".cell");
+    if (tetrahedra && polyhedra)
+        filter_note(f, "%s: .cell is not examined, only .ele", filter_input_name(f));
+    if (!tm_stream_find(stream, ".mix"))
+        return;
+    if (tetrahedra || polyhedra) {
+        filter_note(f, "%s: .mix is not examined, only %s", filter_input_name(f),
+                    tetrahedra ? ".ele" : ".cell");
+        return;
     }
+    tm_error error;
+    tm_fail_at(&error, TM_ERROR_INPUT, filter_input_name(f), 0, ".mix",
+               "mesh-check reads tetrahedra (.ele) or polyhedra (.cell)");
+    filter_fail(f, &error);
 }
 
 static tm_tet_arrays arrays_of(const tm_stream *stream)
@@ -51,6 +53,21 @@ static tm_tet_arrays arrays_of(const tm_stream *stream)
         mesh.edge = (const uint32_t(*)[2])edge->integer;
     }
     return mesh;
+}
+
+static void examine(const filter *f, const tm_stream *stream, tm_examination *found)
+{
+    tm_error error;
+    tm_status status;
+    if (tm_stream_find(stream, ".cell") && !tm_stream_find(stream, ".ele")) {
+        const tm_poly_arrays mesh = tm_poly_arrays_of(stream);
+        status = tm_poly_examine(found, &mesh, f->threads, &error);
+    } else {
+        const tm_tet_arrays mesh = arrays_of(stream);
+        status = tm_tet_examine(found, &mesh, f->threads, &error);
+    }
+    if (status != TM_OK)
+        filter_fail(f, &error);
 }
 
 /* Nothing where standard output is for the JSON, or is to be quiet. */
@@ -82,9 +99,11 @@ int main(int argc, char **argv)
     filter f = {
         .name = "mesh-check",
         .synopsis = "[FILE]",
-        .purpose = "Says what is wrong with a mesh of tetrahedra: inverted, flat and\n"
-                   "overlapping ones, a boundary that is not closed or not manifold,\n"
-                   "duplicate nodes. Exit status 1 if anything is.",
+        .purpose =
+            "Says what is wrong with a mesh of tetrahedra or polyhedra: inverted,\n"
+            "flat and overlapping ones, polyhedra that are not closed, a boundary\n"
+            "that is not closed or not manifold, duplicate nodes. Exit status 1 if\n"
+            "anything is.",
         .help = "",
         .options = long_options,
         .letters = FILTER_LETTERS,
@@ -98,11 +117,8 @@ int main(int argc, char **argv)
     tm_stream stream;
     filter_read(&f, &stream);
     refuse_other_elements(&f, &stream);
-    const tm_tet_arrays mesh = arrays_of(&stream);
     tm_examination found;
-    tm_error error;
-    if (tm_tet_examine(&found, &mesh, f.threads, &error) != TM_OK)
-        filter_fail(&f, &error);
+    examine(&f, &stream, &found);
     write_report(&f, &found, stream.base);
     if (f.json)
         write_json(&f, &found);

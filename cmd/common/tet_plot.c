@@ -1,25 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tet_plot.h"
 
+#include "plot_style.h"
+
 #include "../../lib/quality/tet_quality.h"
 
 #include <math.h>
-#include <stdio.h>
-
-static const char settings[] =
-    "set terminal svg size 1040,450 enhanced font 'Helvetica,15' background 'white'\n"
-    "set encoding utf8\n"
-    "set border 3 linecolor '#555555'\n"
-    "set tics nomirror out scale 0.6 textcolor '#333333'\n"
-    "set xtics offset 0,0.35\n"
-    "set grid ytics back linetype 1 linewidth 0.6 linecolor '#e4e4e4'\n"
-    "set tmargin screen 0.86\n"
-    "set bmargin screen 0.185\n"
-    "unset key\n"
-    "bad = '#fbe9e7'\n"
-    "grey = '#b4bac1'\n"
-    "blue = '#1f6fb2'\n"
-    "set multiplot\n";
 
 /* Objects of gnuplot have numbers. */
 enum { BAD_LOW = 1, BAD_HIGH, LEGEND_BEFORE, LEGEND_AFTER };
@@ -62,19 +48,6 @@ static void outline(tm_text *script, const char *name, const char *when,
     tm_text_format(script, "%.4g 0\nEND\n", p->width * (double)p->bins);
 }
 
-/* The number with a thin space before each group of three digits. */
-static void grouped(tm_text *script, size_t number)
-{
-    enum { GROUP = 3, DIGITS = 24 };
-    char digits[DIGITS];
-    const int length = snprintf(digits, sizeof digits, "%zu", number);
-    for (int i = 0; i < length; i++) {
-        if (i > 0 && (length - i) % GROUP == 0)
-            tm_text_string(script, "\u2009");
-        tm_text_append(script, &digits[i], 1);
-    }
-}
-
 /* An entry of the legend: how large a mesh is, and how bad. */
 static void legend(tm_text *script, int object, double x, const char *colour,
                    const char *when, const tm_tet_statistics *s)
@@ -86,7 +59,7 @@ static void legend(tm_text *script, int object, double x, const char *colour,
                    "fillcolor rgb %s fillstyle solid noborder\n"
                    "set label %d \"%s",
                    object, x, x + size, colour, object, when);
-    grouped(script, s->tets);
+    plot_grouped(script, s->tets);
     tm_text_format(script,
                    " tetrahedra, %.1f %% bad\" at screen %g, 0.941 textcolor '#222222'\n",
                    tm_percent(s->bad, s->tets), x + size + text_distance);
@@ -173,7 +146,7 @@ static void volume_quality_panel(tm_text *script, const tm_tet_statistics *befor
 void tet_plot_script(tm_text *script, const tm_tet_statistics *before,
                      const tm_tet_statistics *statistics)
 {
-    tm_text_string(script, settings);
+    tm_text_string(script, plot_settings);
     legends(script, before, statistics);
     dihedral_panel(script, before, statistics);
     volume_quality_panel(script, before, statistics);

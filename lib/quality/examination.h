@@ -16,17 +16,21 @@
 /* The kinds of defects, and the numbers (0-based) that say where one is. */
 typedef enum tm_defect {
     TM_INVERTED,            /* element: its volume is negative, exactly */
-    TM_DEGENERATE,          /* element, node: names that node twice; TM_NONE: is flat */
-    TM_UNMATCHED_FACE,      /* three nodes, elements: belongs to more than two */
+    TM_DEGENERATE,          /* element, node: names that node twice; TM_NONE: is flat;
+                               facet, node, 1: a facet that names it twice */
+    TM_UNMATCHED_FACE,      /* three nodes, elements: belongs to more than two;
+                               of polyhedra: facet: not to those that it names */
     TM_OVERLAPPING_FACE,    /* two elements: on the same side of their common face */
     TM_OPEN_EDGE,           /* two nodes, boundary faces: an odd number of them */
     TM_NON_MANIFOLD_EDGE,   /* two nodes, boundary faces: more than two */
     TM_NON_MANIFOLD_VERTEX, /* node, fans of boundary faces: more than one */
     TM_DUPLICATE_NODE,      /* node, an earlier one: equal coordinates */
     TM_DANGLING_FACE,       /* row of .face: no face of an element */
-    TM_REPEATED_FACE,       /* row of .face, the one that it repeats */
+    TM_REPEATED_FACE,       /* row of .face or .facet, the one that it repeats */
     TM_DANGLING_EDGE,       /* row of .edge: no edge of an element */
     TM_REPEATED_EDGE,       /* row of .edge, the one that it repeats */
+    TM_UNCLOSED_EDGE,       /* polyhedron, two nodes, facets of it: not two */
+    TM_UNORIENTED_EDGE,     /* polyhedron, two nodes: its facets run alike along them */
     TM_DEFECTS
 } tm_defect;
 
@@ -42,6 +46,7 @@ typedef struct tm_defect_list {
 typedef struct tm_examination {
     const char *element;  /* "tetrahedron" */
     const char *elements; /* "tetrahedra" */
+    bool polyhedra;       /* they have rows of .facet for faces */
     size_t nodes;
     size_t element_count;
     size_t boundary_faces; /* that belong to exactly one element */

@@ -24,6 +24,8 @@ static const defect_name name[TM_DEFECTS] = {
     [TM_REPEATED_FACE] = {"repeated_faces", "repeated faces"},
     [TM_DANGLING_EDGE] = {"dangling_edges", "dangling edges"},
     [TM_REPEATED_EDGE] = {"repeated_edges", "repeated edges"},
+    [TM_UNCLOSED_EDGE] = {"unclosed_edges", "unclosed edges"},
+    [TM_UNORIENTED_EDGE] = {"unoriented_edges", "unoriented edges"},
 };
 
 static void defect_json(tm_json *json, const tm_examination *found, tm_defect d)
@@ -53,6 +55,10 @@ void tm_examination_json(tm_json *json, const tm_examination *found)
     defect_json(json, found, TM_REPEATED_FACE);
     defect_json(json, found, TM_DANGLING_EDGE);
     defect_json(json, found, TM_REPEATED_EDGE);
+    if (found->polyhedra) {
+        defect_json(json, found, TM_UNCLOSED_EDGE);
+        defect_json(json, found, TM_UNORIENTED_EDGE);
+    }
 }
 
 static void integer_row(tm_text *text, const char *label, int64_t value)
@@ -90,11 +96,18 @@ static void place_text(tm_text *text, const tm_examination *found, tm_defect d,
     case TM_DEGENERATE:
         if (place[1] == TM_NONE)
             tm_text_format(text, "%s %u is flat", one, a);
+        else if (place[2] == 1)
+            tm_text_format(text, "facet %u names node %u twice", a, b);
         else
             tm_text_format(text, "%s %u names node %u twice", one, a, b);
         break;
     case TM_UNMATCHED_FACE:
-        tm_text_format(text, "face %u %u %u belongs to %u %s", a, b, c, place[3], many);
+        if (found->polyhedra)
+            tm_text_format(text, "facet %u does not belong to the %s that it names", a,
+                           many);
+        else
+            tm_text_format(text, "face %u %u %u belongs to %u %s", a, b, c, place[3],
+                           many);
         break;
     case TM_OVERLAPPING_FACE:
         tm_text_format(text, "%s %u and %u are on the same side of their common face",
@@ -115,13 +128,22 @@ static void place_text(tm_text *text, const tm_examination *found, tm_defect d,
         tm_text_format(text, "row %u of .face is no face of a %s", a, one);
         break;
     case TM_REPEATED_FACE:
-        tm_text_format(text, "row %u of .face repeats row %u", a, b);
+        tm_text_format(text, "row %u of %s repeats row %u", a,
+                       found->polyhedra ? ".facet" : ".face", b);
         break;
     case TM_DANGLING_EDGE:
         tm_text_format(text, "row %u of .edge is no edge of a %s", a, one);
         break;
     case TM_REPEATED_EDGE:
         tm_text_format(text, "row %u of .edge repeats row %u", a, b);
+        break;
+    case TM_UNCLOSED_EDGE:
+        tm_text_format(text, "edge %u %u of %s %u belongs to %u of its facets", b, c, one,
+                       a, place[3]);
+        break;
+    case TM_UNORIENTED_EDGE:
+        tm_text_format(text, "edge %u %u of %s %u: its two facets run alike along it", b,
+                       c, one, a);
         break;
     case TM_DEFECTS:
         break;

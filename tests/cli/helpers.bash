@@ -230,4 +230,59 @@ two_boxes() {
         print 1, 0.5, 0.5, 0.5, 3
         print 2, 0.5, 0.5, 1.5, 7
     }'
+
+# Prints a stream of N^3 boxes as polyhedra: boxes N [JITTER]. Planes are at uneven
+# distances; the whole measures N by N by N. With JITTER the nodes inside are moved by up
+# to so much and all facets are cut into triangles. The attribute says 6 tetrahedra.
+boxes() {
+    python3 - "$@" <<'END'
+import random, sys
+
+n = int(sys.argv[1])
+jitter = float(sys.argv[2]) if len(sys.argv) > 2 else 0
+m = n + 1
+random.seed(n)
+plane = [[0] + [i + random.uniform(-.3, .3) for i in range(1, n)] + [n] for _ in range(3)]
+places = [(i, j, k) for k in range(m) for j in range(m) for i in range(m)]
+
+def node(p):
+    return p[0] + m * (p[1] + m * p[2])
+
+def cell(p):
+    return p[0] + n * (p[1] + n * p[2]) if 0 <= min(p) and max(p) < n else -1
+
+def step(p, axis, by=1):
+    return tuple(c + by * (x == axis) for x, c in enumerate(p))
+
+facets, cells = [], [[] for _ in range(n ** 3)]
+for axis in range(3):
+    u, v = (axis + 1) % 3, (axis + 2) % 3
+    for p in places:
+        if p[u] == n or p[v] == n:
+            continue
+        sides = [cell(step(p, axis, -1)), cell(p)]
+        nodes = [node(q) for q in (p, step(p, u), step(step(p, u), v), step(p, v))]
+        if sides[0] < 0:
+            sides.reverse()
+            nodes.reverse()
+        for f in [nodes] if not jitter else [nodes[:3], nodes[2:] + nodes[:1]]:
+            for c in sides:
+                if c >= 0:
+                    cells[c].append(len(facets))
+            facets.append(sides + [len(f)] + f)
+
+print('termesh 1\n.node\n%d 3 0 0' % m ** 3)
+for p in places:
+    x = [plane[axis][c] for axis, c in enumerate(p)]
+    if jitter and 0 < min(p) and max(p) < n:
+        x = [c + random.uniform(-jitter, jitter) for c in x]
+    print(node(p), *x)
+print('.facet\n%d 0' % len(facets))
+for f, row in enumerate(facets):
+    print(f, *row)
+print('.cell\n%d 1' % n ** 3)
+for c, f in enumerate(cells):
+    print(c, len(f), *f, 6)
+print('.end')
+END
 }

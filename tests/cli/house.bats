@@ -31,6 +31,25 @@ termesh 1
 4 1 4 3
 .end
 END
+    cat >cell.tm <<'END'
+termesh 1
+.node
+4 3 0 0
+1 0 0 0
+2 1 0 0
+3 0 1 0
+4 0 0 1
+.facet
+4 0
+1 1 -1 3 1 3 2
+2 1 -1 3 1 2 4
+3 1 -1 3 2 3 4
+4 1 -1 3 1 4 3
+.cell
+1 1
+1 4 1 2 3 4 1
+.end
+END
     sed -n '/^.node/,/^.ele/p' corner.tm | sed '1d; $d' >corner.node
     sed 's/^\.node/surface.node/; s/^\.face/surface.face/; /^\.ele/,/^1 1 2/d' \
         corner.tm >surface.tm
@@ -47,6 +66,7 @@ operands() {
 # A good input for a filter.
 input() {
     case $1 in
+    poly-stats) echo cell.tm ;;
     tetgen-import) echo corner.node ;;
     tetgen-mesh) echo surface.tm ;;
     *) echo corner.tm ;;

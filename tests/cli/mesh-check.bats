@@ -271,15 +271,133 @@ END
     printf 'termesh 1\n.node\n1 3 0 0\n1 0 0 0\n.mix\n0 0\n.end\n' >mixed.tm
     run -3 --separate-stderr mesh-check mixed.tm
     [ "$output" = "" ]
-    [ "$stderr" = "mesh-check: mixed.tm: .mix: mesh-check reads tetrahedra (.ele)" ]
-    printf 'termesh 1\n.node\n0 3 0 0\n.facet\n0 0\n.cell\n0 0\n.end\n' >cells.tm
-    run -3 --separate-stderr mesh-check - <cells.tm
-    [ "$stderr" = "mesh-check: <stdin>: .cell: mesh-check reads tetrahedra (.ele)" ]
+    [ "$stderr" = "mesh-check: mixed.tm: .mix: mesh-check reads tetrahedra (.ele) or \
+polyhedra (.cell)" ]
     # Beside tetrahedra they are passed over, and the user is told.
     sed 's/^\.end/.mix\n0 0\n.end/' cube.tm >both.tm
     run -0 --separate-stderr mesh-check both.tm
     [ "$stderr" = "mesh-check: both.tm: .mix is not examined, only .ele" ]
     [ "$output" = "$(mesh-check cube.tm)" ]
+    sed 's/^\.end/.facet\n0 0\n.cell\n0 0\n.end/' cube.tm >both.tm
+    run -0 --separate-stderr mesh-check both.tm
+    [ "$stderr" = "mesh-check: both.tm: .cell is not examined, only .ele" ]
+    [ "$output" = "$(mesh-check cube.tm)" ]
+}
+
+@test "good polyhedra: the table and the JSON, exit 0" {
+    boxes 3 >boxes.tm
+    run -0 --separate-stderr mesh-check --json out.json boxes.tm
+    [ "$stderr" = "" ]
+    diff - <(echo "$output") <<'END'
+nodes                               64
+polyhedra                           27
+components                           1
+Euler number                         1
+volume                              27
+boundary faces                      54
+boundary area                       54
+unused nodes                         0
+
+nothing is wrong
+END
+    python3 - out.json <<'END'
+import json, sys
+mesh = json.load(open(sys.argv[1]))
+assert list(mesh) == [
+    "nodes", "elements", "inverted", "degenerate", "unmatched_faces", "boundary_faces",
+    "open_edges", "non_manifold_edges", "non_manifold_vertices", "components", "euler",
+    "volume", "area", "unused_nodes", "duplicate_nodes", "overlapping_faces",
+    "dangling_faces", "repeated_faces", "dangling_edges", "repeated_edges",
+    "unclosed_edges", "unoriented_edges"]
+assert (mesh["nodes"], mesh["elements"], mesh["euler"]) == (64, 27, 1)
+END
+    # No polyhedra at all are good.
+    printf 'termesh 1\n.node\n0 3 0 0\n.facet\n0 0\n.cell\n0 0\n.end\n' >none.tm
+    run -0 mesh-check none.tm
+    [[ "$output" =~ polyhedra\ +0 ]]
+}
+
+@test "wrong polyhedra: what and where, and exit 1" {
+    # Two boxes; counted from 0. Facet 1 is between them.
+    boxes 2 | awk '
+        /^\./ { block = $1; print; header = 1; next }
+        header { header = 0; print; next }
+        block == ".facet" && $1 == 0 { $5 = $6 }                  # a node twice
+        block == ".facet" && $1 == 4 { n = $5; $5 = $7; $7 = n }  # turned
+        block == ".facet" && $1 == 9 { $3 = 5 }                   # the wrong cell
+        { print }' >wrong.tm
+    run -1 --separate-stderr mesh-check wrong.tm
+    [ "$stderr" = "" ]
+    echo "$output"
+    [[ "$output" == *"  facet 0 names node "*" twice"* ]]
+    [[ "$output" == *"  facet 9 does not belong to the polyhedra that it names"* ]]
+    [[ "$output" == *" of polyhedron 0 belongs to "*" of its facets"* ]]
+    [[ "$output" == *" of polyhedron "*": its two facets run alike along it"* ]]
+    # Inside out.
+    boxes 1 | awk '
+        /^\.facet/ { inside = 1 }
+        /^\.cell/ { inside = 0 }
+        inside && NF == 8 { n = $5; $5 = $7; $7 = n }
+        { print }' >inverted.tm
+    run -1 mesh-check inverted.tm
+    diff - <(echo "$output" | sed -n '/^volume/p; /^$/,$p') <<'END'
+volume                              -1
+
+inverted                             1
+  polyhedron 0 is inverted
+END
+    # Two rows for one square, of which each polyhedron has its own.
+    cat >repeated.tm <<'END'
+termesh 1
+.node
+5 3 0 0
+1 0 0 0
+2 1 0 0
+3 0 1 0
+4 0 0 1
+5 0 0 -1
+.facet
+8 0
+1 1 -1 3 1 3 2
+2 1 -1 3 1 2 4
+3 1 -1 3 2 3 4
+4 1 -1 3 3 1 4
+5 2 -1 3 2 1 5
+6 2 -1 3 3 2 5
+7 2 -1 3 1 3 5
+8 2 -1 3 1 2 3
+.cell
+2 0
+1 4 1 2 3 4
+2 4 5 6 7 8
+.end
+END
+    run -1 mesh-check repeated.tm
+    diff - <(echo "$output" | sed -n '/^$/,$p') <<'END'
+
+non-manifold edges                   3
+  edge 1 2 belongs to 4 boundary faces
+  edge 1 3 belongs to 4 boundary faces
+  edge 2 3 belongs to 4 boundary faces
+repeated faces                       1
+  row 8 of .facet repeats row 1
+END
+}
+
+@test "polyhedra: -j 2 gives the bytes of -j 1" {
+    boxes 16 0.2 | awk '
+        /^\./ { block = $1 }
+        block == ".facet" && NF == 7 && $1 % 50 == 0 { n = $5; $5 = $7; $7 = n }
+        { print }' >many.tm
+    for threads in 1 2 5; do
+        run -1 mesh-check -j $threads --json $threads.json -o $threads.table many.tm
+    done
+    [ "$(json 1.json unoriented_edges)" -gt 5 ]
+    [ "$(json 1.json unmatched_faces)" -eq 0 ]
+    cmp 1.json 2.json
+    cmp 1.json 5.json
+    cmp 1.table 2.table
+    cmp 1.table 5.table
 }
 
 @test "-j 2 gives the bytes of -j 1" {

@@ -102,6 +102,66 @@ static void make_lattice(tm_text *text)
     tm_text_string(text, ".end\n");
 }
 
+/* A row of .facet of make_cells(): the square below a cube, across an axis. */
+static void make_square(tm_text *text, const unsigned p[3], unsigned axis, unsigned n,
+                        unsigned base)
+{
+    const unsigned m = n + 1, step[3] = {1, m, m * m}, cube_step[3] = {1, n, n * n};
+    const unsigned u = step[(axis + 1) % 3], w = step[(axis + 2) % 3];
+    const unsigned v = p[0] + m * (p[1] + m * p[2]) + base;
+    const unsigned above = p[0] + n * (p[1] + n * p[2]) + base;
+    const unsigned below = above - cube_step[axis];
+    if (p[axis] == 0)
+        tm_text_format(text, " %u -1 4 %u %u %u %u\n", above, v, v + w, v + u + w, v + u);
+    else if (p[axis] == n)
+        tm_text_format(text, " %u -1 4 %u %u %u %u\n", below, v, v + u, v + u + w, v + w);
+    else
+        tm_text_format(text, " %u %u 4 %u %u %u %u\n", below, above, v, v + u, v + u + w,
+                       v + w);
+}
+
+/* The number of the square below the cube at p across an axis. */
+static unsigned square(const unsigned p[3], unsigned axis, unsigned n)
+{
+    const unsigned u = (axis + 1) % 3, w = (axis + 2) % 3;
+    return (n + 1) * n * n * axis + (p[axis] * n + p[u]) * n + p[w];
+}
+
+/* A block of cubes as polyhedra, with nodes moved, so that no facet need be plane. */
+static void make_cells(tm_text *text)
+{
+    enum { SIDE_MAX = 3, MOVED_MAX = 5, AXES = 3 };
+    const unsigned n = 1 + random_below(SIDE_MAX), m = n + 1;
+    const unsigned moved = random_below(MOVED_MAX), base = random_below(2);
+    tm_text_format(text, "termesh 1\n.node\n%u 3 0 0\n", m * m * m);
+    for (unsigned v = 0; v < m * m * m; v++)
+        tm_text_format(text, "%u %g %g %g\n", v + base, coordinate(v % m, moved),
+                       coordinate(v / m % m, moved), coordinate(v / m / m, moved));
+    tm_text_format(text, ".facet\n%u 0\n", AXES * m * n * n);
+    for (unsigned f = 0; f < AXES * m * n * n; f++) {
+        const unsigned axis = f / (m * n * n), rest = f % (m * n * n);
+        unsigned p[3];
+        p[axis] = rest / (n * n);
+        p[(axis + 1) % 3] = rest / n % n;
+        p[(axis + 2) % 3] = rest % n;
+        tm_text_format(text, "%u", f + base);
+        make_square(text, p, axis, n, base);
+    }
+    tm_text_format(text, ".cell\n%u 1\n", n * n * n);
+    for (unsigned c = 0; c < n * n * n; c++) {
+        unsigned p[3] = {c % n, c / n % n, c / n / n};
+        tm_text_format(text, "%u 6", c + base);
+        for (unsigned axis = 0; axis < AXES; axis++) {
+            tm_text_format(text, " %u", square(p, axis, n) + base);
+            p[axis]++;
+            tm_text_format(text, " %u", square(p, axis, n) + base);
+            p[axis]--;
+        }
+        tm_text_string(text, " 6\n");
+    }
+    tm_text_string(text, ".end\n");
+}
+
 /* Puts bytes in the place of [from, to). */
 static void replace(tm_text *text, size_t from, size_t to, const char *bytes, size_t size)
 {
@@ -188,10 +248,16 @@ void make_damaged(tm_text *text, uint64_t seed, uint64_t number)
     random_state = seed;
     random_state = random_bits() + number;
     random_state = random_bits();
-    if (random_below(2))
-        make_lattice(text);
-    else
+    switch (random_below(4)) {
+    case 0:
+        make_cells(text);
+        break;
+    case 1:
         tm_text_string(text, all_blocks);
+        break;
+    default:
+        make_lattice(text);
+    }
     for (unsigned n = random_below(DAMAGES); n > 0 && text->size > 0; n--)
         damage(text);
 }

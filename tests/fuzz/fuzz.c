@@ -4,10 +4,13 @@
  *     fuzz FOLDER CASES
  *
  * FOLDER holds the filters. Each case is read by the library; what it reads as a stream
- * must be written and read back alike, and as a mesh must stay valid when it is improved.
+ * must be written and read back alike; polyhedra are examined and measured; tetrahedra
+ * must stay a mesh when they are improved.
  * Every FILTER_EVERY-th case goes through the filters: no signal, no report of a
  * sanitizer, no other exit status than 0, 1 and 3. No case may take longer than SECONDS.
  * TM_SEED repeats a run. The first case that fails is kept in a file. */
+#include "../../lib/poly/poly_examine.h"
+#include "../../lib/poly/poly_statistics.h"
 #include "../../lib/tet/improve.h"
 #include "../../lib/tet/lepp.h"
 #include "../unit/random.h"
@@ -48,6 +51,7 @@ static const command commands[] = {
     {"polylla3d", {"--star", "--absorb", "--ignore-markers", INPUT}, false},
     {"polylla3d", {"--mode", "cavity", "--no-repair", INPUT}, false},
     {"mesh-check", {INPUT}, false},
+    {"poly-stats", {INPUT}, false},
     {"tetgen-export", {"out", INPUT}, false},
     {"tetgen-import", {BASE}, false},
     {"tetgen-mesh", {"--tetgen", "false", INPUT}, true},
@@ -186,12 +190,31 @@ static void check_improvement(tm_stream *stream)
     }
 }
 
+/* Polyhedra that are wrong are examined and measured; what is said of them agrees. */
+static void check_polyhedra(const tm_stream *stream)
+{
+    tm_examination found;
+    tm_poly_statistics statistics;
+    tm_error error;
+    const tm_poly_arrays mesh = tm_poly_arrays_of(stream);
+    require(tm_poly_examine(&found, &mesh, 1, &error) == TM_OK &&
+                tm_poly_statistics_measure(&statistics, &mesh, 1, &error) == TM_OK,
+            "polyhedra are not examined");
+    const size_t wrong =
+        found.defect[TM_UNCLOSED_EDGE].count + found.defect[TM_UNORIENTED_EDGE].count;
+    require((wrong == 0) == (statistics.cause[TM_POLY_EDGE] == 0) &&
+                statistics.swallowed == found.unused_nodes &&
+                statistics.non_simple <= mesh.cells,
+            "polyhedra are examined and measured differently");
+}
+
 static void check_library(const tm_text *text)
 {
     tm_stream stream;
     tm_error error;
     if (read_bytes(&stream, text->byte ? text->byte : "", text->size, &error) == TM_OK) {
         check_round_trip(&stream);
+        check_polyhedra(&stream);
         check_improvement(&stream);
         tm_stream_free(&stream);
     } else {

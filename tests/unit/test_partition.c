@@ -196,9 +196,11 @@ static void check_partition(const tm_tet_mesh *mesh, const tm_poly_options *o)
     for (size_t t = 0; t < mesh->slots; t++) {
         assert_true(partition.cell[t] < partition.cells);
         size[partition.cell[t]]++;
-        uint32_t a = partition.order[t ? t - 1 : 0], b = partition.order[t];
-        assert_true(t == 0 || partition.cell[a] < partition.cell[b] ||
-                    (partition.cell[a] == partition.cell[b] && a < b));
+        if (t == 0)
+            continue;
+        uint32_t before = partition.order[t - 1], now = partition.order[t];
+        uint32_t from = partition.cell[before], to = partition.cell[now];
+        assert_true(from == to ? before < now : from < to);
     }
     for (uint32_t c = 0; c < partition.cells; c++) {
         assert_true(size[c] > 0);

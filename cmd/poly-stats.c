@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* poly-stats: how many polyhedra are simple and star-shaped, and how good they are. */
+#include "common/filter.h"
+#include "common/gnuplot.h"
+#include "common/poly_plot.h"
+
+#include "../lib/poly/poly_statistics.h"
+
+#include <string.h>
+
+enum { OPTION_PLOT = FILTER_OWN };
+
+static const struct option long_options[] = {
+    {"plot", required_argument, NULL, OPTION_PLOT}, FILTER_OPTIONS};
+
+/* A stream of other elements only is the wrong one. */
+static void refuse_other_elements(const filter *f, const tm_stream *stream)
+{
+    static const char *const others[] = {".ele", ".mix"};
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+        if (tm_stream_find(stream, ".cell") || !tm_stream_find(stream, others[i]))
+            continue;
+        tm_error error;
+        tm_fail_at(&error, TM_ERROR_INPUT, filter_input_name(f), 0, others[i],
+                   "poly-stats reads polyhedra (.cell)%s",
+                   i == 0 ? "; tet-stats reads tetrahedra" : "");
+        filter_fail(f, &error);
+    }
+}
+
+static void write_json(filter *f, const tm_poly_statistics *s)
+{
+    tm_text text = {0};
+    tm_json json = {.text = &text};
+    tm_json_open(&json, NULL, '{');
+    tm_poly_statistics_json(&json, s);
+    tm_json_close(&json, '}');
+    tm_text_string(&text, "\n");
+    filter_write_json(f, &text);
+    tm_text_free(&text);
+}
+
+static void write_plot(const filter *f, const char *file, const tm_poly_statistics *s)
+{
+    tm_error error;
+    tm_text script = {0};
+    poly_plot_script(&script, s);
+    if (gnuplot_plot(&script, file, &error) != TM_OK)
+        filter_fail(f, &error);
+    tm_text_free(&script);
+}
+
+/* What standard output or -o gets; nothing where standard output is for the JSON. */
+static void write_report(filter *f, const tm_poly_statistics *s)
+{
+    if (!f->output && f->json && strcmp(f->json, "-") == 0)
+        return;
+    tm_text text = {0};
+    tm_poly_statistics_table(&text, s);
+    filter_write_text(f, &text);
+    tm_text_free(&text);
+}
+
+static void measure(const filter *f, const tm_stream *stream, tm_poly_statistics *s)
+{
+    tm_error error;
+    const tm_poly_arrays mesh = tm_poly_arrays_of(stream);
+    if (tm_poly_statistics_measure(s, &mesh, f->threads, &error) != TM_OK)
+        filter_fail(f, &error);
+    if (s->unmatched > 0)
+        filter_note(f,
+                    "%s: %zu of %zu facets do not belong to the polyhedra that they "
+                    "name: see mesh-check",
+                    filter_input_name(f), s->unmatched, mesh.facets);
+}
+
+int main(int argc, char **argv)
+{
+    filter f = {
+        .name = "poly-stats",
+        .synopsis = "[--plot FILE.svg] [FILE]",
+        .purpose = "Says how good the polyhedra of a mesh are: how many are simple and\n"
+                   "star-shaped, their facets and tetrahedra, edges, angles, kernels.",
+        .help = "      --plot FILE.svg draw histograms by gnuplot\n",
+        .options = long_options,
+        .letters = FILTER_LETTERS,
+        .json_is_output = true,
+    };
+    const char *plot = NULL;
+    int c;
+    filter_start(&f, argc, argv);
+    while ((c = filter_option(&f)) != -1)
+        if (c == OPTION_PLOT)
+            plot = optarg;
+    filter_operands(&f);
+
+    tm_stream stream;
+    tm_poly_statistics statistics;
+    filter_read(&f, &stream);
+    refuse_other_elements(&f, &stream);
+    measure(&f, &stream, &statistics);
+    if (plot)
+        write_plot(&f, plot, &statistics);
+    write_report(&f, &statistics);
+    if (f.json)
+        write_json(&f, &statistics);
+    tm_stream_free(&stream);
+    return filter_finish(&f, 0);
+}

@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "poly_examine.h"
+
+#include "../base/array.h"
+#include "../base/parallel.h"
+#include "../base/sum.h"
+#include "../geom/vector.h"
+#include "poly_boundary.h"
+#include "poly_examine_facets.h"
+#include "poly_measure.h"
+
+#include <stdlib.h>
+
+/* Polyhedra that one thread examines at a time. */
+enum { CHUNK = 1024 };
+
+/* What a chunk of polyhedra adds to the examination. */
+typedef struct examined {
+    tm_sum volume;
+    tm_defect_list inverted;
+    tm_defect_list degenerate;
+    tm_defect_list unclosed;
+    tm_defect_list unoriented;
+    tm_status status;
+} examined;
+
+typedef struct examining {
+    const tm_poly_arrays *mesh;
+    examined *chunk; /* one for each CHUNK of cells */
+} examining;
+
+static void examine_edge(examined *e, const tm_poly_boundary *b, uint32_t c,
+                         const tm_poly_edge *edge)
+{
+    const uint32_t p = b->node[edge->end[0]], q = b->node[edge->end[1]];
+    const uint32_t faces = edge->along + edge->against;
+    const uint32_t place[TM_PLACE_NUMBERS] = {c, p < q ? p : q, p < q ? q : p, faces};
+    if (faces != 2)
+        tm_defect_add(&e->unclosed, place);
+    else if (edge->along != 1)
+        tm_defect_add(&e->unoriented, place);
+}
+
+static void examine_cell(examined *e, const tm_poly_arrays *mesh, tm_poly_boundary *b,
+                         uint32_t c)
+{
+    const size_t start = mesh->cell_start[c];
+    e->status = tm_poly_boundary_find(b, mesh, mesh->cell_facet + start,
+                                      mesh->cell_start[c + 1] - start, c, NULL);
+    if (e->status != TM_OK)
+        return;
+    for (size_t i = 0; i < b->edges; i++)
+        examine_edge(e, b, c, &b->edge[i]);
+    double volume;
+    const int sign = tm_poly_sign(b, mesh->xyz, &volume);
+    tm_sum_add(&e->volume, volume);
+    if (sign < 0)
+        tm_defect_add(&e->inverted, (uint32_t[TM_PLACE_NUMBERS]){c});
+    else if (sign == 0)
+        tm_defect_add(&e->degenerate, (uint32_t[TM_PLACE_NUMBERS]){c, TM_NONE});
+}
+
+static void examine_chunk(void *context, size_t chunk)
+{
+    const examining *x = context;
+    const size_t first = chunk * CHUNK, left = x->mesh->cells - first;
+    const size_t end = first + (left < CHUNK ? left : CHUNK);
+    tm_poly_boundary b = {0};
+    examined e = {.status = TM_OK};
+    for (size_t c = first; c < end && e.status == TM_OK; c++)
+        examine_cell(&e, x->mesh, &b, (uint32_t)c);
+    tm_poly_boundary_free(&b);
+    x->chunk[chunk] = e;
+}
+
+static tm_status examine_cells(tm_examination *found, const tm_poly_arrays *mesh,
+                               unsigned threads, tm_error *error)
+{
+    const size_t chunks = mesh->cells / CHUNK + (mesh->cells % CHUNK != 0);
+    examining x = {mesh, tm_new(chunks, sizeof *x.chunk)};
+    if (!x.chunk)
+        return tm_fail_memory(error);
+    tm_parallel(threads, chunks, examine_chunk, &x);
+    tm_status status = TM_OK;
+    tm_sum volume = {0};
+    for (size_t i = 0; i < chunks; i++) {
+        const examined *e = &x.chunk[i];
+        status = e->status != TM_OK ? e->status : status;
+        tm_sum_add(&volume, e->volume.high);
+        tm_sum_add(&volume, e->volume.low);
+        tm_defect_add_list(&found->defect[TM_INVERTED], &e->inverted);
+        tm_defect_add_list(&found->defect[TM_DEGENERATE], &e->degenerate);
+        tm_defect_add_list(&found->defect[TM_UNCLOSED_EDGE], &e->unclosed);
+        tm_defect_add_list(&found->defect[TM_UNORIENTED_EDGE], &e->unoriented);
+    }
+    found->volume = tm_sum_value(volume);
+    free(x.chunk);
+    return status == TM_OK ? TM_OK : tm_fail_memory(error);
+}
+
+static void examine_surface(tm_examination *found, const tm_poly_boundary *b)
+{
+    for (size_t i = 0; i < b->edges; i++) {
+        const tm_poly_edge *e = &b->edge[i];
+        const uint32_t p = b->node[e->end[0]], q = b->node[e->end[1]];
+        const uint32_t faces = e->along + e->against;
+        const uint32_t place[TM_PLACE_NUMBERS] = {p < q ? p : q, p < q ? q : p, faces};
+        if (faces % 2 == 1)
+            tm_defect_add(&found->defect[TM_OPEN_EDGE], place);
+        if (faces > 2)
+            tm_defect_add(&found->defect[TM_NON_MANIFOLD_EDGE], place);
+    }
+    for (size_t v = 0; v < b->nodes; v++)
+        if (b->fans[v] > 1)
+            tm_defect_add(&found->defect[TM_NON_MANIFOLD_VERTEX],
+                          (uint32_t[TM_PLACE_NUMBERS]){b->node[v], b->fans[v]});
+}
+
+/* The surface of the facets that name only one cell. */
+static tm_status examine_boundary(tm_examination *found, const tm_poly_arrays *mesh,
+                                  tm_error *error)
+{
+    uint32_t *facet = tm_new(found->boundary_faces, sizeof *facet);
+    if (!facet)
+        return tm_fail_memory(error);
+    size_t facets = 0;
+    tm_sum area = {0};
+    for (uint32_t f = 0; f < mesh->facets; f++)
+        if (mesh->side[f][1] == TM_NONE) {
+            const size_t start = mesh->facet_start[f];
+            double normal[3];
+            tm_polygon_area(mesh->xyz, mesh->facet_node + start,
+                            mesh->facet_start[f + 1] - start, normal);
+            tm_sum_add(&area, tm_norm(normal));
+            facet[facets++] = f;
+        }
+    found->area = tm_sum_value(area);
+    tm_poly_boundary b = {0};
+    const tm_status status =
+        tm_poly_boundary_find(&b, mesh, facet, facets, TM_NONE, error);
+    if (status == TM_OK)
+        examine_surface(found, &b);
+    tm_poly_boundary_free(&b);
+    free(facet);
+    return status;
+}
+
+tm_status tm_poly_examine(tm_examination *found, const tm_poly_arrays *mesh,
+                          unsigned threads, tm_error *error)
+{
+    *found = (tm_examination){.element = "polyhedron",
+                              .elements = "polyhedra",
+                              .polyhedra = true,
+                              .nodes = mesh->nodes,
+                              .element_count = mesh->cells};
+    tm_status status = examine_cells(found, mesh, threads, error);
+    if (status == TM_OK)
+        status = tm_poly_examine_facets(found, mesh, error);
+    if (status == TM_OK)
+        status = examine_boundary(found, mesh, error);
+    if (status == TM_OK)
+        status = tm_examine_nodes(found, mesh->xyz, mesh->nodes, error);
+    return status;
+}

@@ -1,0 +1,305 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "poly_statistics.h"
+
+#include "../base/array.h"
+#include "../base/parallel.h"
+#include "../base/sum.h"
+#include "poly_examine_facets.h"
+#include "poly_shape.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Polyhedra that one thread measures at a time. */
+enum { CHUNK = 256 };
+
+/* What a chunk of polyhedra adds: minima, maxima and counts in `part`, where means are
+ * not yet divided sums; sums that are compensated beside it. */
+typedef struct chunk_sums {
+    tm_poly_statistics part;
+    tm_sum volume;
+    tm_status status;
+} chunk_sums;
+
+typedef struct measuring {
+    const tm_poly_arrays *mesh;
+    bool with_tets;
+    chunk_sums *chunk; /* one for each CHUNK of cells */
+} measuring;
+
+/* What a thread keeps from one polyhedron to the next. */
+typedef struct workspace {
+    tm_poly_boundary boundary;
+    tm_poly_shape_memory shape;
+} workspace;
+
+static const double largest_angle = 360; /* degrees */
+
+size_t tm_count_bin_begin(size_t bin)
+{
+    if (bin == 0)
+        return 1;
+    const size_t power = (size_t)1 << (bin - 1) / 2;
+    return bin % 2 == 1 ? 2 * power : 3 * power;
+}
+
+size_t tm_count_bins(const size_t *histogram)
+{
+    size_t bins = TM_COUNT_BINS;
+    while (bins > 0 && histogram[bins - 1] == 0)
+        bins--;
+    return bins;
+}
+
+static size_t count_bin(size_t count)
+{
+    size_t bin = 0;
+    while (bin + 1 < TM_COUNT_BINS && count >= tm_count_bin_begin(bin + 1))
+        bin++;
+    return bin;
+}
+
+static size_t ratio_bin(double ratio)
+{
+    /* Convex polyhedra have 1 but for rounding. */
+    const double rounding = 1e-9;
+    const double bin = (ratio + rounding) * TM_KERNEL_RATIO_BINS;
+    return bin < TM_KERNEL_RATIO_BINS ? (size_t)bin : TM_KERNEL_RATIO_BINS - 1;
+}
+
+static void clear(tm_poly_statistics *s)
+{
+    *s = (tm_poly_statistics){.min_volume = HUGE_VAL,
+                              .min_edge = HUGE_VAL,
+                              .min_face_area = HUGE_VAL,
+                              .min_dihedral = largest_angle,
+                              .edge_ratio = {.min = HUGE_VAL},
+                              .kernel_radius = {.min = HUGE_VAL},
+                              .kernel_ratio = {.min = HUGE_VAL}};
+}
+
+static void add_value(tm_poly_range *range, double value)
+{
+    range->min = fmin(range->min, value);
+    range->mean += value;
+}
+
+static void add_range(tm_poly_range *sum, const tm_poly_range *range)
+{
+    sum->min = fmin(sum->min, range->min);
+    sum->mean += range->mean;
+}
+
+static size_t tets_of(const tm_poly_arrays *mesh, size_t c)
+{
+    return (size_t)mesh->attribute[c * mesh->attributes];
+}
+
+/* Whether the first attributes of all cells are numbers of tetrahedra. */
+static bool has_tets(const tm_poly_arrays *mesh)
+{
+    const double most = 4294967295;
+    for (size_t c = 0; mesh->attribute && c < mesh->cells; c++) {
+        const double tets = mesh->attribute[c * mesh->attributes];
+        if (!(tets >= 1 && tets <= most && tets == floor(tets)))
+            return false;
+    }
+    return mesh->attribute && mesh->attributes > 0 && mesh->cells > 0;
+}
+
+static void count_causes(tm_poly_statistics *s, unsigned causes)
+{
+    s->non_simple += causes != 0;
+    for (size_t i = 0; i < TM_POLY_CAUSES; i++)
+        s->cause[i] += causes >> i & 1;
+}
+
+static void count_tets(tm_poly_statistics *s, size_t tets)
+{
+    s->input.elements += tets;
+    s->largest_tets = tets > s->largest_tets ? tets : s->largest_tets;
+    s->tets[count_bin(tets)]++;
+}
+
+static void add_shape(chunk_sums *sums, const tm_poly_shape *shape)
+{
+    tm_poly_statistics *s = &sums->part;
+    tm_sum_add(&sums->volume, shape->volume);
+    s->min_volume = fmin(s->min_volume, shape->volume);
+    s->min_edge = fmin(s->min_edge, shape->min_edge);
+    s->min_face_area = fmin(s->min_face_area, shape->min_face_area);
+    s->min_dihedral = fmin(s->min_dihedral, shape->min_dihedral);
+    s->max_dihedral = fmax(s->max_dihedral, shape->max_dihedral);
+    s->not_star_shaped += !shape->star_shaped;
+    add_value(&s->edge_ratio,
+              shape->diameter > 0 ? shape->min_edge / shape->diameter : 0);
+    add_value(&s->kernel_radius, shape->kernel_radius);
+    add_value(&s->kernel_ratio, shape->kernel_ratio);
+    s->kernel_ratios[ratio_bin(shape->kernel_ratio)]++;
+}
+
+static void measure_cell(chunk_sums *sums, const measuring *m, workspace *w, size_t c)
+{
+    const tm_poly_arrays *mesh = m->mesh;
+    const size_t start = mesh->cell_start[c], faces = mesh->cell_start[c + 1] - start;
+    tm_poly_shape shape;
+    sums->status = tm_poly_boundary_find(&w->boundary, mesh, mesh->cell_facet + start,
+                                         faces, (uint32_t)c, NULL);
+    if (sums->status == TM_OK)
+        sums->status =
+            tm_poly_shape_measure(&shape, &w->shape, &w->boundary, mesh->xyz, NULL);
+    if (sums->status != TM_OK)
+        return;
+    count_causes(&sums->part, tm_poly_boundary_causes(&w->boundary));
+    add_shape(sums, &shape);
+    sums->part.faces[count_bin(faces)]++;
+    sums->part.faces_per_polyhedron += (double)faces;
+    if (faces > sums->part.largest_faces)
+        sums->part.largest_faces = faces;
+    if (m->with_tets)
+        count_tets(&sums->part, tets_of(mesh, c));
+}
+
+static void measure_chunk(void *context, size_t chunk)
+{
+    const measuring *m = context;
+    const size_t first = chunk * CHUNK, left = m->mesh->cells - first;
+    const size_t end = first + (left < CHUNK ? left : CHUNK);
+    workspace w = {.boundary = {0}};
+    chunk_sums sums = {.status = TM_OK};
+    clear(&sums.part);
+    for (size_t c = first; c < end && sums.status == TM_OK; c++)
+        measure_cell(&sums, m, &w, c);
+    tm_poly_boundary_free(&w.boundary);
+    tm_poly_shape_memory_free(&w.shape);
+    m->chunk[chunk] = sums;
+}
+
+static void add_counts(size_t *sum, const size_t *counts, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        sum[i] += counts[i];
+}
+
+static size_t larger(size_t a, size_t b)
+{
+    return a > b ? a : b;
+}
+
+static void add(tm_poly_statistics *sum, const tm_poly_statistics *s)
+{
+    sum->input.elements += s->input.elements;
+    sum->non_simple += s->non_simple;
+    sum->not_star_shaped += s->not_star_shaped;
+    sum->largest_faces = larger(sum->largest_faces, s->largest_faces);
+    sum->largest_tets = larger(sum->largest_tets, s->largest_tets);
+    sum->faces_per_polyhedron += s->faces_per_polyhedron;
+    sum->min_volume = fmin(sum->min_volume, s->min_volume);
+    sum->min_edge = fmin(sum->min_edge, s->min_edge);
+    sum->min_face_area = fmin(sum->min_face_area, s->min_face_area);
+    sum->min_dihedral = fmin(sum->min_dihedral, s->min_dihedral);
+    sum->max_dihedral = fmax(sum->max_dihedral, s->max_dihedral);
+    add_range(&sum->edge_ratio, &s->edge_ratio);
+    add_range(&sum->kernel_radius, &s->kernel_radius);
+    add_range(&sum->kernel_ratio, &s->kernel_ratio);
+    add_counts(sum->cause, s->cause, TM_POLY_CAUSES);
+    add_counts(sum->faces, s->faces, TM_COUNT_BINS);
+    add_counts(sum->tets, s->tets, TM_COUNT_BINS);
+    add_counts(sum->kernel_ratios, s->kernel_ratios, TM_KERNEL_RATIO_BINS);
+}
+
+/* Sums become means. */
+static void divide(tm_poly_statistics *s, size_t polyhedra)
+{
+    const double count = (double)polyhedra;
+    s->faces_per_polyhedron /= count;
+    s->tets_per_polyhedron = (double)s->input.elements / count;
+    s->edge_ratio.mean /= count;
+    s->kernel_radius.mean /= count;
+    s->kernel_ratio.mean /= count;
+}
+
+static tm_status measure_cells(tm_poly_statistics *s, const tm_poly_arrays *mesh,
+                               unsigned threads, tm_error *error)
+{
+    const size_t chunks = mesh->cells / CHUNK + (mesh->cells % CHUNK != 0);
+    measuring m = {mesh, has_tets(mesh), tm_new(chunks, sizeof *m.chunk)};
+    if (!m.chunk)
+        return tm_fail_memory(error);
+    tm_parallel(threads, chunks, measure_chunk, &m);
+    tm_status status = TM_OK;
+    tm_sum volume = {0};
+    clear(s);
+    for (size_t i = 0; i < chunks; i++) {
+        add(s, &m.chunk[i].part);
+        tm_sum_add(&volume, m.chunk[i].volume.high);
+        tm_sum_add(&volume, m.chunk[i].volume.low);
+        status = m.chunk[i].status != TM_OK ? m.chunk[i].status : status;
+    }
+    free(m.chunk);
+    if (status != TM_OK)
+        return tm_fail_memory(error);
+    if (mesh->cells > 0)
+        divide(s, mesh->cells);
+    else
+        *s = (tm_poly_statistics){0};
+    s->volume = tm_sum_value(volume);
+    return TM_OK;
+}
+
+/* The boundary's facets, or 0 where they are not all triangles. */
+static size_t boundary_triangles(const tm_poly_arrays *mesh)
+{
+    size_t triangles = 0;
+    for (size_t f = 0; f < mesh->facets; f++) {
+        if (mesh->side[f][1] != TM_NONE)
+            continue;
+        if (mesh->facet_start[f + 1] - mesh->facet_start[f] != 3)
+            return 0;
+        triangles++;
+    }
+    return triangles;
+}
+
+static void find_input_sizes(tm_poly_statistics *s, const tm_poly_arrays *mesh,
+                             int64_t euler)
+{
+    const size_t boundary = boundary_triangles(mesh), tets = s->input.elements;
+    if (tets == 0)
+        return;
+    s->input.nodes = mesh->nodes;
+    if (boundary == 0 || s->unmatched > 0)
+        return;
+    s->input.faces = (4 * tets + boundary) / 2;
+    const int64_t edges =
+        (int64_t)mesh->nodes + (int64_t)s->input.faces - (int64_t)tets - euler;
+    if (s->non_simple == 0 && edges > 0)
+        s->input.edges = (size_t)edges;
+}
+
+/* The sizes of the mesh, and those before that follow. */
+static tm_status find_sizes(tm_poly_statistics *s, const tm_poly_arrays *mesh,
+                            tm_error *error)
+{
+    tm_examination found = {0};
+    const tm_status status = tm_poly_examine_facets(&found, mesh, error);
+    if (status != TM_OK)
+        return status;
+    s->swallowed = found.unused_nodes;
+    s->unmatched = found.defect[TM_UNMATCHED_FACE].count;
+    s->size = (tm_poly_sizes){.elements = mesh->cells,
+                              .faces = mesh->facets,
+                              .nodes = mesh->nodes - found.unused_nodes};
+    s->size.edges = (size_t)((int64_t)s->size.nodes + (int64_t)mesh->facets -
+                             (int64_t)mesh->cells - found.euler);
+    find_input_sizes(s, mesh, found.euler);
+    return TM_OK;
+}
+
+tm_status tm_poly_statistics_measure(tm_poly_statistics *statistics,
+                                     const tm_poly_arrays *mesh, unsigned threads,
+                                     tm_error *error)
+{
+    const tm_status status = measure_cells(statistics, mesh, threads, error);
+    return status == TM_OK ? find_sizes(statistics, mesh, error) : status;
+}

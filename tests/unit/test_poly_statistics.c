@@ -1,0 +1,307 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Volumes of kernels against what they must add up to; shapes that are known; statistics
+ * of meshes of which all is known. */
+#include "../../lib/poly/kernel.h"
+#include "../../lib/poly/kernel_volume.h"
+#include "../../lib/poly/poly_shape.h"
+#include "../../lib/poly/poly_statistics.h"
+#include "random.h"
+#include "voxels.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { MOST = 128 };
+
+static bool close_to(double value, double right)
+{
+    return fabs(value - right) <= 1e-12 * (1 + fabs(right));
+}
+
+static double between(double lo, double hi)
+{
+    return lo + (hi - lo) * random_unit();
+}
+
+static void random_plane(double plane[4], double lo, double hi)
+{
+    double length2;
+    do {
+        length2 = 0;
+        for (int k = 0; k < 3; k++) {
+            plane[k] = between(-1, 1);
+            length2 += plane[k] * plane[k];
+        }
+    } while (length2 > 1 || length2 < 0.01);
+    for (int k = 0; k < 3; k++)
+        plane[k] /= sqrt(length2);
+    plane[3] = between(lo, hi);
+}
+
+/* The box of side 2 around the origin. */
+static size_t box(double (*plane)[4])
+{
+    memset(plane, 0, 6 * sizeof *plane);
+    for (size_t i = 0; i < 6; i++) {
+        plane[i][i / 2] = i % 2 ? 1 : -1;
+        plane[i][3] = 1;
+    }
+    return 6;
+}
+
+/* 0 where there is no inner point. */
+static double volume_of(const double (*plane)[4], size_t count)
+{
+    const double reach = 4;
+    tm_kernel_memory memory = {0};
+    double center[3], radius, volume = 0;
+    if (tm_kernel_ball(plane, count, center, &radius) && radius > 0)
+        assert_non_null(tm_kernel_volume(&memory, plane, count, center, reach, &volume));
+    tm_kernel_memory_free(&memory);
+    return volume;
+}
+
+static void test_kernel_volume(void **state)
+{
+    (void)state;
+    double plane[MOST][4];
+    size_t count = box(plane);
+    assert_true(close_to(volume_of((const double(*)[4])plane, count), 8));
+    /* Planes twice, some of them moved by rounding, and planes that do not matter. */
+    for (size_t i = 0; i < 6; i++) {
+        memcpy(plane[count], plane[i], sizeof *plane);
+        plane[count++][3] += i % 2 ? 0x1p-52 : 0;
+        memcpy(plane[count], plane[i], sizeof *plane);
+        plane[count][(i / 2 + 1) % 3] = 1e-15;
+        count++;
+    }
+    for (; count < MOST; count++)
+        random_plane(plane[count], 2, 3);
+    assert_true(close_to(volume_of((const double(*)[4])plane, MOST), 8));
+    /* A corner cut off: 1/6 of a cube of side 1. */
+    count = box(plane);
+    for (int k = 0; k < 3; k++)
+        plane[count][k] = sqrt(1.0 / 3);
+    plane[count++][3] = 2 * sqrt(1.0 / 3);
+    assert_true(close_to(volume_of((const double(*)[4])plane, count), 8 - 1.0 / 6));
+    for (int k = 0; k < 4; k++)
+        plane[count - 1][k] *= -1;
+    assert_true(close_to(volume_of((const double(*)[4])plane, count), 1.0 / 6));
+}
+
+/* All planes twice change nothing; a plane cuts it into two parts. */
+static void test_kernel_volume_parts(void **state)
+{
+    (void)state;
+    enum { ROUNDS = 1000, PLANES = 80 };
+    for (int round = 0; round < ROUNDS; round++) {
+        double plane[MOST][4];
+        size_t count = box(plane);
+        for (const size_t end = count + random_below(PLANES); count < end; count++)
+            random_plane(plane[count], 0.2, 1);
+        const double whole = volume_of((const double(*)[4])plane, count);
+        double twice[2 * MOST][4];
+        memcpy(twice, plane, count * sizeof *twice);
+        memcpy(twice + count, plane, count * sizeof *twice);
+        assert_true(fabs(volume_of((const double(*)[4])twice, 2 * count) - whole) <
+                    1e-10);
+        random_plane(plane[count], -0.5, 0.5);
+        double parts = volume_of((const double(*)[4])plane, count + 1);
+        for (int k = 0; k < 4; k++)
+            plane[count][k] *= -1;
+        parts += volume_of((const double(*)[4])plane, count + 1);
+        assert_true(whole > 0);
+        assert_true(fabs(parts - whole) < 1e-10);
+    }
+}
+
+static tm_poly_shape shape_of(const voxels *v, uint32_t cell)
+{
+    tm_poly_boundary b = {0};
+    tm_poly_shape_memory memory = {0};
+    tm_poly_shape shape;
+    const size_t start = v->cell_start[cell];
+    assert_int_equal(tm_poly_boundary_find(&b, &v->mesh, v->cell_facet + start,
+                                           v->cell_start[cell + 1] - start, cell, NULL),
+                     TM_OK);
+    assert_int_equal(tm_poly_shape_measure(&shape, &memory, &b, v->mesh.xyz, NULL),
+                     TM_OK);
+    tm_poly_boundary_free(&b);
+    tm_poly_shape_memory_free(&memory);
+    return shape;
+}
+
+static tm_poly_shape shape_of_picture(int x, int y, int z, const char *picture)
+{
+    voxels v = voxels_of(x, y, z, picture);
+    voxels_join(&v);
+    /* Size 1/4, far from the origin. */
+    for (size_t i = 0; i < v.mesh.nodes; i++)
+        for (int k = 0; k < 3; k++)
+            v.xyz[i][k] = 1000 + v.xyz[i][k] / 4;
+    const tm_poly_shape shape = shape_of(&v, 0);
+    voxels_free(&v);
+    return shape;
+}
+
+static void test_shapes(void **state)
+{
+    (void)state;
+    tm_poly_shape s = shape_of_picture(1, 1, 1, "0");
+    assert_true(close_to(s.volume, 1.0 / 64) && close_to(s.diameter, sqrt(3) / 4));
+    assert_true(close_to(s.min_edge, 0.25) && close_to(s.min_face_area, 1.0 / 16));
+    assert_true(close_to(s.min_dihedral, 90) && close_to(s.max_dihedral, 90));
+    assert_true(s.star_shaped && close_to(s.kernel_radius, 0.5 / sqrt(3)));
+    assert_true(close_to(s.kernel_ratio, 1));
+    /* Three cubes at a corner: the one in the middle sees the others. */
+    s = shape_of_picture(2, 2, 1, "000.");
+    assert_true(close_to(s.volume, 3.0 / 64) && close_to(s.diameter, 3.0 / 4));
+    assert_true(close_to(s.min_dihedral, 90) && close_to(s.max_dihedral, 270));
+    assert_true(s.star_shaped && close_to(s.kernel_radius, 0.5 / 3));
+    assert_true(close_to(s.kernel_ratio, 1.0 / 3));
+    /* A cross: the cube in the middle of seven. */
+    s = shape_of_picture(3, 3, 3, "....0.....0.000.0.....0....");
+    assert_true(s.star_shaped && close_to(s.kernel_ratio, 1.0 / 7));
+    /* Kernels that are flat, empty, and of a ring. */
+    s = shape_of_picture(3, 2, 1, "00..00");
+    assert_true(!s.star_shaped && s.kernel_radius == 0 && s.kernel_ratio == 0);
+    s = shape_of_picture(4, 2, 1, "000.0.00");
+    assert_true(!s.star_shaped && s.kernel_radius == 0 && s.kernel_ratio == 0);
+    s = shape_of_picture(3, 3, 1, "0000.0000");
+    assert_true(!s.star_shaped && close_to(s.volume, 8.0 / 64));
+}
+
+static void test_flat(void **state)
+{
+    (void)state;
+    voxels v = voxels_of(1, 1, 1, "0");
+    voxels_join(&v);
+    for (size_t i = 0; i < v.mesh.nodes; i++)
+        v.xyz[i][2] = 0;
+    tm_poly_shape s = shape_of(&v, 0);
+    assert_true(s.volume == 0 && !s.star_shaped && s.min_edge == 0);
+    assert_true(s.min_face_area == 0 && close_to(s.diameter, sqrt(2)));
+    for (size_t i = 0; i < v.mesh.nodes; i++)
+        memset(v.xyz[i], 0, sizeof v.xyz[i]);
+    s = shape_of(&v, 0);
+    assert_true(s.volume == 0 && !s.star_shaped && s.diameter == 0);
+    assert_true(s.min_dihedral == 360 && s.max_dihedral == 0);
+    voxels_free(&v);
+}
+
+static tm_poly_statistics measure(const voxels *v, unsigned threads)
+{
+    tm_poly_statistics s;
+    assert_int_equal(tm_poly_statistics_measure(&s, &v->mesh, threads, NULL), TM_OK);
+    return s;
+}
+
+/* A block of 5 by 3 by 2: a ring, its hole, two cubes that touch in an edge, the rest. */
+static void test_statistics(void **state)
+{
+    (void)state;
+    voxels v = voxels_of(5, 3, 2,
+                         "000230103200033"
+                         "444444444444444");
+    voxels_join(&v);
+    const tm_poly_statistics s = measure(&v, 1);
+    assert_int_equal(s.size.elements, 5);
+    assert_int_equal(s.size.faces, v.mesh.facets);
+    assert_int_equal(s.size.nodes, 72);
+    assert_int_equal(s.swallowed, 0);
+    assert_int_equal(s.unmatched, 0);
+    assert_int_equal(s.non_simple, 3);
+    assert_int_equal(s.cause[TM_POLY_EULER], 3);
+    assert_int_equal(s.cause[TM_POLY_PIECES], 0);
+    assert_int_equal(s.cause[TM_POLY_VERTEX], 0);
+    assert_int_equal(s.cause[TM_POLY_EDGE], 2);
+    assert_int_equal(s.not_star_shaped, 3);
+    assert_true(close_to(s.volume, 30) && s.min_volume == 1);
+    assert_true(s.min_edge == 1 && s.min_face_area == 1);
+    assert_true(close_to(s.min_dihedral, 90) && close_to(s.max_dihedral, 270));
+    assert_int_equal(s.input.elements, 180);
+    assert_true(s.tets_per_polyhedron == 36);
+    assert_int_equal(s.largest_tets, 90);
+    assert_int_equal(s.input.faces, 0);
+    assert_int_equal(s.input.edges, 0);
+    assert_true(close_to(s.kernel_ratio.mean, 2.0 / 5) && s.kernel_ratio.min == 0);
+    voxels_free(&v);
+}
+
+static void test_swallowed(void **state)
+{
+    (void)state;
+    voxels v = voxels_of(2, 2, 2, "00000000");
+    voxels_join(&v);
+    tm_poly_statistics s = measure(&v, 1);
+    assert_int_equal(s.swallowed, 1);
+    assert_int_equal(s.size.nodes, 26);
+    assert_int_equal(s.input.nodes, 27);
+    assert_int_equal(s.non_simple, 0);
+    assert_true(close_to(s.kernel_ratio.mean, 1));
+    /* Attributes that are no numbers of tetrahedra. */
+    v.attribute[0] = 1.5;
+    s = measure(&v, 1);
+    assert_int_equal(s.input.elements, 0);
+    assert_int_equal(s.input.nodes, 0);
+    assert_true(s.tets_per_polyhedron == 0);
+    voxels_free(&v);
+}
+
+static void test_no_polyhedra(void **state)
+{
+    (void)state;
+    const tm_poly_arrays nothing = {0};
+    tm_poly_statistics s;
+    assert_int_equal(tm_poly_statistics_measure(&s, &nothing, 1, NULL), TM_OK);
+    assert_true(s.volume == 0 && s.min_edge == 0 && s.kernel_ratio.min == 0);
+    assert_int_equal(s.size.elements, 0);
+}
+
+static void test_bins(void **state)
+{
+    (void)state;
+    static const size_t begin[] = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64};
+    for (size_t i = 0; i < sizeof begin / sizeof *begin; i++)
+        assert_int_equal(tm_count_bin_begin(i), begin[i]);
+    assert_true(tm_count_bin_begin(TM_COUNT_BINS) > UINT32_MAX);
+}
+
+/* Random labels: all kinds of polyhedra, in more than one chunk. */
+static void test_threads(void **state)
+{
+    (void)state;
+    enum { SIDE = 12, CELLS = 800 };
+    voxels v = voxels_new(SIDE, SIDE, SIDE);
+    for (int i = 0; i < SIDE * SIDE * SIDE; i++)
+        v.label[i] = i < CELLS ? i : (int)random_below(CELLS);
+    voxels_join(&v);
+    for (size_t i = 0; i < v.mesh.nodes; i++)
+        for (int k = 0; k < 3; k++)
+            v.xyz[i][k] += random_unit() / 8;
+    const tm_poly_statistics alone = measure(&v, 1);
+    assert_true(alone.non_simple > 0 && alone.non_simple < CELLS);
+    for (unsigned threads = 2; threads < 5; threads++) {
+        const tm_poly_statistics s = measure(&v, threads);
+        assert_memory_equal(&s, &alone, sizeof s);
+    }
+    voxels_free(&v);
+}
+
+int main(void)
+{
+    random_start();
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_kernel_volume), cmocka_unit_test(test_kernel_volume_parts),
+        cmocka_unit_test(test_shapes),        cmocka_unit_test(test_flat),
+        cmocka_unit_test(test_statistics),    cmocka_unit_test(test_swallowed),
+        cmocka_unit_test(test_no_polyhedra),  cmocka_unit_test(test_bins),
+        cmocka_unit_test(test_threads),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
