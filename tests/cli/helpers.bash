@@ -230,6 +230,7 @@ two_boxes() {
         print 1, 0.5, 0.5, 0.5, 3
         print 2, 0.5, 0.5, 1.5, 7
     }'
+}
 
 # Prints a stream of N^3 boxes as polyhedra: boxes N [JITTER]. Planes are at uneven
 # distances; the whole measures N by N by N. With JITTER the nodes inside are moved by up
