@@ -175,6 +175,7 @@ teardown() {
         lepp-improve) command="lepp-improve -q many-nodes.tm" ;;
         tetgen-import) command="tetgen-import many.node" ;;
         tetgen-mesh) command="tetgen-mesh --quiet many.node" ;;
+        vtu-export) return 0 ;; # binary
         *) return 0 ;; # writes less than a pipe holds
         esac
         run -0 --separate-stderr bash -c "{ $command; echo \$? >status; } | head -n 1"

@@ -47,6 +47,7 @@ static const command commands[] = {
     {"mesh-check", {INPUT}, false},
     {"tetgen-export", {"out", INPUT}, false},
     {"tetgen-import", {BASE}, false},
+    {"vtu-export", {INPUT}, false},
     {"tetgen-mesh", {"--tetgen", "false", INPUT}, true},
 };
 enum { COMMANDS = sizeof commands / sizeof commands[0] };

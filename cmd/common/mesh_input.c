@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "mesh_input.h"
+
+#include "../../lib/format/tetgen_orient.h"
+
+#include <stdio.h>
+
+void mesh_input_fail(const filter *f, tm_error *error)
+{
+    if (error->status == TM_ERROR_INPUT && !error->file[0])
+        snprintf(error->file, sizeof error->file, "%s", filter_input_name(f));
+    filter_fail(f, error);
+}
+
+tm_content mesh_input_read(const filter *f, tm_stream *stream)
+{
+    tm_error error;
+    filter_read(f, stream);
+    const tm_content content = tm_content_of(stream);
+    if (content == TM_CONTENT_NOTHING) {
+        tm_fail(&error, TM_ERROR_INPUT, "has no nodes (.node)");
+        mesh_input_fail(f, &error);
+    }
+    if (content == TM_CONTENT_TETRAHEDRA) {
+        tm_block *ele = tm_content_block(stream, content);
+        const tm_turned turned = tm_tetgen_orient(tm_stream_find(stream, ".node"), ele);
+        if (turned.turned > 0)
+            filter_note(f, "%s: %zu of %zu tetrahedra were left-handed and are turned",
+                        filter_input_name(f), turned.turned, ele->count);
+    }
+    return content;
+}
