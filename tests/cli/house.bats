@@ -34,6 +34,7 @@ END
     sed -n '/^.node/,/^.ele/p' corner.tm | sed '1d; $d' >corner.node
     sed 's/^\.node/surface.node/; s/^\.face/surface.face/; /^\.ele/,/^1 1 2/d' \
         corner.tm >surface.tm
+    printf '%s\n' '2 0' 4 '0 0 0' '1 0 0' '0 1 0' '0 0 1' >corner.visf
 }
 
 # The operands with which a filter reads the file $2; for tetgen-import, a .node file.
@@ -49,6 +50,7 @@ input() {
     case $1 in
     tetgen-import) echo corner.node ;;
     tetgen-mesh) echo surface.tm ;;
+    visf-import) echo corner.visf ;;
     *) echo corner.tm ;;
     esac
 }
@@ -169,13 +171,18 @@ teardown() {
     }' >many.tm
     sed -n '/^.node/,/^.ele/p' many.tm | sed '1d; $d' >many.node
     sed '/^.ele/,/^20000 1/d' many.tm >many-nodes.tm
+    awk '/^\.ele/ { print ".face\n20000 0"; getline; faces = 1; next }
+        faces && NF == 5 { NF = 4 } { print }' many.tm >faces.tm
+    { printf '2 0\n20000\n'; sed 1d many.node | cut -d ' ' -f 2-; } >many.visf
     closes() {
         case $1 in
         tet-stats) command="tet-stats --list many.tm" ;;
         lepp-improve) command="lepp-improve -q many-nodes.tm" ;;
         tetgen-import) command="tetgen-import many.node" ;;
         tetgen-mesh) command="tetgen-mesh --quiet many.node" ;;
-        vtu-export) return 0 ;; # binary
+        off-export) command="off-export faces.tm" ;;
+        visf-export) command="visf-export many-nodes.tm" ;;
+        visf-import) command="visf-import many.visf" ;;
         *) return 0 ;; # writes less than a pipe holds
         esac
         run -0 --separate-stderr bash -c "{ $command; echo \$? >status; } | head -n 1"

@@ -47,6 +47,12 @@ static const command commands[] = {
     {"mesh-check", {INPUT}, false},
     {"tetgen-export", {"out", INPUT}, false},
     {"tetgen-import", {BASE}, false},
+    {"off-export", {INPUT}, false},
+    {"off-export", {"--all", INPUT}, false},
+    {"visf-export", {"--neighbours", "-o", "out.visf", INPUT}, false},
+    {"visf-import", {"out.visf"}, true},
+    {"visf-import", {INPUT}, false},
+    {"visf-export", {"--per-cell", "--binary", "big", INPUT}, false},
     {"vtu-export", {INPUT}, false},
     {"tetgen-mesh", {"--tetgen", "false", INPUT}, true},
 };
