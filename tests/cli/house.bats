@@ -40,9 +40,14 @@ END
 # The operands with which a filter reads the file $2; for tetgen-import, a .node file.
 operands() {
     case $1 in
-    tetgen-export) echo "out $2" ;;
+    tetgen-export | openfoam-export) echo "out $2" ;;
     *) echo "$2" ;;
     esac
+}
+
+# Whether a filter's output is files that an operand names.
+writes_files() {
+    [ "$1" = tetgen-export ] || [ "$1" = openfoam-export ]
 }
 
 # A good input for a filter.
@@ -91,8 +96,8 @@ teardown() {
 
 @test "standard input, no operand or -, is as the file" {
     reads_standard_input() {
-        # tetgen-import reads several files, tetgen-export writes them.
-        case $1 in tetgen-import | tetgen-export) return 0 ;; esac
+        # tetgen-import reads several files.
+        if [ "$1" = tetgen-import ] || writes_files "$1"; then return 0; fi
         "$1" --no-history "$(input "$1")" >from-file
         "$1" --no-history <"$(input "$1")" >from-pipe
         "$1" --no-history - <"$(input "$1")" >from-dash
@@ -136,7 +141,7 @@ teardown() {
 @test "a full disk: exit 4" {
     [ -e /dev/full ] || skip "there is no /dev/full"
     fills() {
-        [ "$1" != tetgen-export ] || return 0 # its output is files
+        ! writes_files "$1" || return 0
         run -4 --separate-stderr sh -c "$1 '$(input "$1")' >/dev/full"
         [[ "$stderr" == *"No space left on device"* ]]
     }
@@ -145,7 +150,7 @@ teardown() {
 
 @test "-o FILE is standard output's bytes, and stays as it was where the filter fails" {
     writes() {
-        [ "$1" != tetgen-export ] || return 0
+        ! writes_files "$1" || return 0
         "$1" --no-history "$(input "$1")" >expected
         echo old >file
         "$1" --no-history -o file "$(input "$1")"
