@@ -34,6 +34,7 @@ int main(int argc, char **argv)
     if (tm_off_write(&text, &stream, all, &error) != TM_OK)
         mesh_input_fail(&f, &error);
     filter_write_text(&f, &text);
+    mesh_input_report(&f, &stream);
     tm_text_free(&text);
     tm_stream_free(&stream);
     return filter_finish(&f, 0);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* visf-import: a ViSF file as a stream. */
-#include "common/filter.h"
+#include "common/mesh_input.h"
 
 #include "../lib/base/file.h"
 #include "../lib/format/visf.h"
@@ -73,6 +73,7 @@ int main(int argc, char **argv)
         filter_write(&f, &stream, "%zu nodes, %zu triangles", nodes, faces);
     else
         filter_write(&f, &stream, "%zu nodes", nodes);
+    mesh_input_report(&f, &stream);
     tm_stream_free(&stream);
     return filter_finish(&f, 0);
 }

@@ -14,4 +14,8 @@ tm_content mesh_input_read(const filter *f, tm_stream *stream);
 /* filter_fail() with the input's name, for errors that have none. */
 _Noreturn void mesh_input_fail(const filter *f, tm_error *error);
 
+/* Writes what a stream holds to where --json says, if it does: its nodes, and its
+ * triangles, tetrahedra, elements or polyhedra. */
+void mesh_input_report(filter *f, const tm_stream *stream);
+
 #endif

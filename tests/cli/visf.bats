@@ -279,8 +279,8 @@ END
 }
 
 @test "import: a file that ends early, exit 3" {
-    lines=$(wc -l <cubes.visf)
-    for n in $(seq 0 $((lines - 1))); do
+    last=$(wc -l <cubes.visf)
+    for n in $(seq 0 $((last - 1))); do
         head -n "$n" cubes.visf >short.visf
         run -3 --separate-stderr visf-import short.visf
         [ "$output" = "" ]
@@ -291,6 +291,19 @@ END
         run -3 --separate-stderr visf-import short.visf
         [ "$output" = "" ]
     done
+}
+
+@test "reports of exporters and of the importer" {
+    visf-export --json report -o out.visf cubes.tm
+    [ "$(cat report)" = '{"nodes": 12, "polyhedra": 2}' ]
+    visf-import --json report -o out.tm out.visf
+    [ "$(cat report)" = '{"nodes": 12, "polyhedra": 2}' ]
+    mixed >mixed.tm
+    run -0 --separate-stderr off-export --json - -o out.off mixed.tm
+    [ "$stderr" = '{"nodes": 12, "elements": 4}' ]
+    printf 'termesh 1\n.node\n1 3 0 0\n0 0 0 0\n.end\n' >points.tm
+    run -0 --separate-stderr vtu-export --json - -o out.vtu points.tm
+    [ "$stderr" = '{"nodes": 1}' ]
 }
 
 @test "export: usage is exit 2, a wrong stream exit 3" {

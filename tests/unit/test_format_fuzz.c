@@ -204,7 +204,7 @@ static void test_visf(void **state)
         for (size_t size = 0; size <= text.size; size++)
             read_visf(text.byte, size);
         for (int i = 0; i < CHANGED; i++) {
-            char *changed = malloc(text.size);
+            char *changed = malloc(text.size + !text.size);
             assert_non_null(changed);
             memcpy(changed, text.byte, text.size);
             change(changed, text.size);
