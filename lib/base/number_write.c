@@ -213,7 +213,7 @@ static decimal round_decimal(decimal number, int digits)
     return (decimal){kept, number.exponent + excess};
 }
 
-static char *lay_out(char *text, const digit_text *digits)
+static inline char *lay_out(char *text, const digit_text *digits)
 {
     int count = digits->count, exponent = digits->exponent;
     if (plain_length(count, exponent) > scientific_length(count, exponent))

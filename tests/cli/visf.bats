@@ -306,6 +306,15 @@ END
     [ "$stderr" = '{"nodes": 1}' ]
 }
 
+@test "who reads a ViSF file as a stream is told" {
+    for options in '' '--binary little' '--binary big'; do
+        # shellcheck disable=SC2086 # words
+        visf-export $options cubes.tm >cubes.visf
+        run -3 --separate-stderr tet-stats cubes.visf
+        [[ "$stderr" == *'looks like a ViSF mesh: use visf-import' ]]
+    done
+}
+
 @test "export: usage is exit 2, a wrong stream exit 3" {
     run -2 --separate-stderr visf-export --binary middle cubes.tm
     [[ "$stderr" == "visf-export: --binary: 'middle' is no byte order"* ]]
