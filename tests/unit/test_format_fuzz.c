@@ -203,8 +203,8 @@ static void test_visf(void **state)
         assert_int_equal(tm_visf_write(&text, &stream, &forms[f], &error), TM_OK);
         for (size_t size = 0; size <= text.size; size++)
             read_visf(text.byte, size);
-        for (int i = 0; i < CHANGED; i++) {
-            char *changed = malloc(text.size + !text.size);
+        for (int i = 0; i < CHANGED && text.size > 0; i++) {
+            char *changed = malloc(text.size);
             assert_non_null(changed);
             memcpy(changed, text.byte, text.size);
             change(changed, text.size);
