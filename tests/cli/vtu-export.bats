@@ -83,6 +83,8 @@ need_vtk() {
         "$counts" ]
     [ "$(vtk sphere.vtu "abs(volume.sum() - $(cat sum)) < 1e-9, set(types)")" = \
         '(True, {10})' ]
+    vtk sphere.vtu "'\\n'.join('%.17g' % v for v in volume)" | paste - <(volumes sphere.tm) |
+        awk '($1 - $2) ^ 2 > 1e-18 { exit 1 } END { exit NR < 1000 }'
     [ "$(vtk sphere.vtu "set(cell['region'])")" = '{5.0}' ]
     tet-stats --list sphere.tm |
         awk '{ q = $2 < 180 - $3 ? $2 : 180 - $3; printf "%.4f\n", q }' >expected
