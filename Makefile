@@ -25,7 +25,7 @@ AR = ar
 CFLAGS = -O2 -g
 CXXFLAGS = -O2 -g
 WARNINGS = -Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes -Werror
-LDLIBS = -lgmp -lm -lpthread
+LDLIBS = -lgmp -lz -lm -lpthread
 
 FUZZ_CASES = 20000
 BUILD = build

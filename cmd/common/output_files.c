@@ -51,6 +51,26 @@ static int open_file(output_file *file)
     return make_temporary(file, exists ? &old : NULL);
 }
 
+tm_status output_files_make_folder(output_files *files, const char *name, tm_error *error)
+{
+    const mode_t everyone = S_IRWXU | S_IRWXG | S_IRWXO;
+    char *folder = strdup(name);
+    if (!folder)
+        return tm_fail_memory(error);
+    private_signals_hold();
+    if (mkdir(name, everyone) == 0) {
+        files->folder = folder;
+        return TM_OK;
+    }
+    tm_status status = TM_OK;
+    if (errno != EEXIST)
+        status = tm_fail_at(error, TM_ERROR_SYSTEM, name, 0, NULL,
+                            "cannot make the folder: %s", strerror(errno));
+    free(folder);
+    private_signals_release();
+    return status;
+}
+
 tm_status output_files_open(output_files *files, const char *name, int *fd,
                             tm_error *error)
 {
@@ -82,9 +102,11 @@ static void release(output_files *files)
     for (size_t i = 0; i < files->count; i++)
         free_file(&files->file[i]);
     free(files->file);
-    if (files->count > 0)
-        private_signals_release();
+    const int held = (files->count > 0) + (files->folder != NULL);
+    free(files->folder);
     *files = (output_files){0};
+    for (int i = 0; i < held; i++)
+        private_signals_release();
 }
 
 void output_files_abandon(output_files *files)
@@ -94,7 +116,11 @@ void output_files_abandon(output_files *files)
             close(files->file[i].fd);
         if (files->file[i].temporary)
             unlink(files->file[i].temporary);
+        if (files->folder)
+            unlink(files->file[i].name);
     }
+    if (files->folder)
+        rmdir(files->folder);
     release(files);
 }
 

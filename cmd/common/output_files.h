@@ -21,7 +21,13 @@ typedef struct output_file {
 typedef struct output_files {
     size_t count;
     output_file *file;
+    char *folder; /* that was made for them, or NULL */
 } output_files;
+
+/* Makes the folder that the files will be in, unless it is there. One for a set, before
+ * its files. Where the set is abandoned, a folder that was made is gone, too. */
+tm_status output_files_make_folder(output_files *files, const char *name,
+                                   tm_error *error);
 
 /* Begins a file; *fd is for writing. */
 tm_status output_files_open(output_files *files, const char *name, int *fd,

@@ -29,6 +29,10 @@ const char *tm_read_int64(const char *text, const char *end, int64_t *value);
  * Giulietti, The Schubfach way to render doubles (2020). O(1). */
 char *tm_write_double(char *text, double value);
 
+/* The same of that decimal number rounded to `most` significant digits (1…17) where it
+ * has more, ties to even. With 9, every float reads back as it was. */
+char *tm_write_rounded(char *text, double value, int most);
+
 /* Writes value in decimal; at most TM_INTEGER_CHARS bytes. */
 char *tm_write_int64(char *text, int64_t value);
 char *tm_write_uint32(char *text, uint32_t value);

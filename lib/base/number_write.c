@@ -201,24 +201,58 @@ static int scientific_length(int count, int exponent)
     return count + (count > 1) + 1 + exponent_length;
 }
 
+/* The decimal with at most so many digits that is nearest to number, ties to even. */
+static decimal round_decimal(decimal number, int digits)
+{
+    int excess = tm_count_digits(number.digits) - digits;
+    if (excess <= 0)
+        return number;
+    uint64_t unit = tm_integer_powers[excess];
+    uint64_t kept = number.digits / unit, twice_rest = number.digits % unit * 2;
+    kept += twice_rest > unit || (twice_rest == unit && kept % 2 == 1);
+    return (decimal){kept, number.exponent + excess};
+}
+
+static inline char *lay_out(char *text, const digit_text *digits)
+{
+    int count = digits->count, exponent = digits->exponent;
+    if (plain_length(count, exponent) > scientific_length(count, exponent))
+        return write_scientific(text, digits);
+    if (exponent < 0)
+        return write_fraction(text, digits);
+    if (exponent + 1 >= count)
+        return write_integer(text, digits);
+    return write_mixed(text, digits, exponent + 1);
+}
+
+/* Writes the sign, and the digit of 0. Where the sign is not negative, what comes next is
+ * written over it. */
+static inline char *write_sign(char *text, double value, uint64_t *bits)
+{
+    memcpy(bits, &value, sizeof *bits);
+    *text = '-';
+    text += *bits >> (WORD_BITS - 1);
+    if (value == 0)
+        *text++ = '0';
+    return text;
+}
+
 char *tm_write_double(char *text, double value)
 {
     uint64_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    /* Where the sign is not negative, what comes next is written over it. */
-    *text = '-';
-    text += bits >> (WORD_BITS - 1);
-    if (value == 0) {
-        *text++ = '0';
+    text = write_sign(text, value, &bits);
+    if (value == 0)
         return text;
-    }
     digit_text digits = spell(shortest(bits));
-    int count = digits.count, exponent = digits.exponent;
-    if (plain_length(count, exponent) > scientific_length(count, exponent))
-        return write_scientific(text, &digits);
-    if (exponent < 0)
-        return write_fraction(text, &digits);
-    if (exponent + 1 >= count)
-        return write_integer(text, &digits);
-    return write_mixed(text, &digits, exponent + 1);
+    return lay_out(text, &digits);
+}
+
+char *tm_write_rounded(char *text, double value, int most)
+{
+    uint64_t bits;
+    text = write_sign(text, value, &bits);
+    if (value == 0)
+        return text;
+    digit_text digits = spell(round_decimal(shortest(bits), most));
+    return lay_out(text, &digits);
 }

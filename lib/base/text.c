@@ -59,6 +59,13 @@ void tm_text_double(tm_text *text, double value)
     tm_text_append(text, digits, (size_t)(end - digits));
 }
 
+void tm_text_integer(tm_text *text, int64_t value)
+{
+    char digits[TM_INTEGER_CHARS];
+    const char *end = tm_write_int64(digits, value);
+    tm_text_append(text, digits, (size_t)(end - digits));
+}
+
 void tm_text_free(tm_text *text)
 {
     free(text->byte);

@@ -6,6 +6,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 typedef struct tm_text {
     char *byte; /* size bytes, then a NUL; NULL while nothing was appended */
@@ -19,6 +20,7 @@ void tm_text_string(tm_text *text, const char *string);
 void tm_text_format(tm_text *text, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 void tm_text_double(tm_text *text, double value); /* shortest form; see number.h */
+void tm_text_integer(tm_text *text, int64_t value);
 void tm_text_free(tm_text *text);
 
 #endif

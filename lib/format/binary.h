@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Numbers of either byte order from bytes of any alignment. */
+/* Numbers of either byte order, as bytes of any alignment. */
 #ifndef TM_FORMAT_BINARY_H
 #define TM_FORMAT_BINARY_H
 
@@ -17,6 +17,21 @@ static inline uint64_t tm_binary_unsigned(const char *bytes, size_t size, bool b
         value |= byte << (8 * i);
     }
     return value;
+}
+
+/* Writes a number as `size` bytes. */
+static inline void tm_binary_put_unsigned(char *bytes, uint64_t value, size_t size,
+                                          bool big)
+{
+    for (size_t i = 0; i < size; i++)
+        bytes[big ? size - 1 - i : i] = (char)(value >> (8 * i) & UINT8_MAX);
+}
+
+static inline void tm_binary_put_float(char *bytes, float value, bool big)
+{
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    tm_binary_put_unsigned(bytes, bits, sizeof bits, big);
 }
 
 static inline float tm_binary_float(const char *bytes, bool big)

@@ -72,6 +72,22 @@ static const char *looks_like_tetgen(const char *at, const char *end)
     return "text";
 }
 
+/* A line of 2 for text and the type, then one with the number of points alone; or a digit
+ * for the byte order and the type as four bytes. */
+static bool looks_like_visf(const char *bytes, const char *end)
+{
+    enum { BINARY_HEAD = 5 };
+    long number[4];
+    const char *second = memchr(bytes, '\n', (size_t)(end - bytes));
+    if (second && header(bytes, end, number) == 2 && number[0] == 2 && number[1] >= 0 &&
+        number[1] <= 2)
+        return header(second + 1, end, number) == 1;
+    if (end - bytes < BINARY_HEAD || (bytes[0] != '0' && bytes[0] != '1'))
+        return false;
+    const unsigned char *type = (const unsigned char *)bytes + 1;
+    return type[1] == 0 && type[2] == 0 && type[0] + type[3] <= 2;
+}
+
 static bool is_binary(const char *bytes, size_t size)
 {
     for (size_t i = 0; i < size; i++)
@@ -91,6 +107,8 @@ const char *tm_looks_like(const char *bytes, size_t size)
         if (size >= length && memcmp(bytes, known[k].begins, length) == 0)
             return known[k].what;
     }
+    if (looks_like_visf(bytes, end))
+        return "a ViSF mesh: use visf-import";
     if (is_binary(bytes, size < 256 ? size : 256))
         return "binary data, perhaps an STL surface: use tetgen-mesh";
     const char *line = first_line(bytes, end);

@@ -287,3 +287,122 @@ for c, f in enumerate(cells):
 print('.end')
 END
 }
+
+# Prints a stream of n^3 boxes as polyhedra with 6 quadrilaterals each: sheared_boxes N [BASE]. The
+# planes between them are where they like, the whole is sheared: its volume is N^3, all
+# quadrilaterals are plane, facets inside have marker 0, those of the six sides 1 to 6.
+sheared_boxes() {
+    python3 - "$@" <<'END'
+import random, sys
+n = int(sys.argv[1])
+base = int(sys.argv[2]) if len(sys.argv) > 2 else 1
+m = n + 1
+random.seed(3)
+at = [[c if c in (0, n) else c + round(random.random() * 0.8 - 0.4, 3)
+       for c in range(m)] for axis in range(3)]
+
+def node(i, j, k):
+    return i + m * (j + m * k)
+
+def cell(i, j, k):
+    return i + n * (j + n * k)
+
+def quadrilateral(corner, axis, side):
+    """The side 0 or 1 of a box; its normal is along the axis."""
+    nodes = []
+    for u, w in ((0, 0), (1, 0), (1, 1), (0, 1)):
+        p = list(corner)
+        p[axis] += side
+        p[(axis + 1) % 3] += u
+        p[(axis + 2) % 3] += w
+        nodes.append(node(*p))
+    return nodes
+
+print('termesh 1\n.node\n%d 3 1 1' % m ** 3)
+for k in range(m):
+    for j in range(m):
+        for i in range(m):
+            x, y, z = at[0][i], at[1][j], at[2][k]
+            print(node(i, j, k) + base, '%.6g %.6g %.6g' % (x + 0.25 * y, y - 0.5 * z, z),
+                  i / 2, j)
+facets, cells = [], [[] for c in range(n ** 3)]
+
+def add(c1, c2, nodes, marker):
+    for c in (c1, c2):
+        if c is not None:
+            cells[c].append(len(facets))
+    facets.append((c1, c2, nodes, marker))
+
+for k in range(n):
+    for j in range(n):
+        for i in range(n):
+            for axis in range(3):
+                p, q = (i, j, k), [i, j, k]
+                q[axis] += 1
+                if p[axis] == 0:
+                    add(cell(*p), None, quadrilateral(p, axis, 0)[::-1], axis + 1)
+                inside = q[axis] < n
+                add(cell(*p), cell(*q) if inside else None, quadrilateral(p, axis, 1),
+                    0 if inside else axis + 4)
+print('.facet\n%d 1' % len(facets))
+for f, (c1, c2, nodes, marker) in enumerate(facets):
+    print(f + base, c1 + base, -1 if c2 is None else c2 + base, len(nodes),
+          *(v + base for v in nodes), marker)
+print('.cell\n%d 1' % len(cells))
+for c, fs in enumerate(cells):
+    print(c + base, len(fs), *(f + base for f in fs), c % 2 + 0.5)
+print('.end')
+END
+}
+
+# Prints a unit cube as a polyhedron, and one beside it: cubes [BASE].
+cubes() {
+    awk -v base="${1:-1}" 'BEGIN {
+            print "termesh 1\n.node\n12 3 0 0"
+            for (v = 0; v < 12; v++)
+                print v + base, v % 3, int(v / 3) % 2, int(v / 6)
+            print ".facet\n11 1"
+            # c1 c2 marker and four nodes, all from 0
+            n = split("0 -1 1 0 6 9 3,0 -1 2 0 1 7 6,0 -1 2 3 9 10 4,0 -1 3 0 3 4 1," \
+                      "0 -1 4 6 7 10 9,0 1 0 1 4 10 7,1 -1 2 1 2 8 7,1 -1 2 4 10 11 5," \
+                      "1 -1 3 1 4 5 2,1 -1 4 7 8 11 10,1 -1 5 2 5 11 8", facet, ",")
+            for (f = 1; f <= n; f++) {
+                split(facet[f], x, " ")
+                print f - 1 + base, x[1] + base, x[2] == -1 ? -1 : x[2] + base, 4,
+                    x[4] + base, x[5] + base, x[6] + base, x[7] + base, x[3]
+            }
+            print ".cell\n2 1"
+            print base, 6, base, base + 1, base + 2, base + 3, base + 4, base + 5, 1
+            print base + 1, 6, base + 5, base + 6, base + 7, base + 8, base + 9, base + 10, 2
+            print ".end"
+        }'
+}
+
+# Prints a hexahedron, a pyramid on top, a wedge beside it and a tetrahedron on the
+# pyramid; the volume is 1 + 1/3 + 1/2 + 1/12.
+mixed() {
+    cat <<'END'
+termesh 1
+.node
+12 3 0 0
+1 0 0 0
+2 1 0 0
+3 1 1 0
+4 0 1 0
+5 0 0 1
+6 1 0 1
+7 1 1 1
+8 0 1 1
+9 0.5 0.5 2
+10 2 0 0
+11 2 0 1
+12 1 0.5 2
+.mix
+4 1
+1 8 1 2 3 4 5 6 7 8 1
+2 5 5 6 7 8 9 1
+3 6 2 3 10 6 7 11 2
+4 4 6 7 9 12 3
+.end
+END
+}

@@ -53,14 +53,20 @@ END
     sed -n '/^.node/,/^.ele/p' corner.tm | sed '1d; $d' >corner.node
     sed 's/^\.node/surface.node/; s/^\.face/surface.face/; /^\.ele/,/^1 1 2/d' \
         corner.tm >surface.tm
+    printf '%s\n' '2 0' 4 '0 0 0' '1 0 0' '0 1 0' '0 0 1' >corner.visf
 }
 
 # The operands with which a filter reads the file $2; for tetgen-import, a .node file.
 operands() {
     case $1 in
-    tetgen-export) echo "out $2" ;;
+    tetgen-export | openfoam-export) echo "out $2" ;;
     *) echo "$2" ;;
     esac
+}
+
+# Whether a filter's output is files that an operand names.
+writes_files() {
+    [ "$1" = tetgen-export ] || [ "$1" = openfoam-export ]
 }
 
 # A good input for a filter.
@@ -69,6 +75,7 @@ input() {
     poly-stats) echo cell.tm ;;
     tetgen-import) echo corner.node ;;
     tetgen-mesh) echo surface.tm ;;
+    visf-import) echo corner.visf ;;
     *) echo corner.tm ;;
     esac
 }
@@ -109,8 +116,8 @@ teardown() {
 
 @test "standard input, no operand or -, is as the file" {
     reads_standard_input() {
-        # tetgen-import reads several files, tetgen-export writes them.
-        case $1 in tetgen-import | tetgen-export) return 0 ;; esac
+        # tetgen-import reads several files.
+        if [ "$1" = tetgen-import ] || writes_files "$1"; then return 0; fi
         "$1" --no-history "$(input "$1")" >from-file
         "$1" --no-history <"$(input "$1")" >from-pipe
         "$1" --no-history - <"$(input "$1")" >from-dash
@@ -154,7 +161,7 @@ teardown() {
 @test "a full disk: exit 4" {
     [ -e /dev/full ] || skip "there is no /dev/full"
     fills() {
-        [ "$1" != tetgen-export ] || return 0 # its output is files
+        ! writes_files "$1" || return 0
         run -4 --separate-stderr sh -c "$1 '$(input "$1")' >/dev/full"
         [[ "$stderr" == *"No space left on device"* ]]
     }
@@ -163,7 +170,7 @@ teardown() {
 
 @test "-o FILE is standard output's bytes, and stays as it was where the filter fails" {
     writes() {
-        [ "$1" != tetgen-export ] || return 0
+        ! writes_files "$1" || return 0
         "$1" --no-history "$(input "$1")" >expected
         echo old >file
         "$1" --no-history -o file "$(input "$1")"
@@ -189,12 +196,18 @@ teardown() {
     }' >many.tm
     sed -n '/^.node/,/^.ele/p' many.tm | sed '1d; $d' >many.node
     sed '/^.ele/,/^20000 1/d' many.tm >many-nodes.tm
+    awk '/^\.ele/ { print ".face\n20000 0"; getline; faces = 1; next }
+        faces && NF == 5 { NF = 4 } { print }' many.tm >faces.tm
+    { printf '2 0\n20000\n'; sed 1d many.node | cut -d ' ' -f 2-; } >many.visf
     closes() {
         case $1 in
         tet-stats) command="tet-stats --list many.tm" ;;
         lepp-improve) command="lepp-improve -q many-nodes.tm" ;;
         tetgen-import) command="tetgen-import many.node" ;;
         tetgen-mesh) command="tetgen-mesh --quiet many.node" ;;
+        off-export) command="off-export faces.tm" ;;
+        visf-export) command="visf-export many-nodes.tm" ;;
+        visf-import) command="visf-import many.visf" ;;
         *) return 0 ;; # writes less than a pipe holds
         esac
         run -0 --separate-stderr bash -c "{ $command; echo \$? >status; } | head -n 1"

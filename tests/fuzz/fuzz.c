@@ -33,9 +33,11 @@ typedef struct {
     bool may_fail; /* also exit status 4: a program that it runs fails */
 } command;
 
-/* INPUT is the damaged stream; BASE the beginning of names of files beside it. */
+/* INPUT is the damaged stream; BASE the beginning of names of files beside it, MESH a
+ * folder. */
 #define INPUT "input.tm"
 #define BASE  "base"
+#define MESH  "mesh"
 
 static const command commands[] = {
     {"tet-stats", {"--list", INPUT}, false},
@@ -54,6 +56,14 @@ static const command commands[] = {
     {"poly-stats", {INPUT}, false},
     {"tetgen-export", {"out", INPUT}, false},
     {"tetgen-import", {BASE}, false},
+    {"off-export", {INPUT}, false},
+    {"off-export", {"--all", INPUT}, false},
+    {"openfoam-export", {MESH, INPUT}, false},
+    {"visf-export", {"--neighbours", "-o", "out.visf", INPUT}, false},
+    {"visf-import", {"out.visf"}, true},
+    {"visf-import", {INPUT}, false},
+    {"visf-export", {"--per-cell", "--binary", "big", INPUT}, false},
+    {"vtu-export", {INPUT}, false},
     {"tetgen-mesh", {"--tetgen", "false", INPUT}, true},
 };
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
@@ -342,15 +352,16 @@ static void report_failure(uint64_t seed, uint64_t number, int status)
             work, INPUT);
 }
 
-static void remove_work(void)
+/* Removes a folder with its files. */
+static void remove_folder(const char *name)
 {
-    DIR *entries = opendir(".");
+    DIR *entries = opendir(name);
     const struct dirent *entry;
     while (entries && (entry = readdir(entries)))
-        unlink(entry->d_name);
+        unlinkat(dirfd(entries), entry->d_name, 0);
     if (entries)
         closedir(entries);
-    rmdir(work);
+    rmdir(name);
 }
 
 int main(int argc, char **argv)
@@ -383,7 +394,8 @@ int main(int argc, char **argv)
         report_failure(seed, *current, status);
         return EXIT_FAILURE;
     }
-    remove_work();
+    remove_folder(MESH);
+    remove_folder(work);
     printf("%" PRIu64 " cases\n", cases);
     return 0;
 }

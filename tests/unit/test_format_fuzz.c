@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* No input makes a reader of foreign formats crash or return a surface that is not one:
  * every beginning of a good file, and good files with bytes changed. */
+#include "../../lib/format/cell_faces.h"
 #include "../../lib/format/tetgen_rows.h"
+#include "../../lib/format/visf.h"
 #include "format_samples.h"
 #include "random.h"
 
@@ -152,6 +154,68 @@ static void test_rows(void **state)
     }
 }
 
+/* What is read is a mesh whose facets and cells agree. */
+static void read_visf(const char *bytes, size_t size)
+{
+    char *copy = malloc(size + !size);
+    assert_non_null(copy);
+    memcpy(copy, bytes, size);
+    tm_stream stream;
+    tm_visf_repairs repairs;
+    tm_error error = {.status = TM_OK};
+    tm_cell_faces faces;
+    tm_stream_init(&stream);
+    if (tm_visf_read(&stream, copy, size, "file", &repairs, &error) == TM_OK) {
+        assert_int_equal(tm_cell_faces_find(&faces, &stream, &error), TM_OK);
+        tm_cell_faces_free(&faces);
+    } else {
+        assert_int_equal(error.status, TM_ERROR_INPUT);
+        assert_true(error.what[0] != '\0');
+        assert_int_equal(stream.blocks, 0);
+    }
+    tm_stream_free(&stream);
+    free(copy);
+}
+
+/* Two tetrahedra, and a polygon that neither has. */
+static const char visf_text[] = "2 2\n5\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n8\n"
+                                "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n3 1 4 3\n"
+                                "3 2 4 1\n3 3 4 2\n3 0 1 4\n0\n2\n4 0 1 2 3\n"
+                                "4 3 4 5 6\n";
+
+static void test_visf(void **state)
+{
+    (void)state;
+    static const tm_visf_options forms[] = {{TM_VISF_TEXT, false, false},
+                                            {TM_VISF_TEXT, true, true},
+                                            {TM_VISF_LITTLE, true, false},
+                                            {TM_VISF_BIG, false, true}};
+    tm_stream stream;
+    tm_visf_repairs repairs;
+    tm_error error;
+    tm_stream_init(&stream);
+    assert_int_equal(
+        tm_visf_read(&stream, visf_text, sizeof visf_text - 1, "file", &repairs, &error),
+        TM_OK);
+    assert_int_equal(repairs.dropped, 1);
+    for (size_t f = 0; f < sizeof forms / sizeof forms[0]; f++) {
+        tm_text text = {0};
+        assert_int_equal(tm_visf_write(&text, &stream, &forms[f], &error), TM_OK);
+        for (size_t size = 0; size <= text.size; size++)
+            read_visf(text.byte, size);
+        for (int i = 0; i < CHANGED && text.size > 0; i++) {
+            char *changed = malloc(text.size);
+            assert_non_null(changed);
+            memcpy(changed, text.byte, text.size);
+            change(changed, text.size);
+            read_visf(changed, text.size);
+            free(changed);
+        }
+        tm_text_free(&text);
+    }
+    tm_stream_free(&stream);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -159,6 +223,7 @@ int main(void)
         cmocka_unit_test(test_changed_bytes),
         cmocka_unit_test(test_wrong_reader),
         cmocka_unit_test(test_rows),
+        cmocka_unit_test(test_visf),
     };
     make_samples(samples);
     random_start();

@@ -184,12 +184,47 @@ static void a_decimal_comma_changes_nothing(void **state)
     setlocale(LC_ALL, "C");
 }
 
+/* Nine digits are what %.9g prints, where no tie of decimals is in the way, and give
+ * back every float. */
+static void nine_digits_are_enough_for_a_float(void **state)
+{
+    (void)state;
+    enum { COUNT = 200000, DIGITS = 9 };
+    static const struct {
+        double value;
+        const char *text;
+    } form[] = {{0, "0"},
+                {-0.0, "-0"},
+                {0.1, "0.1"},
+                {1.0 / 3, "0.333333333"},
+                {-2e9 / 3, "-666666667"},
+                {1000000.125, "1000000.12"},
+                {999999999.9, "1e9"},
+                {1e300 / 3, "3.33333333e299"}};
+    char text[TM_DOUBLE_CHARS + 1], printed[TM_DOUBLE_CHARS + 1];
+    for (size_t i = 0; i < sizeof form / sizeof form[0]; i++) {
+        *tm_write_rounded(text, form[i].value, DIGITS) = '\0';
+        assert_string_equal(text, form[i].text);
+    }
+    for (int i = 0; i < COUNT; i++) {
+        double value = (random_unit() - 0.5) * pow(10, (int)random_below(60) - 30);
+        *tm_write_rounded(text, value, DIGITS) = '\0';
+        snprintf(printed, sizeof printed, "%.9g", value);
+        if (strtod(text, NULL) != strtod(printed, NULL))
+            fail_msg("%a is written '%s', but printed '%s'", value, text, printed);
+        float narrow = (float)value;
+        *tm_write_rounded(text, (double)narrow, DIGITS) = '\0';
+        assert_true(strtof(text, NULL) == narrow);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(writes_the_shorter_form),
         cmocka_unit_test(every_exponent),
         cmocka_unit_test(random_values),
+        cmocka_unit_test(nine_digits_are_enough_for_a_float),
         cmocka_unit_test(a_decimal_comma_changes_nothing),
     };
     return cmocka_run_group_tests(tests, prepare, finish);

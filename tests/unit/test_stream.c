@@ -153,6 +153,8 @@ static const wrong wrongs[] = {
     {"# c\n 5 3 0 0\n", 1, "", "a TetGen .node file: use tetgen-import"},
     {"5 4 0\n", 1, "", "a TetGen .ele file: use tetgen-import"},
     {"12 1\n", 1, "", "numbers"},
+    {"2 1\n1 1 2 3\n", 1, "", "numbers"},
+    {"2 2\n8\n0 0 0\n", 1, "", "a ViSF mesh: use visf-import"},
     {"$MeshFormat\n", 1, "", "Gmsh"},
     {"MeshVersionFormatted 2\n", 1, "", "Medit"},
     {"\x7f\x45LF\x02\x01", 1, "", "binary"},

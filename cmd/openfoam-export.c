@@ -1,0 +1,130 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* openfoam-export: the cells of a stream as a polyMesh folder of OpenFOAM. */
+#include "common/mesh_input.h"
+#include "common/output_files.h"
+
+#include "../lib/base/file.h"
+#include "../lib/base/json.h"
+#include "../lib/format/openfoam.h"
+
+#include <dirent.h>
+#include <stdio.h>
+#include <string.h>
+
+static const struct option long_options[] = {FILTER_OPTIONS};
+
+static const char *read_operands(filter *f)
+{
+    while (filter_option(f) != -1)
+        ;
+    if (f->output)
+        filter_usage_error(f, "-o: the output is the files in FOLDER");
+    if (optind >= f->argc)
+        filter_usage_error(f, "FOLDER is missing, in which the files will be");
+    const char *folder = f->argv[optind++];
+    filter_operands(f);
+    return folder;
+}
+
+static bool is_ours(const char *name)
+{
+    for (int i = 0; i < TM_OPENFOAM_FILES; i++)
+        if (strcmp(name, tm_openfoam_name[i]) == 0)
+            return true;
+    return strcmp(name, ".") == 0 || strcmp(name, "..") == 0;
+}
+
+/* OpenFOAM reads zones and whatever else is in the folder: what is of another mesh must
+ * not be there. */
+static tm_status refuse_other_files(const char *folder, tm_error *error)
+{
+    tm_status status = TM_OK;
+    DIR *entries = opendir(folder);
+    const struct dirent *entry;
+    while (entries && status == TM_OK && (entry = readdir(entries)))
+        if (!is_ours(entry->d_name))
+            status = tm_fail_at(error, TM_ERROR_SYSTEM, folder, 0, NULL,
+                                "there is also '%s' in the folder, which may be of "
+                                "another mesh (a new folder would be right)",
+                                entry->d_name);
+    if (entries)
+        closedir(entries);
+    return status;
+}
+
+static tm_status write_file(output_files *files, const char *folder, const char *name,
+                            const tm_text *text, tm_error *error)
+{
+    tm_text path = {0};
+    int fd;
+    tm_text_format(&path, "%s/%s", folder, name);
+    if (path.failed)
+        return tm_fail_memory(error);
+    tm_status status = output_files_open(files, path.byte, &fd, error);
+    if (status == TM_OK) {
+        status = tm_write_all(fd, text->byte, text->size, error);
+        if (status != TM_OK)
+            snprintf(error->file, sizeof error->file, "%s", path.byte);
+    }
+    tm_text_free(&path);
+    return status;
+}
+
+static void write_folder(const filter *f, const char *folder, const tm_text *file)
+{
+    tm_error error;
+    tm_status status = refuse_other_files(folder, &error);
+    if (status == TM_OK)
+        status = output_files_make_folder(f->files, folder, &error);
+    for (int i = 0; i < TM_OPENFOAM_FILES && status == TM_OK; i++)
+        status = write_file(f->files, folder, tm_openfoam_name[i], &file[i], &error);
+    if (status == TM_OK)
+        status = output_files_finish(f->files, &error);
+    if (status != TM_OK)
+        filter_fail(f, &error);
+}
+
+static void write_json(filter *f, const tm_openfoam_counts *counts)
+{
+    tm_text text = {0};
+    tm_json json = {.text = &text};
+    tm_json_open(&json, NULL, '{');
+    tm_json_integer(&json, "points", (int64_t)counts->points);
+    tm_json_integer(&json, "faces", (int64_t)counts->faces);
+    tm_json_integer(&json, "cells", (int64_t)counts->cells);
+    tm_json_integer(&json, "patches", (int64_t)counts->patches);
+    tm_json_close(&json, '}');
+    tm_text_string(&text, "\n");
+    filter_write_json(f, &text);
+    tm_text_free(&text);
+}
+
+int main(int argc, char **argv)
+{
+    filter f = {
+        .name = "openfoam-export",
+        .synopsis = "[options] FOLDER [FILE]",
+        .purpose = "Writes tetrahedra, mixed elements or polyhedra as the files of an\n"
+                   "OpenFOAM mesh in FOLDER, a case's constant/polyMesh.",
+        .help = "",
+        .options = long_options,
+        .letters = FILTER_LETTERS,
+    };
+    filter_start(&f, argc, argv);
+    const char *folder = read_operands(&f);
+
+    tm_stream stream;
+    tm_text file[TM_OPENFOAM_FILES] = {0};
+    tm_openfoam_counts counts;
+    tm_error error;
+    mesh_input_read(&f, &stream);
+    if (tm_openfoam_write(file, &stream, &counts, &error) != TM_OK)
+        mesh_input_fail(&f, &error);
+    write_folder(&f, folder, file);
+    if (f.json)
+        write_json(&f, &counts);
+    for (int i = 0; i < TM_OPENFOAM_FILES; i++)
+        tm_text_free(&file[i]);
+    tm_stream_free(&stream);
+    return filter_finish(&f, 0);
+}
