@@ -188,7 +188,8 @@ static tm_status write_cell_data(writer *w)
 {
     tm_status status = TM_OK;
     if (w->content != TM_CONTENT_POINTS)
-        status = write_attributes(w, w->cell, "region");
+        status = write_attributes(
+            w, w->cell, w->content == TM_CONTENT_POLYHEDRA ? "tetrahedra" : "region");
     if (status == TM_OK && w->content == TM_CONTENT_TETRAHEDRA)
         status = write_quality(w);
     return status;
