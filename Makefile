@@ -52,6 +52,7 @@ headers := $(wildcard lib/*/*.h)
 unit_tests := $(patsubst tests/unit/%.c,$(BUILD)/tests/%,$(wildcard tests/unit/test_*.c))
 oracles := $(patsubst tests/oracle/%.cc,$(BUILD)/tests/%,$(wildcard tests/oracle/*.cc))
 fuzzer := $(BUILD)/fuzz/fuzz
+solver := $(BUILD)/vem/vem-poisson
 benchers := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/*.c))
 generated := $(BUILD)/generated/powers.h
 pages := $(wildcard man/*.[157])
@@ -103,8 +104,13 @@ $(benchers): $(BUILD)/bench/%: $(BUILD)/tests/bench/%.o $(library)
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) $(LDLIBS)
 
+# Needs SuiteSparse; tests/cli/vem.bats and an example run it.
+$(solver): $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/vem/*.c)) $(library)
+	@mkdir -p $(@D)
+	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lcholmod $(LDLIBS)
+
 # What the tests run.
-tests: all $(unit_tests) $(oracles) $(fuzzer)
+tests: all $(unit_tests) $(oracles) $(fuzzer) $(solver)
 
 check: tests
 	sh tests/run.sh $(BUILD)
