@@ -3,10 +3,9 @@
  * found, then each region is repaired: taken apart into pieces that are balls.
  *
  * No polyhedron goes across a face that is kept (mesh.h): regions of the mesh and marked
- * faces bound it. A. E. Cerda, Generador de mallas de
- * poliedros en tres dimensiones, Universidad de Chile (2022); S. Salinas-Fernández
- * and others, POLYLLA: polygonal meshing algorithm based on terminal-edge regions,
- * Engineering with Computers (2022).
+ * faces bound it. A. E. Cerda, Generador de mallas de poliedros en tres dimensiones,
+ * Universidad de Chile (2022); S. Salinas-Fernández and others, POLYLLA: polygonal
+ * meshing algorithm based on terminal-edge regions, Engineering with Computers (2022).
  *
  * All of it is faster if the mesh is in the order of a space-filling curve
  * (tm_tet_mesh_sort()). */

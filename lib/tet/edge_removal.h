@@ -37,7 +37,7 @@ bool tm_edge_removal_plan_four(const tm_tet_mesh *mesh, const tm_star *star, dou
                                tm_edge_removal *plan);
 
 /* The same for a sum: finds the triangulation whose tetrahedra have the least
- * tm_improve_cost() in all, below `most`, while each is at least `least` good and exactly
+ * tm_cost_of() in all, below `most`, while each is at least `least` good and exactly
  * positive. plan->quality is that sum. The star may be open: its ring is triangulated
  * with the chord between its ends. */
 bool tm_edge_removal_plan_cheapest(const tm_tet_mesh *mesh, const tm_star *star,

@@ -3,8 +3,9 @@
 # lepp-improve -a improve beside Gmsh, TetGen and CGAL on the same meshes with the
 # boundary kept: how large and how bad the mesh becomes, in how many CPU seconds; for us
 # with one bound of the size after the other, which gives the front of quality against
-# size, and beside each peer with that peer's size and CPU seconds as bounds. The figures go to build/bench/improve.tsv, and with gnuplot the fronts are drawn
-# into build/bench/improve-front.svg. $1, TM_DATA and the rest: peers.inc; and
+# size, and beside each peer with that peer's size and CPU seconds as bounds. The figures
+# go to build/bench/improve.tsv, and with gnuplot the fronts are drawn into
+# build/bench/improve-front.svg. $1, TM_DATA and the rest: peers.inc; and
 #   MESHES   of rnd2000 rnd20000 femur knot house2; all
 #   GROWTHS  bounds of the size, in times the input
 #   CGAL     runs of it: target edge length in mean edge lengths x iterations
