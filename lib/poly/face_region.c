@@ -3,6 +3,7 @@
  * that is not kept; as POLYLLA does with the longest edges of triangles. */
 #include "partition.h"
 
+#include "../base/disjoint_sets.h"
 #include "../geom/vector.h"
 #include "../tet/ball.h"
 
@@ -37,16 +38,6 @@ static uint32_t best_face(const tm_tet_mesh *mesh, uint32_t t, tm_face_metric me
     return best;
 }
 
-/* The root of a tree, with shorter paths afterwards. */
-static uint32_t find(uint32_t *parent, uint32_t t)
-{
-    while (parent[t] != t) {
-        parent[t] = parent[parent[t]];
-        t = parent[t];
-    }
-    return t;
-}
-
 tm_status tm_label_best_face(const tm_tet_mesh *mesh, tm_face_metric metric,
                              uint32_t *label, size_t *regions, tm_error *error)
 {
@@ -57,7 +48,7 @@ tm_status tm_label_best_face(const tm_tet_mesh *mesh, tm_face_metric metric,
         uint32_t across = mesh->neighbour[t][best_face(mesh, t, metric)];
         if (across & TM_FACE_BIT)
             continue;
-        uint32_t r = find(label, t), s = find(label, across / 4);
+        uint32_t r = tm_set_root(label, t), s = tm_set_root(label, across / 4);
         /* The first tetrahedron is the root. */
         if (r < s)
             label[s] = r;
@@ -65,7 +56,7 @@ tm_status tm_label_best_face(const tm_tet_mesh *mesh, tm_face_metric metric,
             label[r] = s;
     }
     for (uint32_t t = 0; t < mesh->slots; t++)
-        label[t] = find(label, t);
+        label[t] = tm_set_root(label, t);
     /* Roots come before the rest of their trees: number them on the way. */
     *regions = 0;
     for (uint32_t t = 0; t < mesh->slots; t++)

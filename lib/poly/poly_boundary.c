@@ -2,6 +2,7 @@
 #include "poly_boundary.h"
 
 #include "../base/array.h"
+#include "../base/disjoint_sets.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -118,18 +119,11 @@ static tm_poly_edge *edge_of(tm_poly_boundary *b, uint32_t low, uint32_t high,
     return &b->edge[b->slot[s]];
 }
 
-static uint32_t root(uint32_t *parent, uint32_t i)
-{
-    while (parent[i] != i)
-        i = parent[i] = parent[parent[i]];
-    return i;
-}
-
 /* Joins two trees; false where they were one. */
 static bool join(uint32_t *parent, uint32_t i, uint32_t j)
 {
-    i = root(parent, i);
-    j = root(parent, j);
+    i = tm_set_root(parent, i);
+    j = tm_set_root(parent, j);
     parent[i > j ? i : j] = i < j ? i : j;
     return i != j;
 }

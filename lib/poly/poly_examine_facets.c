@@ -2,6 +2,7 @@
 #include "poly_examine_facets.h"
 
 #include "../base/array.h"
+#include "../base/disjoint_sets.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -31,13 +32,6 @@ static void add_defect(matching *m, tm_defect d, uint32_t first, uint32_t second
 {
     tm_defect_add(&m->found->defect[d],
                   (uint32_t[TM_PLACE_NUMBERS]){first, second, third});
-}
-
-static uint32_t root(uint32_t *parent, uint32_t c)
-{
-    while (parent[c] != c)
-        c = parent[c] = parent[parent[c]];
-    return c;
 }
 
 static void list_facets(matching *m)
@@ -79,8 +73,8 @@ static void match(matching *m)
         m->found->boundary_faces += mesh->side[f][1] == TM_NONE;
         if (m->listed[f] < 2)
             continue;
-        const uint32_t c = root(m->parent, m->first[f]);
-        const uint32_t d = root(m->parent, m->second[f]);
+        const uint32_t c = tm_set_root(m->parent, m->first[f]);
+        const uint32_t d = tm_set_root(m->parent, m->second[f]);
         m->parent[c > d ? c : d] = c < d ? c : d;
         m->found->components -= c != d;
     }

@@ -2,6 +2,7 @@
 #include "simple.h"
 
 #include "../base/array.h"
+#include "../base/disjoint_sets.h"
 #include "../tet/ball.h"
 
 #include <stdlib.h>
@@ -21,18 +22,9 @@ typedef struct {
 /* The edge has its two faces. */
 #define MATCHED (TM_NONE - 1)
 
-static uint32_t find(uint32_t *set, uint32_t x)
-{
-    while (set[x] != x) {
-        set[x] = set[set[x]];
-        x = set[x];
-    }
-    return x;
-}
-
 static void join(uint32_t *set, uint32_t x, uint32_t y)
 {
-    set[find(set, x)] = find(set, y);
+    set[tm_set_root(set, x)] = tm_set_root(set, y);
 }
 
 static bool collect(boundary *b, const tm_tet_mesh *mesh, const uint32_t *piece,

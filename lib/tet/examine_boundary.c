@@ -4,6 +4,7 @@
 #include "examine_boundary.h"
 
 #include "../base/array.h"
+#include "../base/disjoint_sets.h"
 #include "../base/sum.h"
 #include "../geom/vector.h"
 
@@ -97,13 +98,6 @@ static bool find_spokes(surface *s, uint32_t v, size_t count)
     return true;
 }
 
-static uint32_t root(uint32_t *parent, uint32_t f)
-{
-    while (parent[f] != f)
-        f = parent[f] = parent[parent[f]];
-    return f;
-}
-
 /* Each edge is counted at its smaller node. */
 static void check_edge(tm_examination *found, uint32_t v, uint32_t end, size_t faces)
 {
@@ -123,10 +117,10 @@ static bool check_node(tm_examination *found, surface *s, uint32_t v)
         return false;
     size_t fans = faces;
     for (size_t i = 0, next; i < 2 * faces; i = next) {
-        const uint32_t first = root(s->parent, s->spoke[i].face);
+        const uint32_t first = tm_set_root(s->parent, s->spoke[i].face);
         for (next = i + 1; next < 2 * faces && s->spoke[next].end == s->spoke[i].end;
              next++) {
-            const uint32_t other = root(s->parent, s->spoke[next].face);
+            const uint32_t other = tm_set_root(s->parent, s->spoke[next].face);
             fans -= other != first;
             s->parent[other] = first;
         }

@@ -6,6 +6,7 @@
 #include "examine_faces.h"
 
 #include "../base/array.h"
+#include "../base/disjoint_sets.h"
 #include "edge_map.h"
 #include "face_order.h"
 
@@ -117,17 +118,10 @@ static bool allocate(walk *w)
     return true;
 }
 
-static uint32_t root(uint32_t *parent, uint32_t t)
-{
-    while (parent[t] != t)
-        t = parent[t] = parent[parent[t]];
-    return t;
-}
-
 static void join(walk *w, uint32_t t, uint32_t u)
 {
-    t = root(w->parent, t);
-    u = root(w->parent, u);
+    t = tm_set_root(w->parent, t);
+    u = tm_set_root(w->parent, u);
     w->joints += t != u;
     if (t < u)
         w->parent[u] = t;

@@ -2,6 +2,7 @@
 #include "face_removal.h"
 
 #include "../geom/predicates.h"
+#include "ball.h"
 
 #include <string.h>
 
@@ -109,8 +110,7 @@ bool tm_face_removal_plan(const tm_tet_mesh *mesh, const double *quality, uint32
                           uint32_t i, const tm_cost *cost, double least,
                           tm_face_removal *plan)
 {
-    static const uint8_t below[4][3] = {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}};
-    uint32_t h = mesh->neighbour[t][i];
+    uint32_t n[3], h = mesh->neighbour[t][i];
     if (h & TM_FACE_BIT)
         return false;
     uint32_t u = h / 4;
@@ -118,11 +118,10 @@ bool tm_face_removal_plan(const tm_tet_mesh *mesh, const double *quality, uint32
     plan->count = plan->old_count = 0;
     add_old(&s, t, u);
     double sum = 0;
-    for (int k = 0; k < 3 && sum < HUGE_VAL; k++) {
-        const uint32_t *n = mesh->tet[t];
-        sum += close_edge(&s, n[below[i][k]], n[below[i][(k + 1) % 3]],
-                          n[below[i][(k + 2) % 3]], t, u, TM_FACE_REMOVAL_DEPTH);
-    }
+    tm_tet_face_below(mesh, t, i, n);
+    for (int k = 0; k < 3 && sum < HUGE_VAL; k++)
+        sum += close_edge(&s, n[k], n[(k + 1) % 3], n[(k + 2) % 3], t, u,
+                          TM_FACE_REMOVAL_DEPTH);
     if (!(sum < HUGE_VAL))
         return false;
     plan->gain = tm_cost_of(cost, quality[t]) + tm_cost_of(cost, quality[u]) - sum;
