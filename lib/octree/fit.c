@@ -1,0 +1,221 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit.h"
+
+#include "../base/array.h"
+#include "../mixed/element_edges.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Measured on the bench's surfaces: more sweeps change the worst elements little. */
+enum { SKIN_SWEEPS = 4, CORE_SWEEPS = 6 };
+
+typedef struct {
+    tm_assembly *assembly;
+    const tm_skin *skin;
+    const tm_feature *feature;
+    const tm_surface *surface;
+    tm_surface_point *at;
+} fitter;
+
+/* Puts an outer node to the place that its feature has closest to a point. */
+static void put(const fitter *fit, size_t s, const double point[3])
+{
+    double *xyz = fit->assembly->mesh.xyz[fit->assembly->outer + s];
+    const uint32_t of = fit->feature->of[s];
+    if (fit->feature->kind[s] == TM_ON_CORNER) {
+        memcpy(xyz, fit->surface->xyz[fit->surface->corner[of]], 3 * sizeof *xyz);
+    } else if (fit->feature->kind[s] == TM_ON_CURVE) {
+        size_t segment;
+        tm_surface_closest_on_curve(fit->surface, of, point, xyz, &segment);
+    } else {
+        tm_surface_point *at = &fit->at[s];
+        if (of != TM_NONE && fit->surface->patch[at->triangle] != of)
+            at->triangle = TM_NONE;
+        tm_surface_closest(fit->surface, point, of, at);
+        memcpy(xyz, at->xyz, 3 * sizeof *xyz);
+    }
+}
+
+/* The mean of the neighbours of an outer node: along its curve, or the corners of the
+ * faces around it, of which those across an edge count twice. */
+static void mean_on_skin(const fitter *fit, size_t s, double mean[3])
+{
+    const tm_skin *skin = fit->skin;
+    const double(*xyz)[3] = (const double(*)[3])fit->assembly->mesh.xyz;
+    const uint32_t outer = fit->assembly->outer;
+    double sum[3] = {0, 0, 0};
+    size_t count = 0;
+    if (fit->feature->kind[s] == TM_ON_CURVE) {
+        count = 2;
+        for (int j = 0; j < 2; j++)
+            for (int i = 0; i < 3; i++)
+                sum[i] += xyz[outer + fit->feature->along[s][j]][i];
+    } else {
+        for (size_t a = skin->around_start[s]; a < skin->around_start[s + 1]; a++) {
+            const uint32_t *face = skin->face[skin->around[a]];
+            const unsigned k = tm_skin_corners(skin, skin->around[a]);
+            for (unsigned c = 0; c < k; c++)
+                for (int i = 0; i < 3; i++)
+                    sum[i] += xyz[outer + face[c]][i];
+            for (int i = 0; i < 3; i++)
+                sum[i] -= xyz[outer + s][i];
+            count += k - 1;
+        }
+    }
+    for (int i = 0; i < 3; i++)
+        mean[i] = sum[i] / (double)count;
+}
+
+static void fit_skin(const fitter *fit)
+{
+    double point[3];
+    const double(*xyz)[3] = (const double(*)[3])fit->assembly->mesh.xyz;
+    for (size_t s = 0; s < fit->skin->nodes; s++) {
+        memcpy(point, xyz[fit->assembly->outer + s], sizeof point);
+        put(fit, s, point);
+    }
+    for (int sweep = 0; sweep < SKIN_SWEEPS; sweep++)
+        for (size_t s = 0; s < fit->skin->nodes; s++) {
+            if (fit->feature->kind[s] == TM_ON_CORNER)
+                continue;
+            mean_on_skin(fit, s, point);
+            put(fit, s, point);
+        }
+}
+
+/* The nodes below the skin that may move, and their neighbours. */
+typedef struct {
+    uint32_t *order; /* [nodes of the mesh]: its place in node[], or TM_NONE */
+    size_t nodes;
+    uint32_t *node;
+    size_t *start; /* [nodes + 1] */
+    uint32_t *neighbour;
+} zone;
+
+static bool has_moving(const zone *z, const tm_mixed_mesh *mesh, size_t e)
+{
+    for (size_t i = mesh->start[e]; i < mesh->start[e + 1]; i++)
+        if (z->order[mesh->item[i]] != TM_NONE)
+            return true;
+    return false;
+}
+
+/* The inner nodes, and those in an element with one of them that are not outer ones. */
+static tm_status find_moving(const fitter *fit, zone *z, tm_error *error)
+{
+    const tm_assembly *a = fit->assembly;
+    const tm_mixed_mesh *mesh = &a->mesh;
+    const size_t outer_end = a->outer + fit->skin->nodes;
+    z->order = tm_new(mesh->nodes, sizeof *z->order);
+    bool *moves = calloc(mesh->nodes + 1, 1);
+    if (!z->order || !moves) {
+        free(moves);
+        return tm_fail_memory(error);
+    }
+    for (size_t n = 0; n < mesh->nodes; n++)
+        z->order[n] = TM_NONE;
+    for (size_t s = 0; s < fit->skin->nodes; s++)
+        z->order[a->inner[s]] = 0;
+    for (size_t e = 0; e < mesh->elements; e++)
+        if (has_moving(z, mesh, e))
+            for (size_t i = mesh->start[e]; i < mesh->start[e + 1]; i++)
+                moves[mesh->item[i]] = true;
+    for (size_t n = 0; n < mesh->nodes; n++) {
+        const bool is_outer = n >= a->outer && n < outer_end;
+        z->order[n] = moves[n] && !is_outer ? (uint32_t)z->nodes++ : TM_NONE;
+    }
+    free(moves);
+    z->node = tm_new(z->nodes, sizeof *z->node);
+    z->start = calloc(z->nodes + 2, sizeof *z->start);
+    if (!z->node || !z->start)
+        return tm_fail_memory(error);
+    for (size_t n = 0; n < mesh->nodes; n++)
+        if (z->order[n] != TM_NONE)
+            z->node[z->order[n]] = (uint32_t)n;
+    return TM_OK;
+}
+
+/* Counts, or enters, both directions of an element's edges at the nodes that move. */
+static void add_edges(zone *z, const tm_mixed_mesh *mesh, size_t e, bool enter)
+{
+    const uint32_t *item = mesh->item + mesh->start[e];
+    const unsigned k = (unsigned)(mesh->start[e + 1] - mesh->start[e]);
+    const tm_element_edges *edges = tm_element_edges_of(k);
+    for (unsigned i = 0; i < edges->count; i++)
+        for (unsigned end = 0; end < 2; end++) {
+            const uint32_t from = z->order[item[edges->edge[i][end]]];
+            if (from == TM_NONE)
+                continue;
+            if (enter)
+                z->neighbour[z->start[from + 1]++] = item[edges->edge[i][1 - end]];
+            else
+                z->start[from + 2]++;
+        }
+}
+
+/* Drops all but the first of equal neighbours. */
+static void drop_repeats(zone *z)
+{
+    size_t kept = 0, begin = 0;
+    for (size_t n = 0; n < z->nodes; n++) {
+        const size_t first = kept, end = z->start[n + 1];
+        for (size_t i = begin; i < end; i++) {
+            size_t j = first;
+            while (j < kept && z->neighbour[j] != z->neighbour[i])
+                j++;
+            if (j == kept)
+                z->neighbour[kept++] = z->neighbour[i];
+        }
+        begin = end;
+        z->start[n + 1] = kept;
+    }
+}
+
+static tm_status find_neighbours(zone *z, const tm_mixed_mesh *mesh, tm_error *error)
+{
+    for (size_t e = 0; e < mesh->elements; e++)
+        if (has_moving(z, mesh, e))
+            add_edges(z, mesh, e, false);
+    for (size_t n = 0; n <= z->nodes; n++)
+        z->start[n + 1] += z->start[n];
+    z->neighbour = tm_new(z->start[z->nodes + 1], sizeof *z->neighbour);
+    if (!z->neighbour)
+        return tm_fail_memory(error);
+    for (size_t e = 0; e < mesh->elements; e++)
+        if (has_moving(z, mesh, e))
+            add_edges(z, mesh, e, true);
+    drop_repeats(z);
+    return TM_OK;
+}
+
+static void average(const zone *z, tm_mixed_mesh *mesh)
+{
+    for (int sweep = 0; sweep < CORE_SWEEPS; sweep++)
+        for (size_t n = 0; n < z->nodes; n++) {
+            double sum[3] = {0, 0, 0};
+            for (size_t i = z->start[n]; i < z->start[n + 1]; i++)
+                for (int j = 0; j < 3; j++)
+                    sum[j] += mesh->xyz[z->neighbour[i]][j];
+            for (int j = 0; j < 3; j++)
+                mesh->xyz[z->node[n]][j] = sum[j] / (double)(z->start[n + 1] - z->start[n]);
+        }
+}
+
+tm_status tm_fit(tm_assembly *assembly, const tm_skin *skin, const tm_feature *feature,
+                 const tm_surface *surface, tm_surface_point *at, tm_error *error)
+{
+    const fitter fit = {assembly, skin, feature, surface, at};
+    zone z = {0};
+    fit_skin(&fit);
+    tm_status status = find_moving(&fit, &z, error);
+    if (status == TM_OK)
+        status = find_neighbours(&z, &assembly->mesh, error);
+    if (status == TM_OK)
+        average(&z, &assembly->mesh);
+    free(z.order);
+    free(z.node);
+    free(z.start);
+    free(z.neighbour);
+    return status;
+}
