@@ -56,7 +56,7 @@ solver := $(BUILD)/vem/vem-poisson
 benchers := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/*.c))
 generated := $(BUILD)/generated/powers.h $(BUILD)/generated/transitions.h
 pages := $(wildcard man/*.[157])
-sources := $(wildcard lib/*/*.[ch] lib/*/*/*.c cmd/*.c cmd/common/*.[ch] tests/*/*.[ch] \
+sources := $(wildcard lib/*/*.[ch] lib/*/*/*.[ch] cmd/*.c cmd/common/*.[ch] tests/*/*.[ch] \
 	tests/*/*.cc examples/*.c)
 
 .PHONY: all tests check benchers bench fuzz lint format install uninstall clean
@@ -74,10 +74,10 @@ $(BUILD)/generate/powers: lib/base/generate/powers.c
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $< $(LDFLAGS) $(LDLIBS)
 
-$(BUILD)/generate/transitions: lib/octree/generate/transitions.c lib/octree/face_pieces.c \
-		lib/octree/leaf_place.c lib/octree/octree.h lib/octree/transition.h
+$(BUILD)/generate/transitions: $(wildcard lib/octree/generate/*.[ch]) \
+		lib/octree/face_pieces.c lib/octree/leaf_place.c lib/octree/transition.h
 	@mkdir -p $(@D)
-	$(CC) $(TM_CFLAGS) -o $@ $(filter %.c,$^) $(LDFLAGS)
+	$(CC) $(TM_CFLAGS) -o $@ $(filter %.c,$^) $(LDFLAGS) $(LDLIBS)
 
 $(BUILD)/%.o: %.c Makefile | $(generated)
 	@mkdir -p $(@D)

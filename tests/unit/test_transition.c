@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The division of a leaf in every state that occurs: the elements fill the cube and
- * nothing else, face to face, their faces on its sides are those of the face rule, and
- * none is worse than J_ENS 0.36. */
+ * nothing else, face to face, their faces on its sides are those of the face rule, none
+ * is inverted anywhere, and none is worse than J_ENS 0.36 or the star's worst. */
 #include "../../lib/octree/octree.h"
 #include "../../lib/octree/transition.h"
 
@@ -282,20 +282,115 @@ static double quality(const tm_piece *element)
     }
 }
 
+/* Of the division that joins all pieces of the faces to the centre: the worst element,
+ * and how many there are. */
+static double star(tm_leaf_state state, unsigned *pieces)
+{
+    double worst = 1;
+    *pieces = 0;
+    for (unsigned f = 0; f < FACES; f++) {
+        tm_piece face[TM_FACE_PIECES];
+        const unsigned n = tm_face_pieces(state, f, face);
+        for (unsigned p = 0; p < n; p++) {
+            turn_over(&face[p]);
+            face[p].place[face[p].k++] = TM_LEAF_CENTRE;
+            worst = fmin(worst, quality(&face[p]));
+        }
+        *pieces += n;
+    }
+    return worst;
+}
+
 static void check_quality(tm_leaf_state state)
 {
     const tm_transition is = tm_transition_of(state);
-    for (unsigned p = 0; p < is.pieces; p++) {
-        const double q = quality(&is.piece[p]);
-        if (!(q >= least_quality))
-            fail_msg("state %#x: element %u has J_ENS %g", state, p, q);
-    }
+    double worst = 1;
+    for (unsigned p = 0; p < is.pieces; p++)
+        worst = fmin(worst, quality(&is.piece[p]));
+    unsigned most;
+    const double least = fmax(least_quality, star(state, &most) - 1e-12);
+    if (!(worst >= least) || is.pieces > most)
+        fail_msg("state %#x: %u elements, J_ENS %g; the star has %u, %g", state,
+                 is.pieces, worst, most, least);
 }
 
 static void test_quality(void **state)
 {
     (void)state;
     each_state(check_quality);
+}
+
+/* The cell itself; halves and quarters; eighths. */
+static void test_hexahedra(void **state)
+{
+    (void)state;
+    const struct {
+        tm_leaf_state state;
+        unsigned pieces;
+    } plain[] = {{0, 1}, {0xf, 2}, {0xff | 3U << (EDGES + 4), 4}, {0x3ffff, 8}};
+    for (size_t i = 0; i < sizeof plain / sizeof plain[0]; i++) {
+        const tm_transition is = tm_transition_of(plain[i].state);
+        assert_int_equal(is.pieces, plain[i].pieces);
+        assert_int_equal(is.centre, plain[i].pieces == 8);
+        for (unsigned p = 0; p < is.pieces; p++)
+            assert_int_equal(is.piece[p].k, 8);
+    }
+}
+
+/* The edges of an element in the direction of each of its coordinates. The Jacobian at
+ * any point is a mean of the determinants of one edge of each, with weights that are not
+ * negative, and positive for those at its corners. (At the apex of a pyramid it vanishes,
+ * as it has to.) */
+typedef struct directions {
+    unsigned n[3];
+    uint8_t edge[3][4][2];
+} directions;
+
+static const directions of_tetrahedron = {{1, 1, 1}, {{{0, 1}}, {{0, 2}}, {{0, 3}}}};
+static const directions of_pyramid = {
+    {2, 2, 4}, {{{0, 1}, {3, 2}}, {{0, 3}, {1, 2}}, {{0, 4}, {1, 4}, {2, 4}, {3, 4}}}};
+static const directions of_wedge = {
+    {2, 2, 3}, {{{0, 2}, {3, 5}}, {{0, 1}, {3, 4}}, {{0, 3}, {1, 4}, {2, 5}}}};
+static const directions of_hexahedron = {{4, 4, 4},
+                                         {{{0, 1}, {3, 2}, {4, 5}, {7, 6}},
+                                          {{0, 3}, {1, 2}, {4, 7}, {5, 6}},
+                                          {{0, 4}, {1, 5}, {2, 6}, {3, 7}}}};
+
+static int triple_product(const tm_piece *element, const uint8_t edge[3][2])
+{
+    int u[3][3];
+    for (int i = 0; i < 3; i++)
+        edge_of(element->place[edge[i][0]], element->place[edge[i][1]], u[i]);
+    return u[0][0] * (u[1][1] * u[2][2] - u[1][2] * u[2][1]) -
+           u[0][1] * (u[1][0] * u[2][2] - u[1][2] * u[2][0]) +
+           u[0][2] * (u[1][0] * u[2][1] - u[1][1] * u[2][0]);
+}
+
+static void check_inside(tm_leaf_state state)
+{
+    const tm_transition is = tm_transition_of(state);
+    for (unsigned p = 0; p < is.pieces; p++) {
+        const tm_piece *element = &is.piece[p];
+        const directions *d = element->k == 4   ? &of_tetrahedron
+                              : element->k == 5 ? &of_pyramid
+                              : element->k == 6 ? &of_wedge
+                                                : &of_hexahedron;
+        for (unsigned i = 0; i < d->n[0] * d->n[1] * d->n[2]; i++) {
+            uint8_t edge[3][2];
+            memcpy(edge[0], d->edge[0][i % d->n[0]], sizeof edge[0]);
+            memcpy(edge[1], d->edge[1][i / d->n[0] % d->n[1]], sizeof edge[1]);
+            memcpy(edge[2], d->edge[2][i / d->n[0] / d->n[1]], sizeof edge[2]);
+            if (triple_product(element, edge) < 0)
+                fail_msg("state %#x: element %u", state, p);
+        }
+    }
+}
+
+/* No element is inverted anywhere inside. */
+static void test_inside(void **state)
+{
+    (void)state;
+    each_state(check_inside);
 }
 
 /* What of a state can be seen at one face. */
@@ -388,7 +483,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_places),  cmocka_unit_test(test_neighbours),
         cmocka_unit_test(test_volume),  cmocka_unit_test(test_faces),
-        cmocka_unit_test(test_quality),
+        cmocka_unit_test(test_quality), cmocka_unit_test(test_hexahedra),
+        cmocka_unit_test(test_inside),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,20 +2,14 @@
 /* Prints transitions.h: the division of a leaf in each of the states that occur, for
  * lib/octree/transition.c. */
 #include "../octree.h"
-#include "../transition.h"
+#include "division.h"
 
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { EDGES = 12, FACES = 6, STATES = 1 << TM_LEAF_STATE_BITS, MOST = 64 };
-
-typedef struct division {
-    unsigned pieces;
-    bool centre;
-    tm_piece piece[MOST];
-} division;
+enum { EDGES = 12, FACES = 6, STATES = 1 << TM_LEAF_STATE_BITS };
 
 /* Which edges are split is a number of 12 bits; these faces have all four of them. */
 static unsigned faces_of(unsigned edges)
@@ -31,24 +25,6 @@ static unsigned faces_of(unsigned edges)
         faces |= (unsigned)all << f;
     }
     return faces;
-}
-
-/* Every piece of a face, joined to the centre. */
-static void star_of(tm_leaf_state state, division *d)
-{
-    d->pieces = 0;
-    d->centre = true;
-    for (unsigned f = 0; f < FACES; f++) {
-        tm_piece face[TM_FACE_PIECES];
-        const unsigned n = tm_face_pieces(state, f, face);
-        for (unsigned p = 0; p < n; p++) {
-            tm_piece *piece = &d->piece[d->pieces++];
-            piece->k = (uint8_t)(face[p].k + 1);
-            for (unsigned i = 0; i < face[p].k; i++)
-                piece->place[i] = face[p].place[face[p].k - 1 - i];
-            piece->place[face[p].k] = TM_LEAF_CENTRE;
-        }
-    }
 }
 
 /* The n-th state with these edges split and some of these faces. */
@@ -85,30 +61,69 @@ static void print_table(const char *type, const char *name, const unsigned *valu
     printf("};\n");
 }
 
-int main(void)
+/* The states that occur, those with the same edges split together. */
+typedef struct states {
+    unsigned n;
+    tm_leaf_state at[STATES];
+    unsigned first[1 << EDGES], faces[1 << EDGES]; /* by split edges */
+} states;
+
+static void list_states(states *all)
 {
-    static unsigned first[1 << EDGES], faces[1 << EDGES], start[STATES], centre[STATES];
-    unsigned states = 0;
-    printf("/* Made by lib/octree/generate/transitions.c. */\n");
-    printf("static const tm_piece transition_piece[] = {\n");
     for (unsigned edges = 0; edges < 1 << EDGES; edges++) {
-        first[edges] = states;
-        faces[edges] = faces_of(edges);
-        const unsigned n = 1U << __builtin_popcount(faces[edges]);
-        for (unsigned i = 0; i < n; i++) {
-            division d;
-            star_of(state_of(edges, faces[edges], i), &d);
-            print_pieces(&d);
-            centre[states] = d.centre;
-            start[states + 1] = start[states] + d.pieces;
-            states++;
-        }
+        all->first[edges] = all->n;
+        all->faces[edges] = faces_of(edges);
+        const unsigned n = 1U << __builtin_popcount(all->faces[edges]);
+        for (unsigned i = 0; i < n; i++)
+            all->at[all->n++] = state_of(edges, all->faces[edges], i);
+    }
+}
+
+/* The smallest J_ENS of all stars: no element below it is of use. */
+static double least_of_stars(const states *all)
+{
+    double least = 1;
+    for (unsigned s = 0; s < all->n; s++) {
+        division star;
+        star_of(all->at[s], &star);
+        least = star.worst < least ? star.worst : least;
+    }
+    return least;
+}
+
+static void print_divisions(const states *all, search *s)
+{
+    static unsigned start[STATES + 1], centre[STATES];
+    printf("static const tm_piece transition_piece[] = {\n");
+    for (unsigned i = 0; i < all->n; i++) {
+        division d;
+        best_division(s, all->at[i], &d);
+        print_pieces(&d);
+        centre[i] = d.centre;
+        start[i + 1] = start[i] + d.pieces;
     }
     printf("};\n");
-    print_table("uint32_t", "transition_start", start, states + 1);
-    print_table("uint8_t", "transition_centre", centre, states);
-    print_table("uint16_t", "transition_first", first, 1U << EDGES);
-    print_table("uint8_t", "transition_faces", faces, 1U << EDGES);
+    print_table("uint32_t", "transition_start", start, all->n + 1);
+    print_table("uint8_t", "transition_centre", centre, all->n);
+}
+
+int main(void)
+{
+    static states all;
+    list_states(&all);
+    candidates elements;
+    search *s = NULL;
+    if (!all_candidates(least_of_stars(&all), &elements) ||
+        (s = new_search(&elements)) == NULL) {
+        fprintf(stderr, "transitions: not enough memory\n");
+        return EXIT_FAILURE;
+    }
+    printf("/* Made by lib/octree/generate/transitions.c. */\n");
+    print_divisions(&all, s);
+    print_table("uint16_t", "transition_first", all.first, 1U << EDGES);
+    print_table("uint8_t", "transition_faces", all.faces, 1U << EDGES);
+    free(s);
+    free_candidates(&elements);
     if (fclose(stdout) != 0) {
         fprintf(stderr, "transitions: <stdout>: %s\n", strerror(errno));
         return EXIT_FAILURE;
