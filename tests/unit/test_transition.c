@@ -407,14 +407,14 @@ static tm_leaf_state seen_at(tm_leaf_state state, unsigned f)
 /* The place of the leaf beyond face f that is at a place on that face. */
 static uint8_t beyond(uint8_t place, unsigned f)
 {
-    for (uint8_t p = 0; p < TM_LEAF_CENTRE; p++) {
+    for (unsigned p = 0; p < TM_LEAF_CENTRE; p++) {
         bool same = true;
         for (unsigned i = 0; i < 3; i++) {
             const int moved = i != f / 2 ? 0 : f % 2 == 0 ? 2 : -2;
             same = same && tm_leaf_place[p][i] == tm_leaf_place[place][i] + moved;
         }
         if (same)
-            return p;
+            return (uint8_t)p;
     }
     fail_msg("place %u is not on face %u", place, f);
     return 0;

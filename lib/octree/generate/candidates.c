@@ -12,6 +12,7 @@ typedef struct quads {
     uint8_t (*at)[4];
 } quads;
 
+static const uint8_t places = PLACES;
 static const double rounding = 1e-12;
 
 /* Whether a face is on a side of the cube. */
@@ -59,10 +60,10 @@ static bool all_quads(quads *q)
     q->at = malloc(sizeof *q->at * PLACES * PLACES * PLACES * PLACES / 4);
     if (q->at == NULL)
         return false;
-    for (uint8_t a = 0; a < PLACES; a++)
-        for (uint8_t b = a + 1; b < PLACES; b++)
-            for (uint8_t c = a + 1; c < PLACES; c++)
-                for (uint8_t d = a + 1; d < PLACES; d++) {
+    for (uint8_t a = 0; a < places; a++)
+        for (uint8_t b = a + 1; b < places; b++)
+            for (uint8_t c = a + 1; c < places; c++)
+                for (uint8_t d = a + 1; d < places; d++) {
                     const uint8_t quad[4] = {a, b, c, d};
                     if (is_convex(quad))
                         memcpy(q->at[q->n++], quad, sizeof quad);
@@ -72,10 +73,10 @@ static bool all_quads(quads *q)
 
 static bool add_tetrahedra(candidates *all, double least)
 {
-    for (uint8_t a = 0; a < PLACES; a++)
-        for (uint8_t b = a + 1; b < PLACES; b++)
-            for (uint8_t c = b + 1; c < PLACES; c++)
-                for (uint8_t d = c + 1; d < PLACES; d++) {
+    for (uint8_t a = 0; a < places; a++)
+        for (uint8_t b = a + 1; b < places; b++)
+            for (uint8_t c = b + 1; c < places; c++)
+                for (uint8_t d = c + 1; d < places; d++) {
                     const bool turns = volume_of_four(a, b, c, d) < 0;
                     const tm_piece piece = {4, {a, turns ? c : b, turns ? b : c, d}};
                     if (!add(all, least, &piece))
@@ -88,7 +89,7 @@ static bool add_pyramids(candidates *all, double least, const quads *q)
 {
     for (size_t i = 0; i < q->n; i++) {
         const uint8_t *b = q->at[i];
-        for (uint8_t apex = 0; apex < PLACES; apex++) {
+        for (uint8_t apex = 0; apex < places; apex++) {
             const tm_piece piece = {5, {b[0], b[1], b[2], b[3], apex}};
             if (volume_of_four(b[0], b[1], b[3], apex) > 0 && !add(all, least, &piece))
                 return false;
@@ -102,8 +103,8 @@ static bool add_wedges(candidates *all, double least, const quads *q)
 {
     for (size_t i = 0; i < q->n; i++) {
         const uint8_t *s = q->at[i];
-        for (uint8_t c = s[0] + 1; c < PLACES; c++)
-            for (uint8_t f = s[0] + 1; f < PLACES; f++) {
+        for (uint8_t c = s[0] + 1; c < places; c++)
+            for (uint8_t f = s[0] + 1; f < places; f++) {
                 const tm_piece piece = {6, {s[0], s[3], c, s[1], s[2], f}};
                 if (volume_of_four(s[0], s[1], f, c) == 0 &&
                     volume_of_four(s[3], s[2], f, c) == 0 &&
@@ -152,10 +153,10 @@ static int compare(const void *p, const void *q)
 
 static uint32_t places_of(const tm_piece *piece)
 {
-    uint32_t places = 0;
+    uint32_t set = 0;
     for (unsigned i = 0; i < piece->k; i++)
-        places |= 1U << piece->place[i];
-    return places;
+        set |= 1U << piece->place[i];
+    return set;
 }
 
 bool all_candidates(double least, candidates *all)
