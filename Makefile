@@ -61,9 +61,9 @@ oracles := $(patsubst tests/oracle/%.cc,$(BUILD)/tests/%,$(wildcard tests/oracle
 fuzzer := $(BUILD)/fuzz/fuzz
 solver := $(BUILD)/vem/vem-poisson
 benchers := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/*.c))
-generated := $(BUILD)/generated/powers.h
+generated := $(BUILD)/generated/powers.h $(BUILD)/generated/transitions.h
 pages := $(wildcard man/*.[157])
-sources := $(wildcard lib/*/*.[ch] lib/*/*/*.c cmd/*.c cmd/common/*.[ch] tests/*/*.[ch] \
+sources := $(wildcard lib/*/*.[ch] lib/*/*/*.[ch] cmd/*.c cmd/common/*.[ch] tests/*/*.[ch] \
 	tests/*/*.cc examples/*.c)
 
 .PHONY: all tests check benchers bench fuzz lint format install uninstall clean
@@ -80,6 +80,11 @@ $(BUILD)/generated/%.h: $(BUILD)/generate/%
 $(BUILD)/generate/powers: lib/base/generate/powers.c
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $< $(LDFLAGS) $(LDLIBS)
+
+$(BUILD)/generate/transitions: $(wildcard lib/octree/generate/*.[ch]) \
+		lib/octree/face_pieces.c lib/octree/leaf_place.c lib/octree/transition.h
+	@mkdir -p $(@D)
+	$(CC) $(TM_CFLAGS) -o $@ $(filter %.c,$^) $(LDFLAGS) $(LDLIBS)
 
 $(BUILD)/%.o: %.c Makefile | $(generated)
 	@mkdir -p $(@D)
