@@ -189,17 +189,23 @@ static tm_status find_neighbours(zone *z, const tm_mixed_mesh *mesh, tm_error *e
     return TM_OK;
 }
 
-static void average(const zone *z, tm_mixed_mesh *mesh)
+/* How far each node has gone from where it began is averaged, not its place: so what is
+ * unequal on the lattice, at small neighbours of large leaves, stays in shape. */
+static tm_status average(const zone *z, tm_mixed_mesh *mesh, const double (*from)[3],
+                         tm_error *error)
 {
     for (int sweep = 0; sweep < CORE_SWEEPS; sweep++)
         for (size_t n = 0; n < z->nodes; n++) {
+            const size_t count = z->start[n + 1] - z->start[n];
             double sum[3] = {0, 0, 0};
             for (size_t i = z->start[n]; i < z->start[n + 1]; i++)
                 for (int j = 0; j < 3; j++)
-                    sum[j] += mesh->xyz[z->neighbour[i]][j];
+                    sum[j] += mesh->xyz[z->neighbour[i]][j] - from[z->neighbour[i]][j];
             for (int j = 0; j < 3; j++)
-                mesh->xyz[z->node[n]][j] = sum[j] / (double)(z->start[n + 1] - z->start[n]);
+                mesh->xyz[z->node[n]][j] = from[z->node[n]][j] + sum[j] / (double)count;
         }
+    (void)error;
+    return TM_OK;
 }
 
 tm_status tm_fit(tm_assembly *assembly, const tm_skin *skin, const tm_feature *feature,
@@ -207,12 +213,15 @@ tm_status tm_fit(tm_assembly *assembly, const tm_skin *skin, const tm_feature *f
 {
     const fitter fit = {assembly, skin, feature, surface, at};
     zone z = {0};
+    double(*from)[3] = malloc(assembly->mesh.nodes * sizeof *from);
+    memcpy(from, assembly->mesh.xyz, assembly->mesh.nodes * sizeof *from);
     fit_skin(&fit);
     tm_status status = find_moving(&fit, &z, error);
     if (status == TM_OK)
         status = find_neighbours(&z, &assembly->mesh, error);
     if (status == TM_OK)
-        average(&z, &assembly->mesh);
+        status = average(&z, &assembly->mesh, (const double(*)[3])from, error);
+    free(from);
     free(z.order);
     free(z.node);
     free(z.start);

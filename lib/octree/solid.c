@@ -10,14 +10,6 @@
 /* After so many rounds of adding and taking away leaves are only taken away, which ends. */
 enum { FREE_ROUNDS = 24 };
 
-static void centre_of(const tm_octree *octree, const tm_leaf *leaf, double centre[3])
-{
-    const double unit = octree->side / (double)((uint32_t)1 << octree->finest);
-    const double half = (double)((uint32_t)1 << (octree->finest - leaf->level)) / 2;
-    for (int i = 0; i < 3; i++)
-        centre[i] = octree->low[i] + unit * ((double)leaf->anchor[i] + half);
-}
-
 /* Whether two leaves' closed cubes have a point in common. */
 static bool touch(const tm_octree *octree, const tm_leaf *a, const tm_leaf *b)
 {
@@ -41,7 +33,7 @@ static void classify(tm_solid *solid, const tm_octree *octree, const tm_surface 
             continue;
         }
         double centre[3];
-        centre_of(octree, leaf, centre);
+        tm_leaf_centre(octree, leaf, centre);
         solid->chosen[l] = tm_surface_has_inside(surface, centre);
     }
 }
@@ -119,11 +111,10 @@ static double depth(const cleaner *c, size_t l)
     if (!leaf->crossed)
         return farther_than_crossed;
     double centre[3];
-    centre_of(c->octree, leaf, centre);
+    tm_leaf_centre(c->octree, leaf, centre);
     tm_surface_point at = {.triangle = TM_NONE};
     tm_surface_closest(c->surface, centre, TM_NONE, &at);
-    const double side = c->octree->side / (double)((uint32_t)1 << leaf->level);
-    return sqrt(at.distance2) / side;
+    return sqrt(at.distance2) / tm_leaf_side(c->octree, leaf);
 }
 
 /* How many of a leaf's nodes would have a bad mask if it changed, less those that have one
