@@ -202,7 +202,7 @@ static tm_status place_nodes(assembler *a, tm_error *error)
             const uint8_t here = a->octree->leaf[a->skin->leaf[f]].level;
             level[s] = here > level[s] ? here : level[s];
         }
-    const double share = 0.25;
+    const double share = 0.3;
     for (size_t s = 0; s < a->skin->nodes; s++) {
         int outward[3];
         tm_octant_mask_outward(a->solid->mask[a->skin->grid_node[s]], outward);
