@@ -83,8 +83,10 @@ static tm_status allocate(assembler *a, const sizes *s, tm_error *error)
     mesh->start = tm_new(mesh->elements + 1, sizeof *mesh->start);
     mesh->item = tm_new(s->items, sizeof *mesh->item);
     to->first = tm_new(a->octree->leaves + 1, sizeof *to->first);
+    to->base = tm_new(mesh->nodes, sizeof *to->base);
     to->layer = tm_new(a->skin->faces, sizeof *to->layer);
-    if (!mesh->xyz || !mesh->start || !mesh->item || !to->first || !to->layer)
+    if (!mesh->xyz || !mesh->start || !mesh->item || !to->first || !to->base ||
+        !to->layer)
         return tm_fail_memory(error);
     return TM_OK;
 }
@@ -227,15 +229,17 @@ tm_status tm_assemble(tm_assembly *assembly, const tm_octree *octree,
     if (status == TM_OK)
         status = place_nodes(&a, error);
     for (size_t l = 0; status == TM_OK && l < octree->leaves; l++) {
-        assembly->first[l] = a.elements;
+        assembly->first[l] = (uint32_t)a.elements;
         if (solid->chosen[l]) {
             add_leaf(&a, l);
             add_layer(&a, l);
         }
     }
     if (status == TM_OK) {
-        assembly->first[octree->leaves] = a.elements;
+        assembly->first[octree->leaves] = (uint32_t)a.elements;
         assembly->mesh.start[a.elements] = a.items;
+        memcpy(assembly->base, assembly->mesh.xyz,
+               assembly->mesh.nodes * sizeof *assembly->base);
     }
     free(a.core_node);
     return status;
@@ -246,6 +250,7 @@ void tm_assembly_free(tm_assembly *assembly)
     free(assembly->mesh.xyz);
     free(assembly->mesh.start);
     free(assembly->mesh.item);
+    free(assembly->base);
     free(assembly->first);
     free(assembly->layer);
     free(assembly->inner);

@@ -21,7 +21,8 @@ enum { TM_CUT_ELEMENTS = 7 };
  * the face is cut, pyramids and tetrahedra around a node in the middle. */
 typedef struct tm_assembly {
     tm_mixed_mesh mesh;
-    size_t *first;   /* [leaves + 1]: leaf l has the elements first[l] … first[l + 1) */
+    double (*base)[3]; /* [nodes]: where they are at first; there all elements are valid */
+    uint32_t *first; /* [leaves + 1]: leaf l has the elements first[l] … first[l + 1) */
     uint32_t *layer; /* [faces of the skin]: the element under it; of a cut face the first of
                         seven, the last two of which have the face's triangles */
     uint32_t *inner; /* [nodes of the skin] */
