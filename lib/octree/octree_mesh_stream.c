@@ -118,8 +118,8 @@ static tm_status give_facets(const tm_octree_mesh *m, const tm_surface *surface,
             continue;
         }
         for (uint32_t t = 0; t < 2; t++) {
-            const uint8_t *corner = tm_cut_faces[skin->cut[f]].triangle[t];
-            add_facet(&w, m, element + TM_CUT_ELEMENTS - 2 + t, marker, 3,
+            const uint8_t *corner = tm_cut_triangles[skin->cut[f]][t];
+            add_facet(&w, m, element + t, marker, 3,
                       (uint32_t[]){face[corner[0]], face[corner[1]], face[corner[2]]});
         }
     }
