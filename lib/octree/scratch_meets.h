@@ -39,14 +39,42 @@ static inline bool scratch_meets(const tm_surface *S, uint32_t t, const double l
         }
     return true;
 }
-static inline size_t scratch_cull(const tm_surface *S, const uint32_t *from, size_t n,
-                                  const double low[3], const double high[3],
-                                  size_t enough, uint32_t *to)
+#ifdef SCRATCH_SURFACE
+size_t tm_surface_cull(const tm_surface *S, const uint32_t *from, size_t n, const double low[3],
+                                  const double high[3], uint32_t *to);
+size_t tm_surface_cull(const tm_surface *S, const uint32_t *from, size_t n, const double low[3],
+                                  const double high[3], uint32_t *to)
 {
     size_t k = 0;
-    for (size_t i = 0; i < n && k < enough; i++)
+    for (size_t i = 0; i < n; i++)
         if (scratch_meets(S, from[i], low, high))
             to[k++] = from[i];
     return k;
 }
+#ifdef SCRATCH_BUILD
+#include <stdlib.h>
+#include <string.h>
+typedef struct tm_surface_options {
+    double feature_angle; /* an edge is sharp where its normals differ by more: degrees */
+    bool lenient;         /* open surfaces, and such that cross themselves, are taken */
+} tm_surface_options;
+static tm_status tm_surface_build(tm_surface *S, const tm_polygon_surface *P, const tm_surface_options *o, tm_error *e)
+{ (void)o;(void)e; *S=(tm_surface){.nodes=P->nodes,.triangles=P->polygons};
+ S->xyz=malloc(24*P->nodes+1);memcpy(S->xyz,P->xyz,24*P->nodes);S->triangle=malloc(12*P->polygons+1);memcpy(S->triangle,P->item,12*P->polygons);
+ for(int i=0;i<3;i++){S->low[i]=1e300;S->high[i]=-1e300;for(size_t n=0;n<S->nodes;n++){if(S->xyz[n][i]<S->low[i])S->low[i]=S->xyz[n][i];if(S->xyz[n][i]>S->high[i])S->high[i]=S->xyz[n][i];}}
+ return TM_OK; }
+static void tm_surface_free(tm_surface *S){free(S->xyz);free(S->triangle);}
+#endif
+bool tm_surface_meets_box(const tm_surface *s, const double l[3], const double h[3]){
+ for (uint32_t t=0;t<s->triangles;t++) if (scratch_meets(s,t,l,h)) return true;
+ return false;}
+bool tm_surface_has_inside(const tm_surface *s, const double p[3]){
+  double w=0; /* solid angles */
+  for (uint32_t t=0;t<s->triangles;t++){ double a[3],b[3],c[3],n[3];
+   tm_subtract(a,s->xyz[s->triangle[t][0]],p);tm_subtract(b,s->xyz[s->triangle[t][1]],p);tm_subtract(c,s->xyz[s->triangle[t][2]],p);
+   tm_cross(n,b,c); double A=tm_norm(a),B=tm_norm(b),C=tm_norm(c);
+   w+=2*atan2(tm_dot(a,n),A*B*C+tm_dot(a,b)*C+tm_dot(b,c)*A+tm_dot(c,a)*B);}
+  return w>6.283185307;
+}
+#endif
 #endif
