@@ -13,6 +13,11 @@ const char *__lsan_default_suppressions(void)
 {
     return "leak:libmpi";
 }
+
+const char *__lsan_default_options(void)
+{
+    return "print_suppressions=0";
+}
 #else
 static void __lsan_disable(void)
 {
