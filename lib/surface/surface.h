@@ -61,9 +61,4 @@ bool tm_surface_has_inside(const tm_surface *surface, const double point[3]);
 bool tm_surface_meets_box(const tm_surface *surface, const double low[3],
                           const double high[3]);
 
-/* Those of the triangles list[0 … count) that are in the closed box, by the same test and
- * in the same order, to kept, which may be list. Returns how many. O(count). */
-size_t tm_surface_cull(const tm_surface *surface, const uint32_t *list, size_t count,
-                       const double low[3], const double high[3], uint32_t *kept);
-
 #endif
