@@ -27,6 +27,12 @@ CXXFLAGS = -O2 -g
 WARNINGS = -Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes -Werror
 LDLIBS = -lgmp -lz -lm -lpthread
 
+# MPI, which p4est needs; for another one than Open MPI set both. A program that does not
+# use p4est is not linked with it.
+MPI_CFLAGS := $(shell mpicc --showme:compile)
+MPI_LDLIBS := $(shell mpicc --showme:link)
+LDLIBS += -Wl,--as-needed -lp4est -lsc $(MPI_LDLIBS) -Wl,--no-as-needed
+
 FUZZ_CASES = 20000
 BUILD = build
 
@@ -41,7 +47,8 @@ endif
 
 # -ffp-contract=off: the same bytes on every machine.
 TM_CFLAGS = -std=c17 -D_GNU_SOURCE -DTM_VERSION='"$(VERSION)"' -ffp-contract=off \
-	$(WARNINGS) $(SANITIZE) -I$(BUILD)/generated $(CFLAGS)
+	$(WARNINGS) $(SANITIZE) -I$(BUILD)/generated \
+	$(patsubst -I%,-isystem %,$(MPI_CFLAGS)) $(CFLAGS)
 
 filters := $(basename $(notdir $(wildcard cmd/*.c)))
 bin := $(filters:%=$(BUILD)/bin/%)
