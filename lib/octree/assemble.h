@@ -24,6 +24,7 @@ typedef struct tm_assembly {
     size_t core; /* nodes of the octree come first, then the outer ones, then middles */
     size_t middles;
     uint32_t *middle_leaf; /* [middles]: the leaf that it is the centre of */
+    uint32_t *core_node; /* [nodes of the octree]: of the mesh, or TM_NONE */
     uint32_t *grid_node; /* [core]: of the octree */
 } tm_assembly;
 

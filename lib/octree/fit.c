@@ -3,6 +3,7 @@
 
 #include "../base/array.h"
 #include "../mixed/element_edges.h"
+#include "grade.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -241,9 +242,9 @@ static void average(const zone *z, tm_mixed_mesh *mesh)
         }
 }
 
-tm_status tm_fit(tm_assembly *assembly, const tm_octree *octree, const tm_skin *skin,
-                 const tm_feature *feature, const tm_surface *surface,
-                 tm_surface_point *at, tm_error *error)
+tm_status tm_fit(tm_assembly *assembly, const tm_octree *octree, const tm_solid *solid,
+                 const tm_skin *skin, const tm_feature *feature,
+                 const tm_surface *surface, tm_surface_point *at, tm_error *error)
 {
     const fitter fit = {assembly, skin, feature, surface, at};
     double(*xyz)[3] = assembly->mesh.xyz;
@@ -254,7 +255,9 @@ tm_status tm_fit(tm_assembly *assembly, const tm_octree *octree, const tm_skin *
     for (size_t i = 0; i < assembly->middles; i++)
         tm_leaf_centre(octree, &octree->leaf[assembly->middle_leaf[i]],
                        xyz[assembly->core + skin->nodes + i]);
-    tm_status status = find_moving(&fit, &z, error);
+    tm_status status = tm_grade(assembly, octree, solid, error);
+    if (status == TM_OK)
+        status = find_moving(&fit, &z, error);
     if (status == TM_OK)
         status = find_neighbours(&z, &assembly->mesh, error);
     if (status == TM_OK)
