@@ -104,6 +104,7 @@ void tm_surface_free(tm_surface *surface)
     free(surface->curve_start);
     free(surface->curve_node);
     free(surface->curve_patch);
+    free(surface->curve_length);
     free(surface->corner);
     tm_surface_tree_free(surface->tree);
     *surface = (tm_surface){0};

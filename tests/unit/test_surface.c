@@ -114,8 +114,8 @@ static void test_inside_on_lattice(void **state)
         build(&s, &p, &strict);
         assert_topology(&s, 3, 6);
         for (int i = 0; i < 13 * 13 * 13; i++) {
-            const double x = i % 13 * 0.5 - 1, y = i / 13 % 13 * 0.5 - 1;
-            const double z = i / 169 * 0.5 - 1;
+            const int column = i % 13, row = i / 13 % 13, layer = i / 169;
+            const double x = column * 0.5 - 1, y = row * 0.5 - 1, z = layer * 0.5 - 1;
             const double least = fmin(x, fmin(y, z)), most = fmax(x, fmax(y, z));
             bool on = false, inside = least > 0 && most < 4;
             for (int hole = 1; hole <= 2; hole++) {
@@ -446,6 +446,7 @@ static void test_curves(void **state)
         assert_int_equal(s.curve_start[c + 1] - s.curve_start[c], k + 1);
         assert_int_equal(s.curve_node[s.curve_start[c]],
                          s.curve_node[s.curve_start[c + 1] - 1]);
+        assert_near(s.curve_length[c], 2 * k * sin(shapes_pi / k), 1e-12);
     }
     tm_surface_free(&s);
 
