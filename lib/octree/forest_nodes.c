@@ -7,6 +7,7 @@
 #include "forest.h"
 
 #include "../base/array.h"
+#include "p4est_call.h"
 
 #include <p8est_iterate.h>
 #include <stdlib.h>
@@ -15,6 +16,7 @@ typedef struct numbering {
     uint32_t (*node)[TM_LEAF_NODES];
     size_t *first; /* [roots]: its first leaf */
     size_t nodes;
+    p8est_t *forest;
 } numbering;
 
 static void number_corner(p8est_iter_corner_info_t *info, void *user)
@@ -113,19 +115,17 @@ static tm_status place_nodes(tm_octree *octree, tm_error *error)
     return TM_OK;
 }
 
-static void iterate(numbering *n, p8est_t *forest)
+static void iterate(void *user)
 {
-    const size_t trees = forest->trees->elem_count;
-    for (size_t t = 0; t < trees; t++)
-        n->first[t] = (size_t)p8est_tree_array_index(forest->trees, (p4est_topidx_t)t)
-                          ->quadrants_offset;
-    p8est_iterate(forest, NULL, n, NULL, number_face, number_edge, number_corner);
+    numbering *n = user;
+    p8est_iterate(n->forest, NULL, n, NULL, number_face, number_edge, number_corner);
 }
 
 tm_status tm_forest_nodes(tm_octree *octree, p8est_t *forest, tm_error *error)
 {
     numbering n = {.node = tm_new(octree->leaves, sizeof *octree->node),
-                   .first = tm_new(forest->trees->elem_count, sizeof *n.first)};
+                   .first = tm_new(forest->trees->elem_count, sizeof *n.first),
+                   .forest = forest};
     octree->node = n.node;
     if (!n.node || !n.first) {
         free(n.first);
@@ -134,8 +134,13 @@ tm_status tm_forest_nodes(tm_octree *octree, p8est_t *forest, tm_error *error)
     for (size_t i = 0; i < octree->leaves; i++)
         for (int place = TM_LEAF_EDGE; place < TM_LEAF_NODES; place++)
             n.node[i][place] = TM_NONE;
-    iterate(&n, forest);
+    for (size_t t = 0; t < forest->trees->elem_count; t++)
+        n.first[t] = (size_t)p8est_tree_array_index(forest->trees, (p4est_topidx_t)t)
+                         ->quadrants_offset;
+    const tm_status status = tm_p4est_call(iterate, &n, error);
     free(n.first);
+    if (status != TM_OK)
+        return status;
     octree->nodes = n.nodes;
     if (n.nodes >= TM_NONE)
         return tm_fail(error, TM_ERROR_INPUT, "the octree has more than %u nodes",
