@@ -58,7 +58,7 @@ static void inflate(void *user)
     sc_array_t *quadrants = sc_array_new_count(sizeof(p4est_qcoord_t), FIELDS * count);
     deflate(in, (p4est_qcoord_t *)(void *)quadrants->array);
     const p4est_gloidx_t first[2] = {0, (p4est_gloidx_t)count};
-    in->forest = p8est_inflate(sc_MPI_COMM_WORLD, in->brick->trees, first, in->until,
+    in->forest = p8est_inflate(sc_MPI_COMM_SELF, in->brick->trees, first, in->until,
                                quadrants, NULL, NULL);
     sc_array_destroy(quadrants);
 }

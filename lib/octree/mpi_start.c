@@ -49,6 +49,8 @@ static bool choose_components(void)
     static const char *const choice[][2] = {{"OMPI_MCA_pml", "ob1"},
                                             {"OMPI_MCA_btl", "self"},
                                             {"OMPI_MCA_ess_singleton_isolated", "1"},
+                                            {"OMPI_MCA_orte_create_session_dirs", "0"},
+                                            {"OMPI_MCA_shmem", "mmap"},
                                             {"HWLOC_COMPONENTS", "no_os,stop"}};
     for (size_t i = 0; i < sizeof choice / sizeof *choice; i++)
         if (setenv(choice[i][0], choice[i][1], 0) != 0)
@@ -83,7 +85,7 @@ tm_status tm_mpi_start(tm_error *error)
         return tm_fail(error, TM_ERROR_SYSTEM, "MPI does not start");
     if (atexit(finish) != 0)
         return tm_fail_memory(error);
-    sc_init(MPI_COMM_WORLD, 0, 0, NULL, SC_LP_SILENT);
+    sc_init(MPI_COMM_SELF, 0, 0, NULL, SC_LP_SILENT);
     p4est_init(NULL, SC_LP_SILENT);
     return TM_OK;
 }
