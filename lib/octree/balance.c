@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "forest.h"
+#include "balance.h"
 
 #include "../base/array.h"
 #include "p4est_call.h"
@@ -135,19 +135,28 @@ static void replace(tm_leaf_list *leaves, tm_leaf *now, p8est_t *forest,
     *leaves = (tm_leaf_list){.count = count, .room = count, .leaf = now};
 }
 
-tm_status tm_forest_balance(p8est_t **forest, tm_leaf_list *leaves,
-                            const tm_octree *octree, const tm_brick *brick,
-                            const tm_surface *surface, tm_error *error)
+static tm_status take_leaves(tm_leaf_list *leaves, p8est_t *forest,
+                             const tm_octree *octree, const tm_brick *brick,
+                             const tm_surface *surface, tm_error *error)
 {
-    const tm_status status = plant(forest, leaves, brick, error);
-    if (status != TM_OK)
-        return status;
-    const size_t count = (size_t)(*forest)->local_num_quadrants;
+    const size_t count = (size_t)forest->local_num_quadrants;
     if (count == leaves->count)
         return TM_OK;
     tm_leaf *now = tm_new(count, sizeof *now);
     if (!now)
         return tm_fail_memory(error);
-    replace(leaves, now, *forest, octree, brick, surface);
+    replace(leaves, now, forest, octree, brick, surface);
     return TM_OK;
+}
+
+tm_status tm_balance(tm_leaf_list *leaves, const tm_octree *octree, const tm_brick *brick,
+                     const tm_surface *surface, tm_error *error)
+{
+    p8est_t *forest = NULL;
+    tm_status status = plant(&forest, leaves, brick, error);
+    if (status != TM_OK)
+        return status;
+    status = take_leaves(leaves, forest, octree, brick, surface, error);
+    p8est_destroy(forest);
+    return status;
 }
