@@ -7,26 +7,23 @@
 #include "../mixed/mixed_mesh.h"
 #include "skin.h"
 
-/* A cut face is the triangles triangle[0] and triangle[1] of its corners. */
-typedef struct tm_cut_face {
-    uint8_t triangle[2][3];
-} tm_cut_face;
-
-/* Indexed by tm_cut. The last two elements under the face have them, in that order. */
-extern const tm_cut_face tm_cut_faces[3];
-enum { TM_CUT_ELEMENTS = 7 };
+/* The triangles of a cut face, as its corners. Indexed by tm_cut. */
+extern const uint8_t tm_cut_triangles[3][2][3];
 
 /* Node s of the skin is there twice: inner[s] belongs to the leaves, outer + s to the
  * boundary. Between a face of the skin and its copy is a wedge or a hexahedron, or, where
- * the face is cut, pyramids and tetrahedra around a node in the middle. */
+ * the face is cut, two wedges. A leaf with a cut face is divided from its centre. */
 typedef struct tm_assembly {
     tm_mixed_mesh mesh;
-    size_t *first;   /* [leaves + 1]: leaf l has the elements first[l] … first[l + 1) */
+    double (*base)[3]; /* [nodes]: where they are at first; there all elements are valid */
+    uint32_t *first; /* [leaves + 1]: leaf l has the elements first[l] … first[l + 1) */
     uint32_t *layer; /* [faces of the skin]: the element under it; of a cut face the first of
-                        seven, the last two of which have the face's triangles */
+                        the two */
     uint32_t *inner; /* [nodes of the skin] */
     uint32_t outer;
     size_t core; /* nodes of the octree come first, then the outer ones, then middles */
+    size_t middles;
+    uint32_t *middle_leaf; /* [middles]: the leaf that it is the centre of */
     uint32_t *grid_node; /* [core]: of the octree */
 } tm_assembly;
 

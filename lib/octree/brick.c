@@ -12,6 +12,9 @@
 static const double cube_of_shortest = 1.01;
 static const double beyond = 1e-4;
 
+/* p4est needs some hundred bytes for each. */
+static const size_t roots_max = (size_t)1 << 20;
+
 static double cube_side(const double extent[3])
 {
     const double shortest = fmin(extent[0], fmin(extent[1], extent[2]));
@@ -45,6 +48,9 @@ tm_status tm_brick_over(tm_brick *brick, const double low[3], const double high[
 tm_status tm_brick_fill(tm_brick *brick, tm_error *error)
 {
     brick->count = (size_t)brick->roots[0] * brick->roots[1] * brick->roots[2];
+    if (brick->count > roots_max)
+        return tm_fail(error, TM_ERROR_INPUT, "%zu root cubes are too many (%zu)",
+                       brick->count, roots_max);
     brick->root = tm_new(brick->count, sizeof *brick->root);
     if (!brick->root)
         return tm_fail_memory(error);
@@ -57,6 +63,14 @@ tm_status tm_brick_fill(tm_brick *brick, tm_error *error)
             brick->root[r][i] = (uint32_t)brick->trees->vertices[3 * v + i];
     }
     return TM_OK;
+}
+
+tm_status tm_brick_of(tm_brick *brick, const tm_octree *octree, tm_error *error)
+{
+    *brick = (tm_brick){.low = {octree->low[0], octree->low[1], octree->low[2]},
+                        .side = octree->side,
+                        .roots = {octree->roots[0], octree->roots[1], octree->roots[2]}};
+    return tm_brick_fill(brick, error);
 }
 
 void tm_brick_free(tm_brick *brick)

@@ -3,20 +3,20 @@
 #ifndef TM_OCTREE_BRICK_H
 #define TM_OCTREE_BRICK_H
 
-#include "../base/error.h"
+#include "octree.h"
 
 #include <stddef.h>
 #include <stdint.h>
 
-/* Roots along one axis, at most. */
-enum { TM_BRICK_LONGEST = 32 };
+/* Roots along one axis, at most: over a box; and so that 32-bit coordinates do. */
+enum { TM_BRICK_LONGEST = 32, TM_BRICK_ROOTS = 4096 };
 
 typedef struct tm_brick {
     double low[3];
     double side;
-    uint32_t roots[3];                /* along each axis */
-    size_t count;                     /* their product */
-    uint32_t (*root)[3];              /* [count]: each one's place, in p4est's order */
+    uint32_t roots[3];   /* along each axis */
+    size_t count;        /* their product */
+    uint32_t (*root)[3]; /* [count]: each one's place, in Z order, which is p4est's */
     struct p8est_connectivity *trees; /* p4est's brick */
 } tm_brick;
 
@@ -31,6 +31,9 @@ tm_status tm_brick_over(tm_brick *brick, const double low[3], const double high[
 
 /* A brick with low, side and roots given; fills the rest. TM_ERROR_SYSTEM: memory. */
 tm_status tm_brick_fill(tm_brick *brick, tm_error *error);
+
+/* The brick that an octree is on. */
+tm_status tm_brick_of(tm_brick *brick, const tm_octree *octree, tm_error *error);
 
 void tm_brick_free(tm_brick *brick);
 

@@ -108,62 +108,12 @@ static uint32_t *corner_table(const tm_surface *surface)
 }
 
 /* Joins the patches on the two sides of a curve. */
-static void join_patches(const tm_surface *surface, const uint32_t *side,
-                         uint32_t *parent, uint32_t curve)
+static void join_patches(const tm_surface *surface, uint32_t *parent, uint32_t curve)
 {
-    const uint32_t a = tm_set_root(parent, side[2 * curve]);
-    const uint32_t b = tm_set_root(parent, side[2 * curve + 1]);
-    (void)surface;
+    const uint32_t a = tm_set_root(parent, surface->curve_patch[curve][0]);
+    const uint32_t b = tm_set_root(parent, surface->curve_patch[curve][1]);
     if (a != b)
         parent[a > b ? a : b] = a > b ? b : a;
-}
-
-/* The patches on both sides of each curve, by a pass over the triangles' edges. */
-static tm_status find_sides(const tm_surface *surface, uint32_t **side, tm_error *error)
-{
-    uint32_t *curve_of = tm_new(surface->nodes, sizeof *curve_of); /* first edge's node */
-    *side = tm_new(2 * surface->curves, sizeof **side);
-    uint32_t *first = tm_new(2 * surface->curves, sizeof *first);
-    if (!curve_of || !*side || !first) {
-        free(curve_of);
-        free(first);
-        return tm_fail_memory(error);
-    }
-    /* A curve's second node, or its only inner ones, are of no other curve; of a curve of
-     * one segment both ends are looked for. */
-    for (size_t c = 0; c < surface->curves; c++) {
-        first[2 * c] = surface->curve_node[surface->curve_start[c]];
-        first[2 * c + 1] = surface->curve_node[surface->curve_start[c] + 1];
-        (*side)[2 * c] = (*side)[2 * c + 1] = TM_NONE;
-    }
-    for (size_t n = 0; n < surface->nodes; n++)
-        curve_of[n] = TM_NONE;
-    /* Curves that begin at a node: a chain through next[]. */
-    uint32_t *next = tm_new(surface->curves, sizeof *next);
-    if (!next) {
-        free(curve_of);
-        free(first);
-        return tm_fail_memory(error);
-    }
-    for (size_t c = surface->curves; c-- > 0;) {
-        next[c] = curve_of[first[2 * c]];
-        curve_of[first[2 * c]] = (uint32_t)c;
-    }
-    for (size_t t = 0; t < surface->triangles; t++)
-        for (unsigned i = 0; i < 3; i++) {
-            const uint32_t a = surface->triangle[t][i];
-            const uint32_t b = surface->triangle[t][(i + 1) % 3];
-            for (uint32_t c = curve_of[a]; c != TM_NONE; c = next[c])
-                if (first[2 * c + 1] == b)
-                    (*side)[2 * c] = surface->patch[t];
-            for (uint32_t c = curve_of[b]; c != TM_NONE; c = next[c])
-                if (first[2 * c + 1] == a)
-                    (*side)[2 * c + 1] = surface->patch[t];
-        }
-    free(curve_of);
-    free(first);
-    free(next);
-    return TM_OK;
 }
 
 static tm_status find_curves(finder *find, tm_surface *surface, tm_error *error)
@@ -171,9 +121,7 @@ static tm_status find_curves(finder *find, tm_surface *surface, tm_error *error)
     tm_feature *feature = find->path.feature;
     uint32_t *corner_of = corner_table(surface);
     uint32_t *parent = tm_new(surface->patches, sizeof *parent);
-    uint32_t *side = NULL;
-    tm_status status =
-        corner_of && parent ? find_sides(surface, &side, error) : tm_fail_memory(error);
+    tm_status status = corner_of && parent ? TM_OK : tm_fail_memory(error);
     for (size_t p = 0; parent && p < surface->patches; p++)
         parent[p] = (uint32_t)p;
     for (uint32_t c = 0; status == TM_OK && c < surface->curves; c++) {
@@ -190,14 +138,13 @@ static tm_status find_curves(finder *find, tm_surface *surface, tm_error *error)
         if (status == TM_OK && !found) {
             feature->curves_lost++;
             feature->lost = node[last / 2];
-            join_patches(surface, side, parent, c);
+            join_patches(surface, parent, c);
         }
     }
     for (size_t t = 0; status == TM_OK && t < surface->triangles; t++)
         surface->patch[t] = tm_set_root(parent, surface->patch[t]);
     free(corner_of);
     free(parent);
-    free(side);
     return status;
 }
 

@@ -2,9 +2,7 @@
 #include "fit.h"
 
 #include "../base/array.h"
-#include "../geom/vector.h"
 #include "../mixed/element_edges.h"
-#include "../quality/jens.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -93,27 +91,8 @@ typedef struct {
     uint32_t *node;
     size_t *start; /* [nodes + 1] */
     uint32_t *neighbour;
-    double *weight; /* of each neighbour */
+    double (*bias)[3]; /* [nodes]: what the mean of the neighbours lacks on the lattice */
 } zone;
-
-/* About the volume of an element: the mean of the determinants at its corners is that of a
- * hexahedron, twice that of a wedge, about three times that of a pyramid and six times
- * that of a tetrahedron. */
-static double volume_of(const tm_mixed_mesh *mesh, const double (*xyz)[3], size_t e)
-{
-    static const double part[] = {[4] = 1 / 6., [5] = 1 / 3., [6] = 1 / 2., [8] = 1};
-    const size_t k = mesh->start[e + 1] - mesh->start[e];
-    const uint32_t *item = mesh->item + mesh->start[e];
-    const tm_element_shape *shape = &tm_element_shapes[k];
-    const size_t corners = k == 5 ? 4 : k;
-    double sum = 0;
-    for (size_t c = 0; c < corners; c++) {
-        const unsigned char *n = shape->node[c];
-        sum += 6 * tm_tet_volume(xyz[item[n[0]]], xyz[item[n[1]]], xyz[item[n[2]]],
-                                 xyz[item[n[3]]]);
-    }
-    return part[k] * sum / (double)corners;
-}
 
 static bool has_moving(const zone *z, const tm_mixed_mesh *mesh, size_t e)
 {
@@ -172,30 +151,21 @@ static void count_edges(zone *z, const tm_mixed_mesh *mesh, size_t e)
         }
 }
 
-/* Enters them, with the element's volume over the square of the edge's length: the sum over
- * the elements around an edge is as a spring of a solid's stiffness has it, soft along long
- * edges and stiff along short ones. */
-static void enter_edges(zone *z, const tm_mixed_mesh *mesh, const double (*xyz)[3],
-                        size_t e)
+static void enter_edges(zone *z, const tm_mixed_mesh *mesh, size_t e)
 {
     const uint32_t *item = mesh->item + mesh->start[e];
     const tm_element_edges *edges =
         tm_element_edges_of((unsigned)(mesh->start[e + 1] - mesh->start[e]));
-    const double volume = volume_of(mesh, xyz, e);
     for (unsigned i = 0; i < edges->count; i++)
         for (unsigned end = 0; end < 2; end++) {
-            const uint32_t to = item[edges->edge[i][1 - end]];
             const uint32_t from = z->order[item[edges->edge[i][end]]];
-            if (from == TM_NONE)
-                continue;
-            const size_t at = z->start[from + 1]++;
-            z->neighbour[at] = to;
-            z->weight[at] = volume / tm_distance2(xyz[z->node[from]], xyz[to]);
+            if (from != TM_NONE)
+                z->neighbour[z->start[from + 1]++] = item[edges->edge[i][1 - end]];
         }
 }
 
-/* Adds up the weights of equal neighbours. */
-static void merge_repeats(zone *z)
+/* Drops all but the first of equal neighbours. */
+static void drop_repeats(zone *z)
 {
     size_t kept = 0, begin = 0;
     for (size_t n = 0; n < z->nodes; n++) {
@@ -204,19 +174,15 @@ static void merge_repeats(zone *z)
             size_t j = first;
             while (j < kept && z->neighbour[j] != z->neighbour[i])
                 j++;
-            if (j == kept) {
-                z->neighbour[kept] = z->neighbour[i];
-                z->weight[kept++] = 0;
-            }
-            z->weight[j] += z->weight[i];
+            if (j == kept)
+                z->neighbour[kept++] = z->neighbour[i];
         }
         begin = end;
         z->start[n + 1] = kept;
     }
 }
 
-static tm_status find_neighbours(zone *z, const tm_mixed_mesh *mesh,
-                                 const double (*xyz)[3], tm_error *error)
+static tm_status find_neighbours(zone *z, const tm_mixed_mesh *mesh, tm_error *error)
 {
     for (size_t e = 0; e < mesh->elements; e++)
         if (has_moving(z, mesh, e))
@@ -224,53 +190,83 @@ static tm_status find_neighbours(zone *z, const tm_mixed_mesh *mesh,
     for (size_t n = 0; n <= z->nodes; n++)
         z->start[n + 1] += z->start[n];
     z->neighbour = tm_new(z->start[z->nodes + 1], sizeof *z->neighbour);
-    z->weight = tm_new(z->start[z->nodes + 1], sizeof *z->weight);
-    if (!z->neighbour || !z->weight)
+    if (!z->neighbour)
         return tm_fail_memory(error);
     for (size_t e = 0; e < mesh->elements; e++)
         if (has_moving(z, mesh, e))
-            enter_edges(z, mesh, xyz, e);
-    merge_repeats(z);
+            enter_edges(z, mesh, e);
+    drop_repeats(z);
     return TM_OK;
 }
 
-/* How far each node has gone from where it began is averaged, not its place: so what is
- * unequal on the lattice, at small neighbours of large leaves, stays in shape. */
-static void average(const zone *z, tm_mixed_mesh *mesh, const double (*from)[3])
+/* The mean of a node's neighbours. */
+static void mean_of(const zone *z, size_t n, const double (*xyz)[3], double mean[3])
+{
+    const size_t count = z->start[n + 1] - z->start[n];
+    double sum[3] = {0, 0, 0};
+    for (size_t i = z->start[n]; i < z->start[n + 1]; i++)
+        for (int j = 0; j < 3; j++)
+            sum[j] += xyz[z->neighbour[i]][j];
+    for (int j = 0; j < 3; j++)
+        mean[j] = sum[j] / (double)count;
+}
+
+/* A node below the skin that has smaller neighbours on one side only is not at their mean
+ * on the lattice, and is to stay so. */
+static tm_status find_bias(const fitter *fit, zone *z, tm_error *error)
+{
+    const tm_assembly *a = fit->assembly;
+    z->bias = calloc(z->nodes + 1, sizeof *z->bias);
+    if (!z->bias)
+        return tm_fail_memory(error);
+    for (size_t n = 0; n < z->nodes; n++) {
+        const double *at = a->mesh.xyz[z->node[n]];
+        mean_of(z, n, (const double(*)[3])a->mesh.xyz, z->bias[n]);
+        for (int j = 0; j < 3; j++)
+            z->bias[n][j] = at[j] - z->bias[n][j];
+    }
+    for (size_t s = 0; s < fit->skin->nodes; s++)
+        memset(z->bias[z->order[a->inner[s]]], 0, sizeof *z->bias);
+    return TM_OK;
+}
+
+static void average(const zone *z, tm_mixed_mesh *mesh)
 {
     for (int sweep = 0; sweep < CORE_SWEEPS; sweep++)
         for (size_t n = 0; n < z->nodes; n++) {
-            double sum[3] = {0, 0, 0};
-            double weights = 0;
-            for (size_t i = z->start[n]; i < z->start[n + 1]; i++) {
-                const uint32_t m = z->neighbour[i];
-                weights += z->weight[i];
-                for (int j = 0; j < 3; j++)
-                    sum[j] += z->weight[i] * (mesh->xyz[m][j] - from[m][j]);
-            }
+            double mean[3];
+            mean_of(z, n, (const double(*)[3])mesh->xyz, mean);
             for (int j = 0; j < 3; j++)
-                mesh->xyz[z->node[n]][j] = from[z->node[n]][j] + sum[j] / weights;
+                mesh->xyz[z->node[n]][j] = mean[j] + z->bias[n][j];
         }
 }
 
-tm_status tm_fit(tm_assembly *assembly, const tm_skin *skin, const tm_feature *feature,
-                 const tm_surface *surface, tm_surface_point *at, tm_error *error)
+tm_status tm_fit(tm_assembly *assembly, const tm_octree *octree, const tm_skin *skin,
+                 const tm_feature *feature, const tm_surface *surface,
+                 tm_surface_point *at, tm_error *error)
 {
     const fitter fit = {assembly, skin, feature, surface, at};
+    double(*xyz)[3] = assembly->mesh.xyz;
     zone z = {0};
-    double(*from)[3] = malloc(assembly->mesh.nodes * sizeof *from);
-    memcpy(from, assembly->mesh.xyz, assembly->mesh.nodes * sizeof *from);
-    fit_skin(&fit);
+    /* The lattice as it was before there was a layer. */
+    for (size_t s = 0; s < skin->nodes; s++)
+        memcpy(xyz[assembly->inner[s]], xyz[assembly->outer + s], sizeof *xyz);
+    for (size_t i = 0; i < assembly->middles; i++)
+        tm_leaf_centre(octree, &octree->leaf[assembly->middle_leaf[i]],
+                       xyz[assembly->core + skin->nodes + i]);
     tm_status status = find_moving(&fit, &z, error);
     if (status == TM_OK)
-        status = find_neighbours(&z, &assembly->mesh, (const double(*)[3])from, error);
+        status = find_neighbours(&z, &assembly->mesh, error);
     if (status == TM_OK)
-        average(&z, &assembly->mesh, (const double(*)[3])from);
-    free(from);
+        status = find_bias(&fit, &z, error);
+    if (status == TM_OK) {
+        fit_skin(&fit);
+        average(&z, &assembly->mesh);
+    }
     free(z.order);
     free(z.node);
     free(z.start);
     free(z.neighbour);
-    free(z.weight);
+    free(z.bias);
     return status;
 }

@@ -96,7 +96,7 @@ static bool crossed(const tm_leaf *leaf, const tm_leaf *old, const tm_octree *oc
     if (!old->crossed || leaf->level == old->level)
         return old->crossed;
     double low[3], high[3];
-    tm_octree_box(octree, leaf->anchor, leaf->level, low, high);
+    tm_octree_box(octree, leaf->anchor, tm_leaf_shift(leaf), low, high);
     return tm_surface_meets_box(surface, low, high);
 }
 

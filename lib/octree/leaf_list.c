@@ -3,17 +3,14 @@
 
 #include "../base/array.h"
 
-/* p4est counts with 31 bits; balance needs some of them. */
-static const size_t leaves_max = (size_t)1 << 30;
-
 tm_status tm_leaf_list_add(tm_leaf_list *list, const uint32_t anchor[3], unsigned level,
                            bool crossed, tm_error *error)
 {
     if (list->count == list->room) {
-        if (list->count >= leaves_max)
+        if (list->count >= TM_LEAVES_MAX)
             return tm_fail(error, TM_ERROR_INPUT,
                            "the octree has more than %zu leaves (ask for lower levels)",
-                           leaves_max);
+                           TM_LEAVES_MAX);
         tm_leaf *grown =
             tm_grow(list->leaf, &list->room, list->count + 1, sizeof *list->leaf);
         if (!grown)

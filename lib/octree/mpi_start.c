@@ -5,6 +5,29 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
+/* What Open MPI does not free is not ours. */
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/lsan_interface.h>
+
+const char *__lsan_default_suppressions(void)
+{
+    return "leak:libmpi";
+}
+
+const char *__lsan_default_options(void)
+{
+    return "print_suppressions=0";
+}
+#else
+static void __lsan_disable(void)
+{
+}
+
+static void __lsan_enable(void)
+{
+}
+#endif
+
 /* What a launcher sets: Open MPI's, PMIx's, PMI's. */
 static bool launched(void)
 {
@@ -15,13 +38,14 @@ static bool launched(void)
     return false;
 }
 
-/* Components of Open MPI, as variables of the environment; those that the user has set
- * stay. */
+/* Components of Open MPI, and of hwloc, which it asks for the machine's devices, as
+ * variables of the environment; those that the user has set stay. */
 static bool choose_components(void)
 {
     static const char *const choice[][2] = {{"OMPI_MCA_pml", "ob1"},
                                             {"OMPI_MCA_btl", "self"},
-                                            {"OMPI_MCA_ess_singleton_isolated", "1"}};
+                                            {"OMPI_MCA_ess_singleton_isolated", "1"},
+                                            {"HWLOC_COMPONENTS", "no_os,stop"}};
     for (size_t i = 0; i < sizeof choice / sizeof *choice; i++)
         if (setenv(choice[i][0], choice[i][1], 0) != 0)
             return false;
@@ -32,8 +56,11 @@ static void finish(void)
 {
     int ended = 0;
     MPI_Finalized(&ended);
-    if (!ended)
-        MPI_Finalize();
+    if (ended)
+        return;
+    __lsan_disable();
+    MPI_Finalize();
+    __lsan_enable();
 }
 
 tm_status tm_mpi_start(tm_error *error)
@@ -45,7 +72,10 @@ tm_status tm_mpi_start(tm_error *error)
     if (!launched() && !choose_components())
         return tm_fail_memory(error);
     int got = 0;
-    if (MPI_Init_thread(NULL, NULL, MPI_THREAD_FUNNELED, &got) != MPI_SUCCESS)
+    __lsan_disable();
+    const int status = MPI_Init_thread(NULL, NULL, MPI_THREAD_FUNNELED, &got);
+    __lsan_enable();
+    if (status != MPI_SUCCESS)
         return tm_fail(error, TM_ERROR_SYSTEM, "MPI does not start");
     if (atexit(finish) != 0)
         return tm_fail_memory(error);

@@ -52,8 +52,8 @@ static tm_status split_leaf(tm_leaf_list *out, const tm_octree *octree,
     for (unsigned c = 0; c < 8 && status == TM_OK; c++) {
         uint32_t child[3];
         double low[3], high[3];
-        tm_octree_child(leaf->anchor, leaf->level, c, child);
-        tm_octree_box(octree, child, level, low, high);
+        tm_octree_child(leaf->anchor, tm_leaf_shift(leaf), c, child);
+        tm_octree_box(octree, child, tm_leaf_shift(leaf) - 1, low, high);
         const bool crossed = leaf->crossed && tm_surface_meets_box(surface, low, high);
         status = tm_leaf_list_add(out, child, level, crossed, error);
     }
@@ -132,8 +132,7 @@ static tm_status build(tm_octree *octree, tm_leaf_list *leaves, const tm_brick *
                        const tm_surface *surface, const tm_octree_rule *rule,
                        size_t rules, tm_error *error)
 {
-    tm_status status =
-        tm_octree_descend(leaves, octree, brick, surface, rule, rules, error);
+    tm_status status = tm_octree_descend(leaves, octree, surface, rule, rules, error);
     p8est_t *forest = NULL;
     if (status == TM_OK)
         status = tm_forest_balance(&forest, leaves, octree, brick, surface, error);
@@ -155,10 +154,10 @@ tm_status tm_octree_build(tm_octree *octree, const tm_surface *surface,
                           const tm_octree_rule *rule, size_t rules, tm_error *error)
 {
     *octree = (tm_octree){.leaves = 0};
-    tm_brick brick;
     tm_status status = tm_mpi_start(error);
     if (status != TM_OK)
         return status;
+    tm_brick brick;
     status = tm_brick_over(&brick, surface->low, surface->high, error);
     tm_leaf_list leaves = {.count = 0};
     if (status == TM_OK) {
@@ -172,20 +171,11 @@ tm_status tm_octree_build(tm_octree *octree, const tm_surface *surface,
     return status;
 }
 
-/* The brick that an octree is on. */
-static tm_status brick_of(tm_brick *brick, const tm_octree *octree, tm_error *error)
-{
-    *brick = (tm_brick){.low = {octree->low[0], octree->low[1], octree->low[2]},
-                        .side = octree->side,
-                        .roots = {octree->roots[0], octree->roots[1], octree->roots[2]}};
-    return tm_brick_fill(brick, error);
-}
-
 tm_status tm_octree_refine(tm_octree *octree, const tm_surface *surface,
                            const uint8_t *split, tm_error *error)
 {
     tm_brick brick;
-    tm_status status = brick_of(&brick, octree, error);
+    tm_status status = tm_brick_of(&brick, octree, error);
     tm_octree now = on_brick(&brick);
     tm_leaf_list leaves = {.count = 0};
     p8est_t *forest = NULL;

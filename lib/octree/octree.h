@@ -112,6 +112,15 @@ tm_status tm_octree_build(tm_octree *octree, const tm_surface *surface,
 tm_status tm_octree_refine(tm_octree *octree, const tm_surface *surface,
                            const uint8_t *split, tm_error *error);
 
+/* The octree of the leaves that are given, in any order, with octree->low, side and roots
+ * set and all else zero. They must fill the brick and be balanced: TM_ERROR_INPUT says
+ * which is not, by its number in the list. order[leaf] (order may be NULL) is the leaf's
+ * number in the list. With surface NULL no leaf is crossed. O(leaves log leaves),
+ * O(leaves) where they come in order. */
+tm_status tm_octree_from_leaves(tm_octree *octree, const tm_leaf *leaf, size_t leaves,
+                                const tm_surface *surface, uint32_t *order,
+                                tm_error *error);
+
 /* Frees the arrays; an octree of zeros is an empty one. */
 void tm_octree_free(tm_octree *octree);
 

@@ -128,7 +128,7 @@ static tm_status check_crossed(const checker *c, size_t i, const tm_surface *sur
 {
     double low[3], high[3];
     const tm_leaf *leaf = &c->octree->leaf[i];
-    tm_octree_box(c->octree, leaf->anchor, leaf->level, low, high);
+    tm_octree_box(c->octree, leaf->anchor, tm_leaf_shift(leaf), low, high);
     if (leaf->crossed != tm_surface_meets_box(surface, low, high))
         return wrong(
             c, i, leaf->crossed ? "is not crossed" : "is crossed, but does not say so");

@@ -2,6 +2,7 @@
 #include "octree_mesh_stream.h"
 
 #include "../base/array.h"
+#include "octree_stream.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -117,8 +118,8 @@ static tm_status give_facets(const tm_octree_mesh *m, const tm_surface *surface,
             continue;
         }
         for (uint32_t t = 0; t < 2; t++) {
-            const uint8_t *corner = tm_cut_faces[skin->cut[f]].triangle[t];
-            add_facet(&w, m, element + TM_CUT_ELEMENTS - 2 + t, marker, 3,
+            const uint8_t *corner = tm_cut_triangles[skin->cut[f]][t];
+            add_facet(&w, m, element + t, marker, 3,
                       (uint32_t[]){face[corner[0]], face[corner[1]], face[corner[2]]});
         }
     }
@@ -146,20 +147,6 @@ static tm_status give_surface(tm_surface *surface, tm_stream *stream, tm_error *
     return TM_OK;
 }
 
-/* Each leaf with its elements. */
-static tm_status give_octants(const tm_octree_mesh *m, const tm_octree *octree,
-                              tm_stream *stream, tm_error *error)
-{
-    const tm_status status = tm_octree_give(octree, stream, error);
-    tm_block *octant = tm_stream_find(stream, ".octant");
-    enum { FIRST = 4, PAST, WIDTH };
-    for (size_t l = 0; status == TM_OK && l < octree->leaves; l++) {
-        octant->integer[WIDTH * l + FIRST] = (uint32_t)m->assembly.first[l];
-        octant->integer[WIDTH * l + PAST] = (uint32_t)m->assembly.first[l + 1];
-    }
-    return status;
-}
-
 tm_status tm_octree_mesh_give(tm_octree_mesh *mesh, const tm_octree *octree,
                               tm_surface *surface, bool levels, tm_stream *stream,
                               tm_error *error)
@@ -173,7 +160,7 @@ tm_status tm_octree_mesh_give(tm_octree_mesh *mesh, const tm_octree *octree,
     if (status == TM_OK)
         status = give_elements(mesh, octree, levels, stream, error);
     if (status == TM_OK)
-        status = give_octants(mesh, octree, stream, error);
+        status = tm_octree_give_blocks(octree, mesh->assembly.first, stream, error);
     if (status == TM_OK)
         status = give_surface(surface, stream, error);
     return status;

@@ -12,7 +12,7 @@ typedef struct {
     const tm_solid *solid;
     tm_skin *skin;
     uint32_t *skin_node; /* [nodes of the octree]: TM_NONE where it is none */
-    size_t face_room, leaf_room;
+    size_t face_room, leaf_room, piece_room;
 } finder;
 
 tm_leaf_state tm_solid_leaf_state(const tm_solid *solid, const tm_octree *octree,
@@ -70,7 +70,7 @@ static unsigned corner_of(unsigned f, const tm_piece *piece)
 }
 
 static tm_status add_face(finder *find, size_t leaf, const tm_piece *piece,
-                          tm_error *error)
+                          unsigned which, tm_error *error)
 {
     tm_skin *skin = find->skin;
     void *face = tm_grow(skin->face, &find->face_room, skin->faces + 1, sizeof *skin->face);
@@ -81,6 +81,12 @@ static tm_status add_face(finder *find, size_t leaf, const tm_piece *piece,
     if (!leaves)
         return tm_fail_memory(error);
     skin->leaf = leaves;
+    void *pieces =
+        tm_grow(skin->piece, &find->piece_room, skin->faces + 1, sizeof *skin->piece);
+    if (!pieces)
+        return tm_fail_memory(error);
+    skin->piece = pieces;
+    skin->piece[skin->faces] = (uint8_t)which;
     uint32_t *corner = skin->face[skin->faces];
     corner[3] = TM_NONE;
     for (unsigned i = 0; i < piece->k; i++)
@@ -108,7 +114,7 @@ static tm_status add_faces_of(finder *find, size_t leaf, tm_error *error)
         for (unsigned i = 0; i < pieces; i++) {
             if (!is_open(find, leaf, f, corner_of(f, &piece[i])))
                 continue;
-            const tm_status status = add_face(find, leaf, &piece[i], error);
+            const tm_status status = add_face(find, leaf, &piece[i], TM_FACE_PIECES * f + i, error);
             if (status != TM_OK)
                 return status;
         }
@@ -156,6 +162,7 @@ void tm_skin_free(tm_skin *skin)
     free(skin->grid_node);
     free(skin->face);
     free(skin->leaf);
+    free(skin->piece);
     free(skin->cut);
     free(skin->around_start);
     free(skin->around);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Z order (Morton 1966) of the cells of a root cube's finest grid. */
+/* Z order (G. M. Morton, A computer oriented geodetic data base, 1966) of the cells of a
+ * root cube's finest grid. */
 #ifndef TM_OCTREE_Z_ORDER_H
 #define TM_OCTREE_Z_ORDER_H
 
