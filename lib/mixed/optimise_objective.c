@@ -59,7 +59,9 @@ double tm_cluster_value(tm_cluster *cluster, double sharpness)
             least = jens < least ? jens : least;
             if (jens >= target)
                 continue;
-            const double x = sharpness * (target - jens);
+            /* J_ENS rises again towards J_S = -1: not so here. */
+            const double value = jacobian[i] < 0 ? jacobian[i] / shape->k[i] : jens;
+            const double x = sharpness * (target - value);
             const double grown = expm1(x);
             cluster->sum += grown - x;
             cluster->corner[cluster->corners++] =
@@ -84,9 +86,9 @@ void tm_cluster_slope(const tm_cluster *cluster, double (*slope)[3])
         double part[4][3];
         tm_scaled_jacobian_slope(cluster->xyz[node[0]], cluster->xyz[node[1]],
                                  cluster->xyz[node[2]], cluster->xyz[node[3]], part);
+        const double k = shape->k[corner->corner];
         const double factor =
-            -corner->weight / (1 + cluster->sum) *
-            tm_jens_slope_of(corner->jacobian, shape->k[corner->corner]);
+            -corner->weight / (1 + cluster->sum) * (corner->jacobian <= k ? 1 / k : -1);
         for (size_t i = 0; i < 4; i++)
             for (size_t j = 0; node[i] < cluster->moving && j < 3; j++)
                 slope[node[i]][j] += factor * part[i][j];
