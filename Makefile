@@ -27,6 +27,12 @@ CXXFLAGS = -O2 -g
 WARNINGS = -Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes -Werror
 LDLIBS = -lgmp -lz -lm -lpthread
 
+# MPI, which p4est needs; for another one than Open MPI set both. A program that does not
+# use p4est is not linked with it.
+MPI_CFLAGS := $(shell mpicc --showme:compile)
+MPI_LDLIBS := $(shell mpicc --showme:link)
+LDLIBS += -Wl,--as-needed -lp4est -lsc $(MPI_LDLIBS) -Wl,--no-as-needed
+
 FUZZ_CASES = 20000
 BUILD = build
 
@@ -41,7 +47,8 @@ endif
 
 # -ffp-contract=off: the same bytes on every machine.
 TM_CFLAGS = -std=c17 -D_GNU_SOURCE -DTM_VERSION='"$(VERSION)"' -ffp-contract=off \
-	$(WARNINGS) $(SANITIZE) -I$(BUILD)/generated $(CFLAGS)
+	$(WARNINGS) $(SANITIZE) -I$(BUILD)/generated \
+	$(patsubst -I%,-isystem %,$(MPI_CFLAGS)) $(CFLAGS)
 
 filters := $(basename $(notdir $(wildcard cmd/*.c)))
 bin := $(filters:%=$(BUILD)/bin/%)
@@ -54,9 +61,10 @@ oracles := $(patsubst tests/oracle/%.cc,$(BUILD)/tests/%,$(wildcard tests/oracle
 fuzzer := $(BUILD)/fuzz/fuzz
 solver := $(BUILD)/vem/vem-poisson
 benchers := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/*.c))
-generated := $(BUILD)/generated/powers.h
+shapes := $(BUILD)/bench/shapes
+generated := $(BUILD)/generated/powers.h $(BUILD)/generated/transitions.h
 pages := $(wildcard man/*.[157])
-sources := $(wildcard lib/*/*.[ch] lib/*/*/*.c cmd/*.c cmd/common/*.[ch] tests/*/*.[ch] \
+sources := $(wildcard lib/*/*.[ch] lib/*/*/*.[ch] cmd/*.c cmd/common/*.[ch] tests/*/*.[ch] \
 	tests/*/*.cc examples/*.c)
 
 .PHONY: all tests check benchers bench fuzz lint format install uninstall clean
@@ -73,6 +81,11 @@ $(BUILD)/generated/%.h: $(BUILD)/generate/%
 $(BUILD)/generate/powers: lib/base/generate/powers.c
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $< $(LDFLAGS) $(LDLIBS)
+
+$(BUILD)/generate/transitions: $(wildcard lib/octree/generate/*.[ch]) \
+		lib/octree/face_pieces.c lib/octree/leaf_place.c lib/octree/transition.h
+	@mkdir -p $(@D)
+	$(CC) $(TM_CFLAGS) -o $@ $(filter %.c,$^) $(LDFLAGS) $(LDLIBS)
 
 $(BUILD)/%.o: %.c Makefile | $(generated)
 	@mkdir -p $(@D)
@@ -104,6 +117,10 @@ $(benchers): $(BUILD)/bench/%: $(BUILD)/tests/bench/%.o $(library)
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) $(LDLIBS)
 
+$(shapes): $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/shapes/*.c))
+	@mkdir -p $(@D)
+	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lm
+
 # Needs SuiteSparse; tests/cli/vem.bats and an example run it.
 $(solver): $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/vem/*.c)) $(library)
 	@mkdir -p $(@D)
@@ -125,7 +142,7 @@ fuzz:
 endif
 
 # What the benchmarks run; each is a script that can be run alone.
-benchers: all $(benchers)
+benchers: all $(benchers) $(shapes)
 
 bench: benchers
 	for bench in tests/bench/*.sh; do sh "$$bench" || exit; done

@@ -39,10 +39,11 @@ format() {
 }
 
 tidy() {
-    export build
+    mpi=$(mpicc --showme:compile | sed 's/-I/-isystem /g')
+    export build mpi
     # shellcheck disable=SC2016 # expanded by the inner shell
-    find lib cmd tests/unit tests/fuzz tests/vem -name '*.c' -print0 | xargs -0 -P "$(nproc)" -n 4 sh -c 'clang-tidy --quiet "$@" -- \
-        -std=c17 -D_GNU_SOURCE "-DTM_VERSION=\"lint\"" "-I$build/generated" 2>/dev/null' sh
+    find lib cmd tests/unit tests/fuzz tests/vem tests/shapes -name '*.c' -print0 | xargs -0 -P "$(nproc)" -n 4 sh -c 'clang-tidy --quiet "$@" -- \
+        -std=c17 -D_GNU_SOURCE "-DTM_VERSION=\"lint\"" "-I$build/generated" $mpi 2>/dev/null' sh
 }
 
 # The suppressions are wrong alarms of cppcheck: it does not follow a pointer into the

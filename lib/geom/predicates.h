@@ -61,6 +61,33 @@ static inline int tm_orient3d(const double a[3], const double b[3], const double
     return tm_orient3d_exact(a, b, c, d);
 }
 
+/* The sign of det(b-a, c-a) without the rounded shortcut. */
+static inline int tm_orient2d_exact(const double a[2], const double b[2],
+                                    const double c[2])
+{
+    const double a3[3] = {a[0], a[1], 0};
+    const double b3[3] = {b[0], b[1], 0};
+    const double c3[3] = {c[0], c[1], 0};
+    const double over[3] = {a[0], a[1], 1};
+    return tm_orient3d_exact(a3, b3, c3, over);
+}
+
+/* The sign (-1, 0, +1) of det(b-a, c-a): +1 where a, b, c turn counter-clockwise, 0 where
+ * they are on a line. Coordinates must be finite. Error: Shewchuk's (3 + 16ε)ε times the
+ * permanent (his ccwerrboundA); two products lose at most one u each. */
+static inline int tm_orient2d(const double a[2], const double b[2], const double c[2])
+{
+    const double relative_error = (3 + 16 * TM_HALF_ULP) * TM_HALF_ULP;
+    const double left = (b[0] - a[0]) * (c[1] - a[1]);
+    const double right = (b[1] - a[1]) * (c[0] - a[0]);
+    const double bound = relative_error * (fabs(left) + fabs(right)) + TM_UNDERFLOW;
+    if (left - right > bound)
+        return 1;
+    if (left - right < -bound)
+        return -1;
+    return tm_orient2d_exact(a, b, c);
+}
+
 /* The sign of the in-sphere determinant without the rounded shortcut. */
 int tm_insphere_exact(const double a[3], const double b[3], const double c[3],
                       const double d[3], const double e[3]);

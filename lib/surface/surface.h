@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A closed triangle surface that bounds a solid: which points are inside, what of the
- * surface is closest, where it is sharp. */
+ * surface is closest, where it is sharp. All queries only read it: threads may ask at the
+ * same time. */
 #ifndef TM_SURFACE_SURFACE_H
 #define TM_SURFACE_SURFACE_H
 
@@ -16,24 +17,68 @@ typedef struct tm_surface {
     size_t triangles;
     uint32_t (*triangle)[3]; /* seen from outside they turn counter-clockwise */
     int32_t *marker;         /* [triangles], or NULL where the file has none */
-    uint32_t (*across)[3];   /* the triangle beyond the edge from corner i to i + 1 */
+    uint32_t *facet;         /* [triangles]: the facet of the file it is from */
+    uint32_t *origin;        /* [nodes]: the node of the file */
+    uint32_t (*across)[3];   /* the triangle beyond the edge from corner i to i + 1;
+                                TM_NONE at an open edge */
+    uint32_t *shell;         /* [triangles]: the piece connected over edges */
     uint32_t *patch;         /* [triangles] */
     size_t patches;
     size_t curves;
     size_t *curve_start;  /* [curves + 1] */
     uint32_t *curve_node; /* nodes of curve c: curve_start[c] … curve_start[c + 1) */
+    uint32_t (*curve_patch)[2]; /* [curves]: the patches at its first segment */
     size_t corners;
     uint32_t *corner; /* nodes */
     double low[3], high[3];
     struct tm_surface_tree *tree; /* bounding boxes; see surface_tree.h */
 
     size_t welded;     /* nodes that had another at their place */
-    size_t flat;       /* triangles without area that were dropped */
+    size_t flat;       /* triangles without area that were dropped, or went by a flip */
     size_t duplicates; /* triangles that were there twice, dropped */
     bool turned;       /* some or all triangles turned the other way */
     size_t components; /* connected pieces of surface: shells */
-    int64_t euler;     /* nodes - edges + triangles, of all shells */
+    int64_t euler;     /* nodes - edges + triangles, of all shells; a node counts once for
+                          each fan of triangles around it */
+    size_t open_edges; /* with one triangle; 0 unless lenient */
+    size_t crossings;  /* pairs of triangles that meet elsewhere than in a common node or
+                          edge; 0 unless lenient */
+    bool by_winding;   /* the inside is where the winding number is above 1/2 */
 } tm_surface;
+
+/* The default of feature_angle: degrees. */
+#define TM_FEATURE_ANGLE 40.0
+
+typedef struct tm_surface_options {
+    double feature_angle; /* an edge is sharp where its normals differ by more: degrees */
+    bool lenient;         /* open surfaces, and such that cross themselves, are taken */
+} tm_surface_options;
+
+/* Makes the surface of the polygons: nodes with equal coordinates become one, polygons
+ * are cut to triangles, triangles with a node twice and duplicates go, so do nodes that
+ * none has. A triangle whose three nodes are on a line goes by flipping its longest edge;
+ * where that cannot be it stays. Each shell is oriented; one that an even number of
+ * others encloses is turned so that its volume is positive, the others (cavities) so that
+ * it is negative. Where an edge has four or more triangles, solids touch: the triangles
+ * on both sides of each solid wedge become neighbours, by the file's orientation.
+ *
+ * TM_ERROR_INPUT, with counts and a place, in the numbers of the file, where nothing is
+ * left, coordinates are not finite or beyond 1e100, a facet has several polygons or
+ * holes; and unless lenient where an edge has one triangle, or more than two that do not
+ * pair, where a shell cannot be oriented, or where two triangles meet otherwise than in
+ * common nodes and edges, exactly (touching is meeting). With lenient the surface is cut
+ * open at edges of the third and fourth kind.
+ *
+ * *surface need not be initialised; tm_surface_free() also after an error.
+ * O(n log n). */
+tm_status tm_surface_build(tm_surface *surface, const tm_polygon_surface *polygons,
+                           const tm_surface_options *options, tm_error *error);
+
+void tm_surface_free(tm_surface *surface);
+
+/* Verifies what this header states of the arrays. TM_ERROR_INTERNAL with the first thing
+ * that does not hold. O(n log n), for tests and self-checks. */
+tm_status tm_surface_check(const tm_surface *surface, tm_error *error);
 
 /* A place on the surface. */
 typedef struct tm_surface_point {
@@ -44,7 +89,7 @@ typedef struct tm_surface_point {
 
 /* The place of the surface (of one patch; TM_NONE: any) closest to a point. Where
  * at->triangle is not TM_NONE it is a guess, and the search only looks for what is
- * closer. */
+ * closer. Expected O(log n); below 1 µs with a near guess. */
 void tm_surface_closest(const tm_surface *surface, const double point[3], uint32_t patch,
                         tm_surface_point *at);
 
@@ -54,11 +99,33 @@ void tm_surface_closest_on_curve(const tm_surface *surface, uint32_t curve,
                                  const double point[3], double closest[3],
                                  size_t *segment);
 
-/* Whether a point is inside, against the whole surface. */
+/* Whether a point is inside, against the whole surface. A point on the surface is either,
+ * always the same.
+ *
+ * The number of triangles that a ray along an axis meets is odd. That is exact, as the
+ * orientations are, and the point is moved by an infinitesimal amount across the ray
+ * where that runs through an edge or a node (H. Edelsbrunner and E. P. Mücke, Simulation
+ * of simplicity, ACM Transactions on Graphics 9, 1990): there is no ray that does not
+ * count. A surface that is open or crosses itself (lenient) has by_winding: a ray through
+ * a hole would be wrong, and what overlaps is inside. There the generalised winding
+ * number must be above 1/2 (A. Jacobson, L. Kavan, O. Sorkine-Hornung, Robust
+ * inside-outside segmentation using generalized winding numbers, 2013), from dipoles of
+ * whole boxes where they are far (G. Barill, N. G. Dickson, R. Schmidt, D. I. W. Levin,
+ * A. Jacobson, Fast winding numbers for soups and clouds, 2018): right to about 1e-2. */
 bool tm_surface_has_inside(const tm_surface *surface, const double point[3]);
 
-/* Whether some of the surface is in the closed box. */
+/* The generalised winding number, near 1 inside and 0 outside; for surfaces that have
+ * by_winding. */
+double tm_surface_winding_number(const tm_surface *surface, const double point[3]);
+
+/* Whether some of the surface is in the closed box: true also where it only is within
+ * rounding of it. */
 bool tm_surface_meets_box(const tm_surface *surface, const double low[3],
                           const double high[3]);
+
+/* Those of the triangles list[0 … count) that are in the closed box, by the same test and
+ * in the same order, to kept, which may be list. Returns how many. O(count). */
+size_t tm_surface_cull(const tm_surface *surface, const uint32_t *list, size_t count,
+                       const double low[3], const double high[3], uint32_t *kept);
 
 #endif

@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "mpi_start.h"
+
+#include <p4est.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+/* What Open MPI does not free is not ours. */
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/lsan_interface.h>
+
+const char *__lsan_default_suppressions(void)
+{
+    return "leak:libmpi";
+}
+
+const char *__lsan_default_options(void)
+{
+    return "print_suppressions=0";
+}
+#else
+static void __lsan_disable(void)
+{
+}
+
+static void __lsan_enable(void)
+{
+}
+#endif
+
+/* What a launcher sets: Open MPI's, PMIx's, PMI's. */
+static bool launched(void)
+{
+    static const char *const sign[] = {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"};
+    for (size_t i = 0; i < sizeof sign / sizeof *sign; i++)
+        if (getenv(sign[i]))
+            return true;
+    return false;
+}
+
+/* Components of Open MPI, and of hwloc, which it asks for the machine's devices, as
+ * variables of the environment; those that the user has set stay. */
+static bool choose_components(void)
+{
+    static const char *const choice[][2] = {{"OMPI_MCA_pml", "ob1"},
+                                            {"OMPI_MCA_btl", "self"},
+                                            {"OMPI_MCA_ess_singleton_isolated", "1"},
+                                            {"HWLOC_COMPONENTS", "no_os,stop"}};
+    for (size_t i = 0; i < sizeof choice / sizeof *choice; i++)
+        if (setenv(choice[i][0], choice[i][1], 0) != 0)
+            return false;
+    return true;
+}
+
+static void finish(void)
+{
+    int ended = 0;
+    MPI_Finalized(&ended);
+    if (ended)
+        return;
+    __lsan_disable();
+    MPI_Finalize();
+    __lsan_enable();
+}
+
+tm_status tm_mpi_start(tm_error *error)
+{
+    int started = 0;
+    MPI_Initialized(&started);
+    if (started)
+        return TM_OK;
+    if (!launched() && !choose_components())
+        return tm_fail_memory(error);
+    int got = 0;
+    __lsan_disable();
+    const int status = MPI_Init_thread(NULL, NULL, MPI_THREAD_FUNNELED, &got);
+    __lsan_enable();
+    if (status != MPI_SUCCESS)
+        return tm_fail(error, TM_ERROR_SYSTEM, "MPI does not start");
+    if (atexit(finish) != 0)
+        return tm_fail_memory(error);
+    sc_init(MPI_COMM_WORLD, 0, 0, NULL, SC_LP_SILENT);
+    p4est_init(NULL, SC_LP_SILENT);
+    return TM_OK;
+}

@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* MPI, which p4est needs even for one process. */
+#ifndef TM_OCTREE_MPI_START_H
+#define TM_OCTREE_MPI_START_H
+
+#include "../base/error.h"
+
+/* Starts MPI and p4est, once; they end with the program. Where no launcher (mpirun, srun)
+ * has started the program, without what talks to other processes: that takes 0.02 s and
+ * not 0.3 s. Nothing is printed. TM_ERROR_SYSTEM where MPI does not start. */
+tm_status tm_mpi_start(tm_error *error);
+
+#endif

@@ -1,0 +1,294 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which triangles are beyond which edges. Half edge 3t + i is the edge from corner i of
+ * triangle t to the next; the half edges of an edge are found by sorting. */
+#include "surface_parts.h"
+
+#include "../base/array.h"
+#include "../geom/vector.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { CLOSED = 2, WEDGES_MOST = 64, FEW = 24 };
+
+typedef struct half_edge {
+    uint32_t high; /* the larger of its nodes; the smaller is that of the bucket */
+    uint32_t half;
+} half_edge;
+
+typedef struct edge_table {
+    size_t *start;   /* [nodes + 1]: half edges with v for the smaller node */
+    half_edge *edge; /* in each bucket sorted by high, then half */
+} edge_table;
+
+static uint32_t from_node(const tm_surface *surface, uint32_t half)
+{
+    return surface->triangle[half / 3][half % 3];
+}
+
+static uint32_t to_node(const tm_surface *surface, uint32_t half)
+{
+    return surface->triangle[half / 3][(half + 1 - half / 3 * 3) % 3];
+}
+
+static int compare_half_edges(const void *a, const void *b)
+{
+    const half_edge *p = a, *q = b;
+    if (p->high != q->high)
+        return p->high < q->high ? -1 : 1;
+    return (p->half > q->half) - (p->half < q->half);
+}
+
+static void sort_bucket(half_edge *edge, size_t count)
+{
+    if (count > FEW) {
+        qsort(edge, count, sizeof *edge, compare_half_edges);
+        return;
+    }
+    for (size_t i = 1; i < count; i++) {
+        half_edge moved = edge[i];
+        size_t k = i;
+        for (; k > 0 && compare_half_edges(&edge[k - 1], &moved) > 0; k--)
+            edge[k] = edge[k - 1];
+        edge[k] = moved;
+    }
+}
+
+static void edge_table_free(edge_table *table)
+{
+    free(table->start);
+    free(table->edge);
+}
+
+static bool edge_table_make(edge_table *table, const tm_surface *surface)
+{
+    uint32_t halves = (uint32_t)(3 * surface->triangles);
+    table->start = calloc(surface->nodes + 2, sizeof *table->start);
+    table->edge = tm_new(halves, sizeof *table->edge);
+    if (!table->start || !table->edge)
+        return false;
+    for (uint32_t h = 0; h < halves; h++) {
+        uint32_t a = from_node(surface, h), b = to_node(surface, h);
+        table->start[(a < b ? a : b) + 2]++;
+    }
+    for (size_t v = 1; v <= surface->nodes; v++)
+        table->start[v + 1] += table->start[v];
+    for (uint32_t h = 0; h < halves; h++) {
+        uint32_t a = from_node(surface, h), b = to_node(surface, h);
+        table->edge[table->start[(a < b ? a : b) + 1]++] = (half_edge){a < b ? b : a, h};
+    }
+    for (size_t v = 0; v < surface->nodes; v++)
+        sort_bucket(table->edge + table->start[v], table->start[v + 1] - table->start[v]);
+    return true;
+}
+
+/* The end of the run of half edges of one edge that begins at i. */
+static size_t end_of_edge(const half_edge *edge, size_t i, size_t last)
+{
+    size_t next = i + 1;
+    while (next < last && edge[next].high == edge[i].high)
+        next++;
+    return next;
+}
+
+static bool is_flat(const tm_surface *surface, uint32_t t)
+{
+    const uint32_t *v = surface->triangle[t];
+    return tm_is_flat(surface->xyz[v[0]], surface->xyz[v[1]], surface->xyz[v[2]]);
+}
+
+/* closed[t] counts the edges of the flat triangle t that are closed without flat ones. */
+static void count_closed(const half_edge *edge, size_t count, const bool *flat,
+                         unsigned char *closed)
+{
+    size_t others = 0;
+    for (size_t i = 0; i < count; i++)
+        others += !flat[edge[i].half / 3];
+    if (others != CLOSED)
+        return;
+    for (size_t i = 0; i < count; i++)
+        closed[edge[i].half / 3]++;
+}
+
+static void drop(tm_surface *surface, const bool *gone)
+{
+    size_t kept = 0;
+    for (size_t t = 0; t < surface->triangles; t++) {
+        if (gone[t])
+            continue;
+        memmove(surface->triangle[kept], surface->triangle[t], sizeof *surface->triangle);
+        surface->facet[kept] = surface->facet[t];
+        if (surface->marker)
+            surface->marker[kept] = surface->marker[t];
+        kept++;
+    }
+    surface->flat += surface->triangles - kept;
+    surface->triangles = kept;
+}
+
+/* Drops the flat triangles whose three edges are closed without them. */
+static tm_status drop_needless(tm_surface *surface, const edge_table *table,
+                               bool *dropped, tm_error *error)
+{
+    bool *flat = tm_new(surface->triangles, sizeof *flat);
+    unsigned char *closed = calloc(surface->triangles, sizeof *closed);
+    size_t flats = 0;
+    *dropped = false;
+    if (flat && closed)
+        for (size_t t = 0; t < surface->triangles; t++)
+            flats += flat[t] = is_flat(surface, (uint32_t)t);
+    if (flat && closed && flats > 0) {
+        for (size_t v = 0; v < surface->nodes; v++)
+            for (size_t i = table->start[v], next; i < table->start[v + 1]; i = next) {
+                next = end_of_edge(table->edge, i, table->start[v + 1]);
+                count_closed(table->edge + i, next - i, flat, closed);
+            }
+        for (size_t t = 0; t < surface->triangles; t++) {
+            flat[t] = flat[t] && closed[t] == 3;
+            *dropped |= flat[t];
+        }
+        drop(surface, flat);
+    }
+    tm_status status = flat && closed ? TM_OK : tm_fail_memory(error);
+    free(flat);
+    free(closed);
+    return status;
+}
+
+static void join(tm_surface *surface, uint32_t h, uint32_t g)
+{
+    surface->across[h / 3][h % 3] = g / 3;
+    surface->across[g / 3][g % 3] = h / 3;
+}
+
+typedef struct around {
+    double angle; /* about the edge, from the smaller node to the larger */
+    uint32_t half;
+} around;
+
+static int compare_angles(const void *a, const void *b)
+{
+    const around *p = a, *q = b;
+    if (p->angle != q->angle)
+        return p->angle < q->angle ? -1 : 1;
+    return (p->half > q->half) - (p->half < q->half);
+}
+
+/* The half edges of one edge by their angle around it. */
+static void sort_around(const tm_surface *surface, const half_edge *edge, size_t count,
+                        uint32_t low, around *at)
+{
+    double along[3], x[3], y[3];
+    const double *origin = surface->xyz[low];
+    tm_subtract(along, surface->xyz[edge->high], origin);
+    for (size_t i = 0; i < count; i++) {
+        uint32_t h = edge[i].half;
+        double to[3], across[3];
+        tm_subtract(to, surface->xyz[surface->triangle[h / 3][(h % 3 + 2) % 3]], origin);
+        tm_cross(across, along, to);
+        if (i == 0) {
+            memcpy(y, across, sizeof y);
+            tm_cross(x, y, along);
+        }
+        at[i].half = h;
+        at[i].angle = atan2(tm_dot(y, to) * tm_norm(along), tm_dot(x, to));
+    }
+    qsort(at, count, sizeof *at, compare_angles);
+}
+
+/* Seen along the edge from its smaller node, the solid is clockwise of a triangle that
+ * has the edge in this direction and counter-clockwise of one that has it in the other:
+ * both kinds must alternate, and the two around a wedge of the solid are joined. */
+static bool pair_wedges(tm_surface *surface, const half_edge *edge, size_t count,
+                        uint32_t low)
+{
+    around at[WEDGES_MOST];
+    if (count % 2 != 0 || count > WEDGES_MOST)
+        return false;
+    sort_around(surface, edge, count, low, at);
+    for (size_t i = 0; i < count; i++)
+        if ((from_node(surface, at[i].half) == low) ==
+            (from_node(surface, at[(i + 1) % count].half) == low))
+            return false;
+    for (size_t i = 0; i < count; i++)
+        if (from_node(surface, at[i].half) != low)
+            join(surface, at[i].half, at[(i + 1) % count].half);
+    return true;
+}
+
+typedef struct defects {
+    size_t open, crowded;
+    uint32_t open_edge[2], crowded_edge[2];
+} defects;
+
+static void join_edge(tm_surface *surface, const half_edge *edge, size_t count,
+                      uint32_t low, defects *found)
+{
+    const uint32_t nodes[2] = {low, edge->high};
+    if (count == CLOSED) {
+        join(surface, edge[0].half, edge[1].half);
+    } else if (count < CLOSED) {
+        if (found->open++ == 0)
+            memcpy(found->open_edge, nodes, sizeof nodes);
+    } else if (!pair_wedges(surface, edge, count, low)) {
+        if (found->crowded++ == 0)
+            memcpy(found->crowded_edge, nodes, sizeof nodes);
+        surface->open_edges += count;
+    }
+}
+
+/* Open edges first: they are the plainer defect, and often the cause of the other. */
+static tm_status report(const tm_surface *surface, const defects *found, unsigned base,
+                        tm_error *error)
+{
+    bool open = found->open > 0;
+    const uint32_t *e = open ? found->open_edge : found->crowded_edge;
+    const double *a = surface->xyz[e[0]], *b = surface->xyz[e[1]];
+    return tm_fail(error, TM_ERROR_INPUT,
+                   "the surface is %s: edges with one triangle: %zu, with more than two "
+                   "that do not pair: %zu (every edge would have two); one is between "
+                   "nodes %zu (%g, %g, %g) and %zu (%g, %g, %g)",
+                   open ? "open" : "not manifold", found->open, found->crowded,
+                   (size_t)surface->origin[e[0]] + base, a[0], a[1], a[2],
+                   (size_t)surface->origin[e[1]] + base, b[0], b[1], b[2]);
+}
+
+static tm_status join_edges(tm_surface *surface, const edge_table *table, bool lenient,
+                            unsigned base, tm_error *error)
+{
+    defects found = {0};
+    surface->across = tm_new(surface->triangles, sizeof *surface->across);
+    if (!surface->across)
+        return tm_fail_memory(error);
+    for (size_t t = 0; t < surface->triangles; t++)
+        for (int i = 0; i < 3; i++)
+            surface->across[t][i] = TM_NONE;
+    for (size_t v = 0; v < surface->nodes; v++)
+        for (size_t i = table->start[v], next; i < table->start[v + 1]; i = next) {
+            next = end_of_edge(table->edge, i, table->start[v + 1]);
+            join_edge(surface, table->edge + i, next - i, (uint32_t)v, &found);
+        }
+    surface->open_edges += found.open;
+    if (lenient || found.open + found.crowded == 0)
+        return TM_OK;
+    return report(surface, &found, base, error);
+}
+
+tm_status tm_surface_connect(tm_surface *surface, bool lenient, unsigned base,
+                             tm_error *error)
+{
+    edge_table table = {0};
+    bool dropped = true;
+    tm_status status = TM_OK;
+    while (status == TM_OK && dropped) {
+        edge_table_free(&table);
+        status = edge_table_make(&table, surface) ? TM_OK : tm_fail_memory(error);
+        if (status == TM_OK)
+            status = drop_needless(surface, &table, &dropped, error);
+    }
+    if (status == TM_OK)
+        status = join_edges(surface, &table, lenient, base, error);
+    edge_table_free(&table);
+    return status;
+}

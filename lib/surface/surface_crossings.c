@@ -1,0 +1,226 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Triangles that meet elsewhere than in a common node or edge, by exact orientations. */
+#include "surface_tree.h"
+
+#include "../geom/predicates.h"
+#include "surface_parts.h"
+
+#include <string.h>
+
+typedef struct finder {
+    tm_surface *surface;
+    uint32_t pair[2]; /* the first that was found */
+    double place[3];
+    bool all; /* else the first is enough */
+} finder;
+
+static int sign_in(const double a[3], const double b[3], const double c[3], unsigned w)
+{
+    unsigned u = (w + 1) % 3, v = (w + 2) % 3;
+    const double pa[2] = {a[u], a[v]}, pb[2] = {b[u], b[v]}, pc[2] = {c[u], c[v]};
+    return tm_orient2d(pa, pb, pc);
+}
+
+/* In one plane, seen along w: whether segments pq and ab, on no common line, meet. */
+static bool segments_meet(const double p[3], const double q[3], const double a[3],
+                          const double b[3], unsigned w)
+{
+    int pa = sign_in(p, q, a, w), pb = sign_in(p, q, b, w);
+    int ap = sign_in(a, b, p, w), aq = sign_in(a, b, q, w);
+    return pa * pb <= 0 && ap * aq <= 0 && (pa != 0 || pb != 0);
+}
+
+static bool is_within(const double p[3], const double *const corner[3], unsigned w)
+{
+    int i = sign_in(corner[0], corner[1], p, w), j = sign_in(corner[1], corner[2], p, w);
+    int k = sign_in(corner[2], corner[0], p, w);
+    return (i >= 0 && j >= 0 && k >= 0) || (i <= 0 && j <= 0 && k <= 0);
+}
+
+/* A segment on an edge's line that meets the edge has an end in it, or goes on to meet
+ * another edge, or the edge's ends are within the segment: then it meets those edges. */
+static bool meets_in_plane(const double p[3], const double q[3],
+                           const double *const corner[3])
+{
+    unsigned w = 0;
+    while (w < 3 && sign_in(corner[0], corner[1], corner[2], w) == 0)
+        w++;
+    if (w == 3)
+        return false; /* flat: its edges meet what it meets */
+    if (is_within(p, corner, w) || is_within(q, corner, w))
+        return true;
+    for (int i = 0; i < 3; i++)
+        if (segments_meet(p, q, corner[i], corner[(i + 1) % 3], w))
+            return true;
+    return false;
+}
+
+/* Whether the closed segment pq meets the closed triangle. */
+static bool segment_meets(const double p[3], const double q[3],
+                          const double *const corner[3])
+{
+    const double *a = corner[0], *b = corner[1], *c = corner[2];
+    int sp = tm_orient3d(a, b, c, p), sq = tm_orient3d(a, b, c, q);
+    if (sp * sq > 0)
+        return false;
+    if (sp == 0 && sq == 0)
+        return meets_in_plane(p, q, corner);
+    int i = tm_orient3d(p, q, a, b), j = tm_orient3d(p, q, b, c);
+    int k = tm_orient3d(p, q, c, a);
+    return (i >= 0 && j >= 0 && k >= 0) || (i <= 0 && j <= 0 && k <= 0);
+}
+
+/* Whether the corners of one triangle are all strictly on one side of the other. */
+static bool is_beside(const double *const p[3], const double *const q[3])
+{
+    int side = tm_orient3d(p[0], p[1], p[2], q[0]);
+    return side != 0 && tm_orient3d(p[0], p[1], p[2], q[1]) == side &&
+           tm_orient3d(p[0], p[1], p[2], q[2]) == side;
+}
+
+/* Neither has a node of the other. */
+static bool strangers_meet(const double *const p[3], const double *const q[3])
+{
+    if (is_beside(p, q) || is_beside(q, p))
+        return false;
+    for (int i = 0; i < 3; i++)
+        if (segment_meets(p[i], p[(i + 1) % 3], q) ||
+            segment_meets(q[i], q[(i + 1) % 3], p))
+            return true;
+    return false;
+}
+
+/* Corner i of p is corner k of q. What they have in common is convex: if it is more than
+ * the node, it reaches the opposite edge of one of them. */
+static bool corners_meet(const double *const p[3], int i, const double *const q[3], int k)
+{
+    return segment_meets(p[(i + 1) % 3], p[(i + 2) % 3], q) ||
+           segment_meets(q[(k + 1) % 3], q[(k + 2) % 3], p);
+}
+
+/* They have all but corner i of p and k of q in common: they meet elsewhere where one is
+ * folded onto the other. */
+static bool edges_meet(const double *const p[3], int i, const double *const q[3], int k)
+{
+    const double *a = p[(i + 1) % 3], *b = p[(i + 2) % 3];
+    if (tm_orient3d(a, b, p[i], q[k]) != 0)
+        return false;
+    for (unsigned w = 0; w < 3; w++)
+        if (sign_in(a, b, p[i], w) * sign_in(a, b, q[k], w) > 0)
+            return true;
+    return false;
+}
+
+static bool triangles_meet(const tm_surface *surface, uint32_t t, uint32_t s)
+{
+    const uint32_t *vt = surface->triangle[t], *vs = surface->triangle[s];
+    const double *p[3], *q[3];
+    int common = 0, i_common = 0, k_common = 0, i_sum = 0, k_sum = 0;
+    for (int i = 0; i < 3; i++) {
+        p[i] = surface->xyz[vt[i]];
+        q[i] = surface->xyz[vs[i]];
+        for (int k = 0; k < 3; k++) {
+            if (vt[i] != vs[k])
+                continue;
+            common++;
+            i_common = i;
+            k_common = k;
+            i_sum += i;
+            k_sum += k;
+        }
+    }
+    if (common == 0)
+        return strangers_meet(p, q);
+    if (common == 1)
+        return corners_meet(p, i_common, q, k_common);
+    return edges_meet(p, 3 - i_sum, q, 3 - k_sum);
+}
+
+static bool boxes_meet(const double alow[3], const double ahigh[3], const double blow[3],
+                       const double bhigh[3])
+{
+    return alow[0] <= bhigh[0] && blow[0] <= ahigh[0] && alow[1] <= bhigh[1] &&
+           blow[1] <= ahigh[1] && alow[2] <= bhigh[2] && blow[2] <= ahigh[2];
+}
+
+static void bounds_of(const tm_tree_triangle *triangle, double low[3], double high[3])
+{
+    for (int i = 0; i < 3; i++) {
+        double a = triangle->corner[0][i], b = triangle->corner[1][i];
+        double c = triangle->corner[2][i];
+        low[i] = a < b ? (a < c ? a : c) : (b < c ? b : c);
+        high[i] = a > b ? (a > c ? a : c) : (b > c ? b : c);
+    }
+}
+
+/* Somewhere in both boxes. */
+static void find_place(finder *f, const tm_tree_triangle *a, const tm_tree_triangle *b)
+{
+    double low[2][3], high[2][3];
+    bounds_of(a, low[0], high[0]);
+    bounds_of(b, low[1], high[1]);
+    for (int i = 0; i < 3; i++)
+        f->place[i] = (fmax(low[0][i], low[1][i]) + fmin(high[0][i], high[1][i])) / 2;
+    f->pair[0] = a->id < b->id ? a->id : b->id;
+    f->pair[1] = a->id < b->id ? b->id : a->id;
+}
+
+static void try_pair(finder *f, const tm_tree_triangle *a, const tm_tree_triangle *b)
+{
+    double alow[3], ahigh[3], blow[3], bhigh[3];
+    bounds_of(a, alow, ahigh);
+    bounds_of(b, blow, bhigh);
+    if (!boxes_meet(alow, ahigh, blow, bhigh) ||
+        !triangles_meet(f->surface, a->id, b->id))
+        return;
+    if (f->surface->crossings++ == 0)
+        find_place(f, a, b);
+}
+
+static void try_leaves(finder *f, const tm_tree_node *n, const tm_tree_node *m)
+{
+    const tm_tree_triangle *triangle = f->surface->tree->triangle;
+    for (uint32_t i = 0; i < n->count; i++)
+        for (uint32_t k = n == m ? i + 1 : 0; k < m->count; k++)
+            try_pair(f, &triangle[n->first + i], &triangle[m->first + k]);
+}
+
+/* All pairs of a triangle below n with one below m. */
+static void try_nodes(finder *f, const tm_tree_node *n, const tm_tree_node *m)
+{
+    const tm_tree_node *node = f->surface->tree->node;
+    if (!boxes_meet(n->low, n->high, m->low, m->high) ||
+        (!f->all && f->surface->crossings > 0))
+        return;
+    if (n->count > 0 && m->count > 0) {
+        try_leaves(f, n, m);
+    } else if (n == m) {
+        try_nodes(f, &node[n->first], &node[n->first]);
+        try_nodes(f, &node[n->first + 1], &node[n->first + 1]);
+        try_nodes(f, &node[n->first], &node[n->first + 1]);
+    } else if (n->count > 0) {
+        try_nodes(f, n, &node[m->first]);
+        try_nodes(f, n, &node[m->first + 1]);
+    } else {
+        try_nodes(f, &node[n->first], m);
+        try_nodes(f, &node[n->first + 1], m);
+    }
+}
+
+tm_status tm_surface_find_crossings(tm_surface *surface, bool lenient, unsigned base,
+                                    tm_error *error)
+{
+    finder f = {.surface = surface, .all = lenient};
+    try_nodes(&f, &surface->tree->node[0], &surface->tree->node[0]);
+    if (lenient || surface->crossings == 0)
+        return TM_OK;
+    return tm_fail(error, TM_ERROR_INPUT,
+                   "%s: faces %zu and %zu meet near (%g, %g, %g), elsewhere than in a "
+                   "common node or edge",
+                   surface->shell[f.pair[0]] == surface->shell[f.pair[1]]
+                       ? "the surface crosses itself"
+                       : "two pieces of the surface cross",
+                   (size_t)surface->facet[f.pair[0]] + base,
+                   (size_t)surface->facet[f.pair[1]] + base, f.place[0], f.place[1],
+                   f.place[2]);
+}

@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The steps of tm_surface_build(), in their order. Each fills what it names of a surface
+ * that the steps before have filled. */
+#ifndef TM_SURFACE_SURFACE_PARTS_H
+#define TM_SURFACE_SURFACE_PARTS_H
+
+#include "surface.h"
+
+/* Nodes, triangles with marker and facet, welded, duplicates, low and high. */
+tm_status tm_surface_triangulate(tm_surface *surface, const tm_polygon_surface *polygons,
+                                 tm_error *error);
+
+/* Cuts the polygon through k nodes of xyz into at most k - 2 triangles, which turn as it
+ * does; returns how many. aside: room for k items. A flat triangle is made only where
+ * nothing else is left. O(k²) for convex ones. */
+size_t tm_polygon_triangulate(const double (*xyz)[3], const uint32_t *node, size_t k,
+                              uint32_t *aside, uint32_t (*triangle)[3]);
+
+/* Whether the three points are on a line, exactly. */
+bool tm_is_flat(const double a[3], const double b[3], const double c[3]);
+
+/* Drops flat triangles that only touch edges which are closed without them; then across
+ * and open_edges. base is the number of the first node and facet in messages. */
+tm_status tm_surface_connect(tm_surface *surface, bool lenient, unsigned base,
+                             tm_error *error);
+
+/* shell, components; the triangles of a shell turn the same way. */
+tm_status tm_surface_orient(tm_surface *surface, bool lenient, unsigned base,
+                            tm_error *error);
+
+/* Flips the longest edges of flat triangles; counts them in flat. */
+void tm_surface_mend(tm_surface *surface);
+
+/* crossings, by the tree. */
+tm_status tm_surface_find_crossings(tm_surface *surface, bool lenient, unsigned base,
+                                    tm_error *error);
+
+/* Turns the shells that have to be, by the tree; turned. */
+tm_status tm_surface_turn(tm_surface *surface, tm_error *error);
+
+/* Curves, corners and patches. */
+tm_status tm_surface_find_features(tm_surface *surface, double feature_angle,
+                                   tm_error *error);
+
+/* The corner i of t for which across[t][i] is n; 3: none. */
+static inline unsigned tm_surface_side(const tm_surface *surface, uint32_t t, uint32_t n)
+{
+    unsigned i = 0;
+    while (i < 3 && surface->across[t][i] != n)
+        i++;
+    return i;
+}
+
+#endif

@@ -1,0 +1,236 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* From the polygons of a file to different triangles between different nodes. */
+#include "surface_parts.h"
+
+#include "../base/array.h"
+#include "../format/point_table.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Coordinates up to here have squared areas and volumes that are doubles. */
+static const double coordinate_most = 1e100;
+
+static tm_status check_nodes(const tm_polygon_surface *from, tm_error *error)
+{
+    for (size_t v = 0; v < from->nodes; v++) {
+        const double *p = from->xyz[v];
+        for (int i = 0; i < 3; i++)
+            if (!(fabs(p[i]) <= coordinate_most))
+                return tm_fail(error, TM_ERROR_INPUT,
+                               "node %zu (%g, %g, %g) is not finite, or beyond 1e100",
+                               v + from->base, p[0], p[1], p[2]);
+    }
+    return TM_OK;
+}
+
+static tm_status check_facets(const tm_polygon_surface *from, tm_error *error)
+{
+    if (from->nodes == 0 || from->facets == 0)
+        return tm_fail(error, TM_ERROR_INPUT,
+                       "the surface is empty: it has %zu nodes and %zu faces (a closed "
+                       "surface would have at least four of each)",
+                       from->nodes, from->facets);
+    for (size_t f = 0; f < from->facets; f++)
+        if (from->facet_start[f + 1] - from->facet_start[f] > 1 ||
+            from->facet_hole_start[f + 1] != from->facet_hole_start[f])
+            return tm_fail(error, TM_ERROR_INPUT,
+                           "facet %zu has several polygons, or a hole (each facet of "
+                           "the surface would be one polygon)",
+                           f + from->base);
+    return check_nodes(from, error);
+}
+
+/* place[v] becomes the first node with v's coordinates. */
+static bool weld(const tm_polygon_surface *from, uint32_t *place, size_t *welded)
+{
+    tm_point_table table = {0};
+    bool done = true;
+    for (size_t v = 0; v < from->nodes && done; v++)
+        done = tm_point_table_join(&table, from->xyz, (uint32_t)v, &place[v]);
+    *welded = from->nodes - table.points;
+    tm_point_table_free(&table);
+    return done;
+}
+
+/* room is for the corners of the largest polygon, twice. */
+static void cut_facets(tm_surface *surface, const tm_polygon_surface *from,
+                       const uint32_t *place, uint32_t *room, size_t most)
+{
+    const double(*xyz)[3] = (const double(*)[3])from->xyz;
+    for (size_t f = 0; f < from->facets; f++) {
+        size_t p = from->facet_start[f];
+        if (p == from->facet_start[f + 1])
+            continue;
+        size_t k = from->start[p + 1] - from->start[p];
+        for (size_t i = 0; i < k; i++)
+            room[i] = place[from->item[from->start[p] + i]];
+        size_t t = surface->triangles;
+        surface->triangles +=
+            tm_polygon_triangulate(xyz, room, k, room + most, surface->triangle + t);
+        for (; t < surface->triangles; t++) {
+            surface->facet[t] = (uint32_t)f;
+            if (surface->marker)
+                surface->marker[t] = from->facet_marker[f];
+        }
+    }
+}
+
+static tm_status make_triangles(tm_surface *surface, const tm_polygon_surface *from,
+                                const uint32_t *place, tm_error *error)
+{
+    size_t most = 0;
+    for (size_t p = 0; p < from->polygons; p++)
+        if (from->start[p + 1] - from->start[p] > most)
+            most = from->start[p + 1] - from->start[p];
+    uint32_t *room = tm_new(2 * most, sizeof *room);
+    surface->triangle = tm_new(from->corners, sizeof *surface->triangle);
+    surface->facet = tm_new(from->corners, sizeof *surface->facet);
+    if (from->has_facet_markers)
+        surface->marker = tm_new(from->corners, sizeof *surface->marker);
+    bool done = room && surface->triangle && surface->facet &&
+                (surface->marker || !from->has_facet_markers);
+    if (done)
+        cut_facets(surface, from, place, room, most);
+    free(room);
+    return done ? TM_OK : tm_fail_memory(error);
+}
+
+typedef struct sorted_triangle {
+    uint32_t node[3]; /* ascending */
+    uint32_t t;
+} sorted_triangle;
+
+static int compare_triangles(const void *a, const void *b)
+{
+    const sorted_triangle *p = a, *q = b;
+    for (int i = 0; i < 3; i++)
+        if (p->node[i] != q->node[i])
+            return p->node[i] < q->node[i] ? -1 : 1;
+    return (p->t > q->t) - (p->t < q->t);
+}
+
+static void order_two(uint32_t *a, uint32_t *b)
+{
+    if (*b < *a) {
+        uint32_t swap = *a;
+        *a = *b;
+        *b = swap;
+    }
+}
+
+/* A triangle that has the nodes of an earlier one gets a node twice, as those have that
+ * have no area. */
+static tm_status find_duplicates(tm_surface *surface, tm_error *error)
+{
+    sorted_triangle *sorted = tm_new(surface->triangles, sizeof *sorted);
+    size_t count = 0;
+    if (!sorted)
+        return tm_fail_memory(error);
+    for (size_t t = 0; t < surface->triangles; t++) {
+        const uint32_t *v = surface->triangle[t];
+        if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) {
+            surface->flat++;
+            continue;
+        }
+        sorted_triangle *s = &sorted[count++];
+        *s = (sorted_triangle){{v[0], v[1], v[2]}, (uint32_t)t};
+        order_two(&s->node[0], &s->node[1]);
+        order_two(&s->node[1], &s->node[2]);
+        order_two(&s->node[0], &s->node[1]);
+    }
+    qsort(sorted, count, sizeof *sorted, compare_triangles);
+    for (size_t i = 1; i < count; i++) {
+        if (memcmp(sorted[i].node, sorted[i - 1].node, sizeof sorted->node) != 0)
+            continue;
+        surface->duplicates++;
+        surface->triangle[sorted[i].t][1] = surface->triangle[sorted[i].t][0];
+    }
+    free(sorted);
+    return TM_OK;
+}
+
+static void drop_triangles(tm_surface *surface)
+{
+    size_t kept = 0;
+    for (size_t t = 0; t < surface->triangles; t++) {
+        const uint32_t *v = surface->triangle[t];
+        if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0])
+            continue;
+        memmove(surface->triangle[kept], v, sizeof *surface->triangle);
+        surface->facet[kept] = surface->facet[t];
+        if (surface->marker)
+            surface->marker[kept] = surface->marker[t];
+        kept++;
+    }
+    surface->triangles = kept;
+}
+
+/* The nodes that triangles have, in their order; number[v] becomes the new number. */
+static tm_status take_nodes(tm_surface *surface, const tm_polygon_surface *from,
+                            uint32_t *number, tm_error *error)
+{
+    size_t corners = 3 * surface->triangles;
+    for (size_t v = 0; v < from->nodes; v++)
+        number[v] = TM_NONE;
+    for (size_t i = 0; i < corners; i++)
+        number[surface->triangle[i / 3][i % 3]] = 0;
+    for (size_t v = 0; v < from->nodes; v++)
+        if (number[v] == 0)
+            number[v] = (uint32_t)surface->nodes++;
+    surface->xyz = tm_new(surface->nodes, sizeof *surface->xyz);
+    surface->origin = tm_new(surface->nodes, sizeof *surface->origin);
+    if (!surface->xyz || !surface->origin)
+        return tm_fail_memory(error);
+    for (size_t v = 0; v < from->nodes; v++) {
+        if (number[v] == TM_NONE)
+            continue;
+        memcpy(surface->xyz[number[v]], from->xyz[v], sizeof *surface->xyz);
+        surface->origin[number[v]] = (uint32_t)v;
+    }
+    for (size_t i = 0; i < corners; i++)
+        surface->triangle[i / 3][i % 3] = number[surface->triangle[i / 3][i % 3]];
+    return TM_OK;
+}
+
+static void find_bounds(tm_surface *surface)
+{
+    for (int i = 0; i < 3; i++) {
+        surface->low[i] = HUGE_VAL;
+        surface->high[i] = -HUGE_VAL;
+        for (size_t v = 0; v < surface->nodes; v++) {
+            surface->low[i] = fmin(surface->low[i], surface->xyz[v][i]);
+            surface->high[i] = fmax(surface->high[i], surface->xyz[v][i]);
+        }
+    }
+}
+
+tm_status tm_surface_triangulate(tm_surface *surface, const tm_polygon_surface *polygons,
+                                 tm_error *error)
+{
+    tm_status status = check_facets(polygons, error);
+    if (status != TM_OK)
+        return status;
+    uint32_t *place = tm_new(polygons->nodes, sizeof *place);
+    if (!place || !weld(polygons, place, &surface->welded))
+        status = tm_fail_memory(error);
+    if (status == TM_OK)
+        status = make_triangles(surface, polygons, place, error);
+    if (status == TM_OK)
+        status = find_duplicates(surface, error);
+    if (status == TM_OK) {
+        drop_triangles(surface);
+        if (surface->triangles == 0)
+            status = tm_fail(error, TM_ERROR_INPUT,
+                             "no triangle is left: all %zu faces have no area (%zu "
+                             "triangles with a node twice, %zu duplicates)",
+                             polygons->facets, surface->flat, surface->duplicates);
+    }
+    if (status == TM_OK)
+        status = take_nodes(surface, polygons, place, error);
+    if (status == TM_OK)
+        find_bounds(surface);
+    free(place);
+    return status;
+}
