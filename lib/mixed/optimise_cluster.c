@@ -7,6 +7,7 @@
 #include "../quality/jens.h"
 #include "../stream/stream.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -208,6 +209,22 @@ tm_status tm_cluster_gather(tm_cluster *cluster, const tm_cluster_source *source
     for (size_t e = 0; e < cluster->elements; e++)
         source->taken[cluster->element[e]] = false;
     return made ? TM_OK : tm_fail_memory(error);
+}
+
+void tm_cluster_approach(tm_cluster *cluster, size_t v, double factor, double threshold)
+{
+    for (size_t e = 0; e < cluster->elements; e++) {
+        cluster->threshold[e] = fmin(cluster->threshold[e], threshold);
+        cluster->jens[e] = cluster->before[e];
+    }
+    cluster->first = cluster->best_score = tm_cluster_score(cluster);
+    cluster->best_score.bad++; /* as it is now would do */
+    if (cluster->first.bad == 0)
+        cluster->best_score.worst = -INFINITY;
+    for (size_t i = 0; i < 3; i++) {
+        cluster->offset[v][i] *= factor;
+        cluster->xyz[v][i] = cluster->place[v].xyz[i] + cluster->offset[v][i];
+    }
 }
 
 void tm_cluster_free(tm_cluster *cluster)

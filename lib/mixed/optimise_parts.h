@@ -117,8 +117,38 @@ void tm_cluster_along(const tm_cluster *cluster, size_t v, double vector[3]);
 tm_score tm_cluster_score(const tm_cluster *cluster);
 bool tm_score_better(const tm_score *score, const tm_score *than);
 
+/* Lets node v, which is held back, come closer to its place, by that factor of the way
+ * that is missing; 0: all of it. All elements are from now on compared with how they were
+ * when gathered, by thresholds of at most `threshold`. */
+void tm_cluster_approach(tm_cluster *cluster, size_t v, double factor, double threshold);
+
 /* Minimises from where the nodes are. Places with a score better than best_score are
  * kept in best[]. Ends early where nothing is bad. */
 void tm_cluster_descend(tm_cluster *cluster, double sharpness, unsigned iterations);
+
+/* A call of tm_mixed_optimise(). */
+typedef struct tm_optimise_work {
+    tm_mixed_mesh *mesh;
+    tm_node_rule *rule;
+    const tm_optimise_options *options;
+    double *jens;  /* [elements] */
+    bool *visited; /* [elements]: in this pass */
+    bool *moved;   /* [nodes] */
+    uint32_t *bad; /* elements, the worst first */
+    size_t bads;
+    tm_vicinity vicinity;
+    tm_cluster_source source;
+    tm_cluster cluster;
+    tm_optimise_report *report;
+} tm_optimise_work;
+
+/* Minimises, the more sharply the closer it comes, until nothing is bad. */
+void tm_optimise_descend(tm_optimise_work *work);
+
+/* Takes the best places of the cluster into the mesh. */
+void tm_optimise_accept(tm_optimise_work *work);
+
+/* Brings nodes that are held back to their places. */
+tm_status tm_optimise_held(tm_optimise_work *work, tm_error *error);
 
 #endif
