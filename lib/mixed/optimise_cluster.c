@@ -52,8 +52,8 @@ static bool add_nodes_of(tm_cluster *cluster, const tm_cluster_source *source, u
         const uint32_t v = mesh->item[i];
         if (source->local[v] != TM_NONE)
             continue;
-        if (!all &&
-            (source->rule[v].freedom == TM_FIXED || source->vicinity->row[v] == TM_NONE))
+        if (!all && (source->rule[v].freedom == TM_MOVES_NOT ||
+                     source->vicinity->row[v] == TM_NONE))
             continue;
         if (!add_node(cluster, source, v))
             return false;
@@ -173,9 +173,9 @@ static void find_places(tm_cluster *cluster)
         tm_boundary_place *at = &cluster->place[v];
         *at = (tm_boundary_place){.guess = TM_NONE};
         memset(cluster->offset[v], 0, sizeof *cluster->offset);
-        if (rule->freedom == TM_ON_SURFACE)
+        if (rule->freedom == TM_MOVES_ON_SURFACE)
             cluster->boundary->on_surface(cluster->boundary->of, rule->where, p, at);
-        else if (rule->freedom == TM_ON_CURVE)
+        else if (rule->freedom == TM_MOVES_ON_CURVE)
             cluster->boundary->on_curve(cluster->boundary->of, rule->where, p, at);
         if (rule->held)
             tm_subtract(cluster->offset[v], p, at->xyz);

@@ -68,7 +68,7 @@ tm_status tm_optimise_held(tm_optimise_work *w, tm_error *error)
     for (size_t round = 0; round < ROUNDS && closer; round++) {
         closer = false;
         for (uint32_t v = 0; v < w->mesh->nodes; v++) {
-            if (!w->rule[v].held || w->rule[v].freedom == TM_FIXED ||
+            if (!w->rule[v].held || w->rule[v].freedom == TM_MOVES_NOT ||
                 w->vicinity.start[w->vicinity.row[v]] ==
                     w->vicinity.start[w->vicinity.row[v] + 1])
                 continue;

@@ -16,13 +16,13 @@ void tm_cluster_place(tm_cluster *cluster, size_t v, const double point[3])
     const tm_node_rule *rule = &cluster->rule[v];
     const tm_boundary *boundary = cluster->boundary;
     tm_boundary_place *at = &cluster->place[v];
-    if (rule->freedom == TM_FREE) {
+    if (rule->freedom == TM_MOVES_FREELY) {
         memcpy(cluster->xyz[v], point, sizeof *cluster->xyz);
         return;
     }
     double on[3];
     tm_subtract(on, point, cluster->offset[v]);
-    if (rule->freedom == TM_ON_SURFACE)
+    if (rule->freedom == TM_MOVES_ON_SURFACE)
         boundary->on_surface(boundary->of, rule->where, on, at);
     else
         boundary->on_curve(boundary->of, rule->where, on, at);
@@ -34,12 +34,12 @@ void tm_cluster_along(const tm_cluster *cluster, size_t v, double vector[3])
 {
     const uint8_t freedom = cluster->rule[v].freedom;
     const double *axis = cluster->place[v].axis;
-    if (freedom == TM_FREE)
+    if (freedom == TM_MOVES_FREELY)
         return;
     const double product = tm_dot(vector, axis);
     for (size_t i = 0; i < 3; i++)
-        vector[i] =
-            freedom == TM_ON_CURVE ? product * axis[i] : vector[i] - product * axis[i];
+        vector[i] = freedom == TM_MOVES_ON_CURVE ? product * axis[i]
+                                                 : vector[i] - product * axis[i];
 }
 
 double tm_cluster_value(tm_cluster *cluster, double sharpness)
