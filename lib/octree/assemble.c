@@ -220,6 +220,19 @@ static void add_all(assembler *a, bool counting)
     }
 }
 
+/* The level of the smallest chosen leaf at each node of the octree. */
+static uint8_t *find_levels(const assembler *a)
+{
+    uint8_t *level = calloc(a->octree->nodes + 1, 1);
+    for (size_t l = 0; level && l < a->octree->leaves; l++)
+        for (unsigned c = 0; a->solid->chosen[l] && c < LEAF_CORNERS; c++) {
+            uint8_t *here = &level[a->octree->node[l][c]];
+            if (a->octree->leaf[l].level > *here)
+                *here = a->octree->leaf[l].level;
+        }
+    return level;
+}
+
 /* Puts all nodes but the middles where they are to begin. */
 static tm_status place_nodes(assembler *a, tm_error *error)
 {
@@ -229,21 +242,15 @@ static tm_status place_nodes(assembler *a, tm_error *error)
         tm_octree_point(a->octree, a->octree->grid[to->grid_node[n]], xyz[n]);
     for (size_t s = 0; s < a->skin->nodes; s++)
         memcpy(xyz[to->outer + s], xyz[to->inner[s]], sizeof *xyz);
-    /* The finest leaf at each node of the skin. */
-    uint8_t *level = calloc(a->skin->nodes + 1, 1);
+    uint8_t *level = find_levels(a);
     if (!level)
         return tm_fail_memory(error);
-    for (size_t f = 0; f < a->skin->faces; f++)
-        for (unsigned i = 0; i < tm_skin_corners(a->skin, f); i++) {
-            const uint32_t s = a->skin->face[f][i];
-            const uint8_t here = a->octree->leaf[a->skin->leaf[f]].level;
-            level[s] = here > level[s] ? here : level[s];
-        }
     const double share = 0.3;
     for (size_t s = 0; s < a->skin->nodes; s++) {
         int outward[3];
-        tm_octant_mask_outward(a->solid->mask[a->skin->grid_node[s]], outward);
-        const double step = share * a->octree->side / (double)((uint32_t)1 << level[s]);
+        const uint32_t node = a->skin->grid_node[s];
+        tm_octant_mask_outward(a->solid->mask[node], outward);
+        const double step = share * a->octree->side / (double)((uint32_t)1 << level[node]);
         for (int i = 0; i < 3; i++)
             xyz[to->inner[s]][i] -= step * outward[i];
     }
