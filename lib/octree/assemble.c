@@ -220,15 +220,17 @@ static void add_all(assembler *a, bool counting)
     }
 }
 
-/* The level of the smallest chosen leaf at each node of the octree. */
+/* The level of the smallest chosen leaf at each node of the octree; one more than that of a
+ * leaf which has it in the middle of an edge or a face. */
 static uint8_t *find_levels(const assembler *a)
 {
     uint8_t *level = calloc(a->octree->nodes + 1, 1);
     for (size_t l = 0; level && l < a->octree->leaves; l++)
-        for (unsigned c = 0; a->solid->chosen[l] && c < LEAF_CORNERS; c++) {
-            uint8_t *here = &level[a->octree->node[l][c]];
-            if (a->octree->leaf[l].level > *here)
-                *here = a->octree->leaf[l].level;
+        for (unsigned p = 0; a->solid->chosen[l] && p < TM_LEAF_NODES; p++) {
+            const uint32_t node = a->octree->node[l][p];
+            const unsigned here = a->octree->leaf[l].level + (p < TM_LEAF_EDGE ? 0u : 1u);
+            if (node != TM_NONE && here > level[node])
+                level[node] = (uint8_t)here;
         }
     return level;
 }
@@ -245,7 +247,7 @@ static tm_status place_nodes(assembler *a, tm_error *error)
     uint8_t *level = find_levels(a);
     if (!level)
         return tm_fail_memory(error);
-    const double share = 0.3;
+    const double share = 0.1;
     for (size_t s = 0; s < a->skin->nodes; s++) {
         int outward[3];
         const uint32_t node = a->skin->grid_node[s];

@@ -28,7 +28,7 @@ typedef struct tm_assembly {
     uint32_t *grid_node; /* [core]: of the octree */
 } tm_assembly;
 
-/* Makes them. All nodes are at their places on the lattice, but the inner ones 0.3
+/* Makes them. All nodes are at their places on the lattice, but the inner ones a tenth
  * of the side of the smallest leaf around them inside, and there every element is valid.
  * TM_ERROR_SYSTEM where memory or 32-bit ids are out. *assembly is to be freed, after an
  * error too. O(leaves + elements). */
