@@ -61,9 +61,10 @@ oracles := $(patsubst tests/oracle/%.cc,$(BUILD)/tests/%,$(wildcard tests/oracle
 fuzzer := $(BUILD)/fuzz/fuzz
 solver := $(BUILD)/vem/vem-poisson
 benchers := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/*.c))
-generated := $(BUILD)/generated/powers.h
+shapes := $(BUILD)/bench/shapes
+generated := $(BUILD)/generated/powers.h $(BUILD)/generated/transitions.h
 pages := $(wildcard man/*.[157])
-sources := $(wildcard lib/*/*.[ch] lib/*/*/*.c cmd/*.c cmd/common/*.[ch] tests/*/*.[ch] \
+sources := $(wildcard lib/*/*.[ch] lib/*/*/*.[ch] cmd/*.c cmd/common/*.[ch] tests/*/*.[ch] \
 	tests/*/*.cc examples/*.c)
 
 .PHONY: all tests check benchers bench fuzz lint format install uninstall clean
@@ -80,6 +81,11 @@ $(BUILD)/generated/%.h: $(BUILD)/generate/%
 $(BUILD)/generate/powers: lib/base/generate/powers.c
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $< $(LDFLAGS) $(LDLIBS)
+
+$(BUILD)/generate/transitions: $(wildcard lib/octree/generate/*.[ch]) \
+		lib/octree/face_pieces.c lib/octree/leaf_place.c lib/octree/transition.h
+	@mkdir -p $(@D)
+	$(CC) $(TM_CFLAGS) -o $@ $(filter %.c,$^) $(LDFLAGS) $(LDLIBS)
 
 $(BUILD)/%.o: %.c Makefile | $(generated)
 	@mkdir -p $(@D)
@@ -111,6 +117,10 @@ $(benchers): $(BUILD)/bench/%: $(BUILD)/tests/bench/%.o $(library)
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) $(LDLIBS)
 
+$(shapes): $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/shapes/*.c))
+	@mkdir -p $(@D)
+	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lm
+
 # Needs SuiteSparse; tests/cli/vem.bats and an example run it.
 $(solver): $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/vem/*.c)) $(library)
 	@mkdir -p $(@D)
@@ -132,7 +142,7 @@ fuzz:
 endif
 
 # What the benchmarks run; each is a script that can be run alone.
-benchers: all $(benchers)
+benchers: all $(benchers) $(shapes)
 
 bench: benchers
 	for bench in tests/bench/*.sh; do sh "$$bench" || exit; done

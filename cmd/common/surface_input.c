@@ -142,3 +142,44 @@ tm_format surface_input_read(const filter *f, tm_polygon_surface *surface,
                    surface->nodes, surface->facets);
     return format;
 }
+
+/* What was found and mended in the surface. */
+static void note_mending(const filter *f, const tm_surface *s)
+{
+    const char *name = filter_input_name(f);
+    if (s->turned)
+        filter_note(f, "%s: triangles were turned, so that all look outward", name);
+    if (s->duplicates)
+        filter_note(f, "%s: %zu triangles were there twice and are dropped", name,
+                    s->duplicates);
+    if (s->flat)
+        filter_note(f, "%s: %zu triangles without area are dropped", name, s->flat);
+    if (s->open_edges)
+        filter_note(f, "%s: the surface is open at %zu edges", name, s->open_edges);
+    if (s->crossings)
+        filter_note(f, "%s: the surface crosses itself at %zu pairs of triangles", name,
+                    s->crossings);
+}
+
+void surface_input_build(const filter *f, const tm_surface_options *options,
+                         tm_surface *surface, tm_stream *history)
+{
+    tm_polygon_surface polygons;
+    tm_stream stream;
+    tm_error error;
+    surface_input_read(f, &polygons, &stream);
+    if (tm_surface_build(surface, &polygons, options, &error) != TM_OK) {
+        if (!error.file[0])
+            snprintf(error.file, sizeof error.file, "%s", filter_input_name(f));
+        filter_fail(f, &error);
+    }
+    tm_polygon_surface_free(&polygons);
+    if (history) {
+        tm_stream_init(history);
+        history->base = stream.base;
+        history->history = stream.history;
+        stream.history = (tm_text){0};
+    }
+    tm_stream_free(&stream);
+    note_mending(f, surface);
+}

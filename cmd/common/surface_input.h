@@ -5,6 +5,7 @@
 #define CMD_COMMON_SURFACE_INPUT_H
 
 #include "../../lib/format/surface_format.h"
+#include "../../lib/surface/surface.h"
 #include "filter.h"
 
 /* Reads FILE or standard input; exits on failure. Of a stream, its blocks and history
@@ -12,5 +13,10 @@
  * empty. The nodes of a .poly or .smesh file may be in the .node file beside it. */
 tm_format surface_input_read(const filter *f, tm_polygon_surface *surface,
                              tm_stream *stream);
+
+/* Reads it and makes a closed surface of it, with a note about what had to be mended;
+ * exits on failure. Of a stream, *history gets its history; history may be NULL. */
+void surface_input_build(const filter *f, const tm_surface_options *options,
+                         tm_surface *surface, tm_stream *history);
 
 #endif

@@ -62,6 +62,21 @@ static inline void tm_octree_point(const tm_octree *octree, const uint32_t grid[
         xyz[i] = octree->low[i] + unit * (double)grid[i];
 }
 
+/* The side of a leaf, and its centre. */
+static inline double tm_leaf_side(const tm_octree *octree, const tm_leaf *leaf)
+{
+    return octree->side / (double)((uint32_t)1 << leaf->level);
+}
+
+static inline void tm_leaf_centre(const tm_octree *octree, const tm_leaf *leaf,
+                                  double centre[3])
+{
+    const uint32_t half = (uint32_t)1 << (octree->finest - leaf->level - 1);
+    const uint32_t grid[3] = {leaf->anchor[0] + half, leaf->anchor[1] + half,
+                              leaf->anchor[2] + half};
+    tm_octree_point(octree, grid, centre);
+}
+
 /* What a leaf is split for, and to which level. */
 typedef enum tm_octree_rule_kind {
     TM_RULE_EVERYTHING, /* it is there */

@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* octree-mesh: a closed surface in, hexahedra, wedges, pyramids and tetrahedra out. */
+#include "common/filter.h"
+#include "common/octree_rules.h"
+#include "common/surface_input.h"
+
+#include "../lib/base/json.h"
+#include "../lib/octree/octree_mesh_stream.h"
+#include "../lib/quality/jens.h"
+
+#include <stdlib.h>
+
+enum { FEATURE_ANGLE = FILTER_OWN, RESOLVE, LENIENT };
+
+static const struct option options[] = {
+    {"all", required_argument, NULL, 'a'},
+    {"surface", required_argument, NULL, 's'},
+    {"boxes", required_argument, NULL, 'b'},
+    {"region", required_argument, NULL, 'r'},
+    {"leaves", required_argument, NULL, 'l'},
+    {"levels", no_argument, NULL, 'u'},
+    {"feature-angle", required_argument, NULL, FEATURE_ANGLE},
+    {"resolve", required_argument, NULL, RESOLVE},
+    {"lenient", no_argument, NULL, LENIENT},
+    FILTER_OPTIONS};
+
+static const char synopsis[] =
+    "[-a L] [-s L] [-b FILE.reg] [-r SURFACE L] [-l FILE] [-u] [--feature-angle DEG] "
+    "[--resolve N] [--lenient] [SURFACE]";
+
+static const char own_help[] =
+    "  -a, --all L         octants of level L everywhere\n"
+    "  -s, --surface L     of level L where the surface is (default 5, if no other "
+    "rule\n"
+    "                      is given)\n"
+    "  -b, --boxes FILE    of the levels of the boxes in FILE (.reg)\n"
+    "  -r, --region S L    of level L on and in the closed surface in file S\n"
+    "  -l, --leaves FILE   split the octants whose numbers are in FILE once more\n"
+    "  -u, --levels        elements have the level of their octant as attribute\n"
+    "      --feature-angle DEG\n"
+    "                      an edge is kept where it is sharper (default 40)\n"
+    "      --resolve N     up to N levels more where a thin part or a gap of the "
+    "surface\n"
+    "                      would be lost (default 1)\n"
+    "      --lenient       take surfaces that are open or cross themselves\n";
+
+static const double default_angle = TM_FEATURE_ANGLE, straight_angle = 180;
+
+typedef struct {
+    octree_rules rules;
+    tm_surface_options surface;
+    unsigned resolve;
+    bool levels;
+} settings;
+
+static settings read_options(filter *f)
+{
+    settings o = {.surface = {.feature_angle = default_angle}, .resolve = 1};
+    const unsigned default_level = 5;
+    int c;
+    while ((c = filter_option(f)) != -1) {
+        if (c == 'u')
+            o.levels = true;
+        else if (c == FEATURE_ANGLE)
+            o.surface.feature_angle =
+                filter_number(f, "--feature-angle", optarg, 0, straight_angle);
+        else if (c == RESOLVE)
+            o.resolve =
+                (unsigned)filter_integer(f, "--resolve", optarg, 0, TM_OCTREE_LEVEL_MAX);
+        else if (c == LENIENT)
+            o.surface.lenient = true;
+        else
+            octree_rules_option(f, &o.rules, c);
+    }
+    if (o.rules.rules.count == 0)
+        octree_rules_add_level(f, &o.rules, TM_RULE_SURFACE, default_level);
+    return o;
+}
+
+/* What of the surface could not be made, and where. */
+static void note_losses(const filter *f, const tm_surface *s,
+                        const tm_octree_mesh_report *r)
+{
+    if (r->lost)
+        filter_note(f,
+                    "%zu octants with surface are too large for it: a thin part or a gap "
+                    "is lost near (%g, %g, %g); a finer level there, or --resolve, may "
+                    "keep it",
+                    r->lost, r->lost_at[0], r->lost_at[1], r->lost_at[2]);
+    if (r->components != s->components || r->euler != s->euler)
+        filter_note(f,
+                    "the boundary has %zu components and Euler number %lld, the surface "
+                    "%zu and %lld: something is too thin for this level",
+                    r->components, (long long)r->euler, s->components,
+                    (long long)s->euler);
+    if (r->corners_lost + r->curves_lost)
+        filter_note(f,
+                    "%zu corners and %zu sharp edges of the surface are too close "
+                    "together for this level, as near (%g, %g, %g)",
+                    r->corners_lost, r->curves_lost, r->feature_lost_at[0],
+                    r->feature_lost_at[1], r->feature_lost_at[2]);
+    if (r->held_back)
+        filter_note(f,
+                    "%zu boundary nodes are not on the surface yet: there they would "
+                    "invert an element (octree-repair takes them there)",
+                    r->held_back);
+    if (r->invalid)
+        filter_note(f, "%zu elements are inverted", r->invalid);
+}
+
+static void write_json(filter *f, const tm_octree *octree, const tm_octree_mesh *mesh)
+{
+    const tm_octree_mesh_report *r = &mesh->report;
+    const tm_mixed_mesh *m = &mesh->assembly.mesh;
+    size_t kind[TM_ELEMENT_NODES_MOST + 1] = {0};
+    tm_text text = {0};
+    tm_json json = {.text = &text};
+    for (size_t e = 0; e < m->elements; e++)
+        kind[m->start[e + 1] - m->start[e]]++;
+    tm_json_open(&json, NULL, '{');
+    tm_json_integer(&json, "octants", (int64_t)octree->leaves);
+    tm_json_integer(&json, "nodes", (int64_t)m->nodes);
+    tm_json_open(&json, "elements", '{');
+    tm_json_integer(&json, "tet", (int64_t)kind[4]);
+    tm_json_integer(&json, "pyramid", (int64_t)kind[5]);
+    tm_json_integer(&json, "wedge", (int64_t)kind[6]);
+    tm_json_integer(&json, "hex", (int64_t)kind[8]);
+    tm_json_close(&json, '}');
+    tm_json_integer(&json, "boundary_nodes", (int64_t)mesh->skin.nodes);
+    tm_json_integer(&json, "held_back", (int64_t)r->held_back);
+    tm_json_integer(&json, "inverted", (int64_t)r->invalid);
+    tm_json_integer(&json, "lost_octants", (int64_t)r->lost);
+    tm_json_integer(&json, "lost_corners", (int64_t)r->corners_lost);
+    tm_json_integer(&json, "lost_edges", (int64_t)r->curves_lost);
+    tm_json_integer(&json, "components", (int64_t)r->components);
+    tm_json_integer(&json, "euler", r->euler);
+    tm_json_close(&json, '}');
+    tm_text_string(&text, "\n");
+    filter_write_json(f, &text);
+    tm_text_free(&text);
+}
+
+int main(int argc, char **argv)
+{
+    filter f = {.name = "octree-mesh",
+                .synopsis = synopsis,
+                .purpose =
+                    "Fills a closed surface with hexahedra, and with wedges, pyramids\n"
+                    "and tetrahedra where octants of different size meet.",
+                .help = own_help,
+                .options = options,
+                .letters = "a:s:b:r:l:u" FILTER_LETTERS};
+    filter_start(&f, argc, argv);
+    settings o = read_options(&f);
+    filter_operands(&f);
+    tm_surface surface;
+    tm_stream stream;
+    tm_octree octree;
+    tm_octree_mesh mesh;
+    tm_error error;
+    surface_input_build(&f, &o.surface, &surface, &stream);
+    if (tm_octree_build(&octree, &surface, o.rules.rules.rule, o.rules.rules.count,
+                        &error) != TM_OK ||
+        tm_octree_resolve(&octree, &surface, o.resolve, &error) != TM_OK ||
+        tm_octree_mesh_make(&mesh, &octree, &surface, &error) != TM_OK)
+        filter_fail(&f, &error);
+    octree_rules_free(&o.rules);
+    note_losses(&f, &surface, &mesh.report);
+    if (f.json)
+        write_json(&f, &octree, &mesh);
+    const size_t nodes = mesh.assembly.mesh.nodes;
+    const size_t elements = mesh.assembly.mesh.elements;
+    const bool valid = mesh.report.invalid == 0;
+    if (tm_octree_mesh_give(&mesh, &octree, &surface, o.levels, &stream, &error) != TM_OK)
+        filter_fail(&f, &error);
+    filter_write(&f, &stream, "%zu octants, %zu nodes, %zu elements", octree.leaves,
+                 nodes, elements);
+    tm_octree_mesh_free(&mesh);
+    tm_octree_free(&octree);
+    tm_surface_free(&surface);
+    tm_stream_free(&stream);
+    return filter_finish(&f, valid ? EXIT_SUCCESS : EXIT_GOAL);
+}

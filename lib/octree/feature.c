@@ -1,0 +1,268 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "feature.h"
+
+#include "../base/array.h"
+#include "../base/disjoint_sets.h"
+#include "../geom/vector.h"
+#include "feature_path.h"
+#include "feature_region.h"
+#include "feature_select.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A skin node that could stand for a corner. */
+typedef struct {
+    double distance2; /* in sides of leaves */
+    uint32_t corner, node;
+} candidate;
+
+typedef struct {
+    tm_path_finder path;
+    double *size;
+    tm_feature_choice choice;
+    uint32_t *node_of; /* [corners]: the skin node, or TM_NONE */
+    size_t candidates, room;
+    candidate *candidate;
+    uint32_t corner; /* whose candidates are looked for */
+    bool no_memory;
+} finder;
+
+static int compare_candidates(const void *a, const void *b)
+{
+    const candidate *ca = a;
+    const candidate *cb = b;
+    if (ca->distance2 != cb->distance2)
+        return ca->distance2 < cb->distance2 ? -1 : 1;
+    if (ca->corner != cb->corner)
+        return ca->corner < cb->corner ? -1 : 1;
+    return (ca->node > cb->node) - (ca->node < cb->node);
+}
+
+static void consider(void *context, uint32_t s)
+{
+    const double reach = 1.75; /* sides of a leaf */
+    finder *find = context;
+    const tm_octree *octree = find->path.octree;
+    const tm_surface *surface = find->path.surface;
+    double xyz[3];
+    tm_octree_point(octree, octree->grid[find->path.skin->grid_node[s]], xyz);
+    const double *corner = surface->xyz[surface->corner[find->corner]];
+    const double size = find->size[s];
+    const double distance2 = tm_distance2(xyz, corner) / (size * size);
+    if (distance2 > reach * reach)
+        return;
+    void *more = tm_grow(find->candidate, &find->room, find->candidates + 1,
+                         sizeof *find->candidate);
+    if (!more) {
+        find->no_memory = true;
+        return;
+    }
+    find->candidate = more;
+    find->candidate[find->candidates++] = (candidate){distance2, find->corner, s};
+}
+
+/* Gives each corner a node, the closest pairs first. */
+static tm_status find_corners(finder *find, tm_error *error)
+{
+    const tm_surface *surface = find->path.surface;
+    tm_feature *feature = find->path.feature;
+    find->node_of = tm_new(surface->corners, sizeof *find->node_of);
+    if (!find->node_of)
+        return tm_fail_memory(error);
+    for (size_t c = 0; c < surface->corners; c++) {
+        find->node_of[c] = TM_NONE;
+        find->corner = (uint32_t)c;
+        if (find->choice.corner[c])
+            tm_skin_cells_near(find->path.cells, surface->xyz[surface->corner[c]],
+                               consider, find);
+    }
+    if (find->no_memory)
+        return tm_fail_memory(error);
+    if (find->candidates > 0)
+        qsort(find->candidate, find->candidates, sizeof *find->candidate,
+              compare_candidates);
+    for (size_t i = 0; i < find->candidates; i++) {
+        const candidate *c = &find->candidate[i];
+        if (find->node_of[c->corner] != TM_NONE ||
+            feature->kind[c->node] != TM_ON_PATCH)
+            continue;
+        find->node_of[c->corner] = c->node;
+        feature->kind[c->node] = TM_ON_CORNER;
+        feature->of[c->node] = c->corner;
+    }
+    for (size_t c = 0; c < surface->corners; c++)
+        if (find->node_of[c] == TM_NONE && find->choice.corner[c]) {
+            feature->corners_lost++;
+            feature->lost = surface->corner[c];
+        }
+    return TM_OK;
+}
+
+/* Joins the patches on the two sides of a curve. */
+static void join_patches(const tm_surface *surface, uint32_t *parent, uint32_t curve)
+{
+    const uint32_t a = tm_set_root(parent, surface->curve_patch[curve][0]);
+    const uint32_t b = tm_set_root(parent, surface->curve_patch[curve][1]);
+    if (a != b)
+        parent[a > b ? a : b] = a > b ? b : a;
+}
+
+static tm_status find_curves(finder *find, tm_surface *surface, tm_error *error)
+{
+    tm_feature *feature = find->path.feature;
+    const uint32_t *corner_of = find->choice.corner_of;
+    uint32_t *parent = tm_new(surface->patches, sizeof *parent);
+    tm_status status = parent ? TM_OK : tm_fail_memory(error);
+    for (size_t p = 0; parent && p < surface->patches; p++)
+        parent[p] = (uint32_t)p;
+    for (uint32_t c = 0; status == TM_OK && c < surface->curves; c++) {
+        const uint32_t *node = surface->curve_node + surface->curve_start[c];
+        const size_t last = surface->curve_start[c + 1] - surface->curve_start[c] - 1;
+        const uint32_t from = corner_of[node[0]], to = corner_of[node[last]];
+        bool found = false;
+        if (!find->choice.curve[c]) {
+            join_patches(surface, parent, c);
+            continue;
+        }
+        const bool has_ends = (from == TM_NONE || find->node_of[from] != TM_NONE) &&
+                              (to == TM_NONE || find->node_of[to] != TM_NONE);
+        if (has_ends)
+            status = tm_path_along_curve(
+                &find->path, c, from == TM_NONE ? TM_NONE : find->node_of[from],
+                to == TM_NONE ? TM_NONE : find->node_of[to], &found, error);
+        if (status == TM_OK && !found) {
+            feature->curves_lost++;
+            feature->lost = node[last / 2];
+            join_patches(surface, parent, c);
+        }
+    }
+    for (size_t t = 0; status == TM_OK && t < surface->triangles; t++)
+        surface->patch[t] = tm_set_root(parent, surface->patch[t]);
+    free(parent);
+    return status;
+}
+
+/* The side of the smallest leaf at each node of the skin. */
+static double *find_sizes(const tm_skin *skin, const tm_octree *octree)
+{
+    double *size = tm_new(skin->nodes, sizeof *size);
+    for (size_t s = 0; size && s < skin->nodes; s++)
+        size[s] = octree->side;
+    for (size_t f = 0; size && f < skin->faces; f++) {
+        const unsigned level = octree->leaf[skin->leaf[f]].level;
+        const double side = octree->side / (double)((uint32_t)1 << level);
+        for (unsigned i = 0; i < tm_skin_corners(skin, f); i++)
+            if (side < size[skin->face[f][i]])
+                size[skin->face[f][i]] = side;
+    }
+    return size;
+}
+
+/* The skin node closest to a point. */
+typedef struct {
+    const finder *find;
+    const double *point;
+    double distance2;
+    uint32_t node;
+} nearest;
+
+static void compare_nearest(void *context, uint32_t s)
+{
+    nearest *n = context;
+    const tm_octree *octree = n->find->path.octree;
+    double xyz[3];
+    tm_octree_point(octree, octree->grid[n->find->path.skin->grid_node[s]], xyz);
+    const double distance2 = tm_distance2(xyz, n->point);
+    if (distance2 < n->distance2 || (distance2 == n->distance2 && s < n->node)) {
+        n->distance2 = distance2;
+        n->node = s;
+    }
+}
+
+/* Chooses curves by the size of the leaves near the middle of each. */
+static tm_status choose(finder *find, tm_error *error)
+{
+    const tm_surface *surface = find->path.surface;
+    double *size = tm_new(surface->curves, sizeof *size);
+    if (!size)
+        return tm_fail_memory(error);
+    for (size_t c = 0; c < surface->curves; c++) {
+        const size_t begin = surface->curve_start[c], end = surface->curve_start[c + 1];
+        nearest n = {find, surface->xyz[surface->curve_node[(begin + end) / 2]], INFINITY,
+                     TM_NONE};
+        tm_skin_cells_near(find->path.cells, n.point, compare_nearest, &n);
+        size[c] = n.node == TM_NONE ? find->path.octree->side : find->size[n.node];
+    }
+    const tm_status status = tm_feature_choose(&find->choice, surface, size, error);
+    free(size);
+    return status;
+}
+
+static tm_status allocate(tm_feature *feature, size_t nodes, tm_error *error)
+{
+    feature->kind = calloc(nodes + 1, sizeof *feature->kind);
+    feature->of = tm_new(nodes, sizeof *feature->of);
+    feature->along = tm_new(nodes, sizeof *feature->along);
+    if (!feature->kind || !feature->of || !feature->along)
+        return tm_fail_memory(error);
+    for (size_t s = 0; s < nodes; s++)
+        feature->of[s] = feature->along[s][0] = feature->along[s][1] = TM_NONE;
+    return TM_OK;
+}
+
+static void free_finder(finder *find)
+{
+    free(find->size);
+    free(find->node_of);
+    tm_feature_choice_free(&find->choice);
+    free(find->candidate);
+    free(find->path.on_path);
+    free(find->path.visit);
+    free(find->path.heap);
+    free(find->path.length);
+    free(find->path.path);
+    free(find->path.cuts);
+}
+
+tm_status tm_feature_find(tm_feature *feature, tm_skin *skin, const tm_octree *octree,
+                          tm_surface *surface, const tm_surface_point *at,
+                          tm_error *error)
+{
+    *feature = (tm_feature){.lost = TM_NONE};
+    tm_status status = allocate(feature, skin->nodes, error);
+    if (status != TM_OK || surface->corners + surface->curves == 0)
+        return status;
+    tm_skin_cells cells;
+    status = tm_skin_cells_sort(&cells, octree, skin, error);
+    finder find = {.path = {.octree = octree,
+                            .surface = surface,
+                            .cells = &cells,
+                            .skin = skin,
+                            .feature = feature}};
+    find.path.size = find.size = find_sizes(skin, octree);
+    find.path.on_path = calloc(skin->faces + 1, 1);
+    find.path.visit = tm_path_visits(skin->nodes);
+    if (status == TM_OK && !(find.size && find.path.on_path && find.path.visit))
+        status = tm_fail_memory(error);
+    if (status == TM_OK)
+        status = choose(&find, error);
+    if (status == TM_OK)
+        status = find_corners(&find, error);
+    if (status == TM_OK)
+        status = find_curves(&find, surface, error);
+    if (status == TM_OK)
+        status = tm_feature_regions(feature, skin, surface, find.path.on_path, at, error);
+    free_finder(&find);
+    tm_skin_cells_free(&cells);
+    return status;
+}
+
+void tm_feature_free(tm_feature *feature)
+{
+    free(feature->kind);
+    free(feature->of);
+    free(feature->along);
+    *feature = (tm_feature){0};
+}

@@ -1,0 +1,472 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "feature_path.h"
+
+#include "../base/array.h"
+#include "../geom/vector.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A node as the search for one curve sees it. */
+typedef struct tm_path_visit {
+    uint32_t curve_round; /* param and distance2 are of this curve */
+    uint32_t round;       /* cost and from are of this search */
+    uint32_t from;
+    bool done;
+    double cost;
+    double param;     /* length along the curve up to the closest place */
+    double distance2; /* from it */
+} tm_path_visit;
+
+typedef struct tm_path_step {
+    double cost;
+    uint32_t node;
+} tm_path_step;
+
+/* How far from the curve a path may go, and from where a closed one may start, in sides
+ * of leaves. */
+static const double tube = 2;
+
+struct tm_path_visit *tm_path_visits(size_t nodes)
+{
+    return calloc(nodes + 1, sizeof(tm_path_visit));
+}
+
+static bool before(tm_path_step a, tm_path_step b)
+{
+    return a.cost < b.cost || (a.cost == b.cost && a.node < b.node);
+}
+
+static tm_status push(tm_path_finder *p, tm_path_step step, tm_error *error)
+{
+    void *heap = tm_grow(p->heap, &p->heap_room, p->heap_count + 1, sizeof *p->heap);
+    if (!heap)
+        return tm_fail_memory(error);
+    p->heap = heap;
+    size_t i = p->heap_count++;
+    for (; i > 0 && before(step, p->heap[(i - 1) / 2]); i = (i - 1) / 2)
+        p->heap[i] = p->heap[(i - 1) / 2];
+    p->heap[i] = step;
+    return TM_OK;
+}
+
+static tm_path_step pop(tm_path_finder *p)
+{
+    const tm_path_step top = p->heap[0];
+    const tm_path_step last = p->heap[--p->heap_count];
+    size_t i = 0;
+    for (size_t child; (child = 2 * i + 1) < p->heap_count; i = child) {
+        if (child + 1 < p->heap_count && before(p->heap[child + 1], p->heap[child]))
+            child++;
+        if (!before(p->heap[child], last))
+            break;
+        p->heap[i] = p->heap[child];
+    }
+    p->heap[i] = last;
+    return top;
+}
+
+static void place_of(const tm_path_finder *p, uint32_t s, double xyz[3])
+{
+    tm_octree_point(p->octree, p->octree->grid[p->skin->grid_node[s]], xyz);
+}
+
+/* The node's closest place on the curve. */
+static tm_path_visit *look_at(tm_path_finder *p, uint32_t s)
+{
+    tm_path_visit *v = &p->visit[s];
+    const uint32_t curve = p->curve;
+    if (v->curve_round == curve + 1)
+        return v;
+    double xyz[3];
+    double closest[3];
+    size_t segment;
+    place_of(p, s, xyz);
+    tm_surface_closest_on_curve(p->surface, curve, xyz, closest, &segment);
+    const uint32_t begin = p->surface->curve_node[p->surface->curve_start[curve] + segment];
+    v->curve_round = curve + 1;
+    v->distance2 = tm_distance2(xyz, closest);
+    v->param =
+        p->length[segment] + sqrt(tm_distance2(p->surface->xyz[begin], closest));
+    return v;
+}
+
+/* The distance of two places along the curve; around it where it is closed. */
+static double along_curve(const tm_path_finder *p, double a, double b)
+{
+    const double d = fabs(a - b);
+    return p->closed && d > p->total / 2 ? p->total - d : d;
+}
+
+/* Whether a node may be on the path from one stop to the next. */
+static bool may_pass(const tm_path_finder *p, const tm_path_visit *v, uint32_t s,
+                     const tm_path_stop *from, const tm_path_stop *to)
+{
+    const double size = p->size[s];
+    if (p->feature->kind[s] != TM_ON_PATCH || v->distance2 > tube * tube * size * size)
+        return false;
+    const double middle = (from->param + to->param) / 2;
+    const double half = (to->param - from->param) / 2 + tube * size;
+    return along_curve(p, v->param, middle) <= half;
+}
+
+/* The neighbours of s: along edges and, of faces that are not cut, diagonals. A
+ * quadrilateral's other three corners; each comes up to twice. */
+static unsigned face_neighbours(const tm_skin *skin, size_t f, uint32_t s, uint32_t to[3])
+{
+    const unsigned k = tm_skin_corners(skin, f);
+    const uint32_t *face = skin->face[f];
+    unsigned i = 0;
+    while (face[i] != s)
+        i++;
+    to[0] = face[(i + 1) % k];
+    to[1] = face[(i + k - 1) % k];
+    to[2] = face[(i + 2) % k];
+    return k == 4 && skin->cut[f] == TM_UNCUT ? 3 : 2;
+}
+
+static tm_status relax(tm_path_finder *p, uint32_t s, uint32_t to, tm_error *error)
+{
+    const tm_path_visit *a = &p->visit[s];
+    tm_path_visit *b = look_at(p, to);
+    const double nearness = 0.1; /* edges on the curve are not free */
+    double here[3];
+    double there[3];
+    place_of(p, s, here);
+    place_of(p, to, there);
+    const double edge = sqrt(tm_distance2(here, there));
+    const double size = fmin(p->size[s], p->size[to]);
+    const double off = (a->distance2 + b->distance2) / (size * size);
+    const double cost = a->cost + along_curve(p, a->param, b->param) +
+                        edge * (nearness + off);
+    if (b->round == p->round && b->cost <= cost)
+        return TM_OK;
+    b->round = p->round;
+    b->cost = cost;
+    b->from = s;
+    b->done = false;
+    return push(p, (tm_path_step){cost, to}, error);
+}
+
+/* Dijkstra's search from one stop to the next. */
+static tm_status search(tm_path_finder *p, const tm_path_stop *from,
+                        const tm_path_stop *to, bool *found, tm_error *error)
+{
+    tm_path_visit *first = look_at(p, from->node);
+    p->round++;
+    p->heap_count = 0;
+    *first = (tm_path_visit){.curve_round = first->curve_round,
+                             .round = p->round,
+                             .from = TM_NONE,
+                             .param = from->param,
+                             .distance2 = first->distance2};
+    *found = false;
+    tm_status status = push(p, (tm_path_step){0, from->node}, error);
+    while (status == TM_OK && p->heap_count > 0) {
+        const uint32_t s = pop(p).node;
+        if (p->visit[s].done)
+            continue;
+        p->visit[s].done = true;
+        if (s == to->node && s != from->node) {
+            *found = true;
+            break;
+        }
+        for (size_t i = p->skin->around_start[s];
+             status == TM_OK && i < p->skin->around_start[s + 1]; i++) {
+            uint32_t next[3];
+            const unsigned n = face_neighbours(p->skin, p->skin->around[i], s, next);
+            for (unsigned j = 0; status == TM_OK && j < n; j++) {
+                const tm_path_visit *v = look_at(p, next[j]);
+                if (next[j] == to->node || may_pass(p, v, next[j], from, to))
+                    status = relax(p, s, next[j], error);
+            }
+        }
+    }
+    return status;
+}
+
+static tm_status append(tm_path_finder *p, uint32_t s, tm_error *error)
+{
+    void *path = tm_grow(p->path, &p->path_room, p->path_count + 1, sizeof *p->path);
+    if (!path)
+        return tm_fail_memory(error);
+    p->path = path;
+    p->path[p->path_count++] = s;
+    return TM_OK;
+}
+
+/* A face that has both nodes; the next one after `last`, which is TM_NONE at first. */
+static uint32_t common_face(const tm_skin *skin, uint32_t s, uint32_t t, uint32_t last)
+{
+    bool past = last == TM_NONE;
+    for (size_t i = skin->around_start[s]; i < skin->around_start[s + 1]; i++) {
+        const uint32_t f = skin->around[i];
+        if (!past) {
+            past = f == last;
+            continue;
+        }
+        for (unsigned c = 0; c < tm_skin_corners(skin, f); c++)
+            if (skin->face[f][c] == t)
+                return f;
+    }
+    return TM_NONE;
+}
+
+/* The corner of a face that a node is. */
+static unsigned corner_in(const tm_skin *skin, size_t f, uint32_t s)
+{
+    unsigned i = 0;
+    while (skin->face[f][i] != s)
+        i++;
+    return i;
+}
+
+/* Whether two nodes of a face are not neighbours on its border. */
+static bool is_diagonal(const tm_skin *skin, size_t f, uint32_t s, uint32_t t)
+{
+    return tm_skin_corners(skin, f) == 4 &&
+           (corner_in(skin, f, s) + 2) % 4 == corner_in(skin, f, t);
+}
+
+/* Whether the path can go from s to t at once, where both are in a face with what is now
+ * between them. */
+static bool can_cut_short(const tm_skin *skin, uint32_t s, uint32_t between, uint32_t t)
+{
+    for (uint32_t f = common_face(skin, s, t, TM_NONE); f != TM_NONE;
+         f = common_face(skin, s, t, f)) {
+        bool has = false;
+        for (unsigned c = 0; c < tm_skin_corners(skin, f); c++)
+            has |= skin->face[f][c] == between;
+        if (has && (!is_diagonal(skin, f, s, t) || skin->cut[f] == TM_UNCUT))
+            return true;
+    }
+    return false;
+}
+
+static void put_on_curve(tm_path_finder *p, uint32_t s)
+{
+    if (p->feature->kind[s] != TM_ON_PATCH)
+        return;
+    p->feature->kind[s] = TM_ON_CURVE;
+    p->feature->of[s] = p->curve;
+}
+
+static void take_off_curve(tm_path_finder *p, uint32_t s)
+{
+    if (p->feature->kind[s] == TM_ON_CURVE && p->feature->of[s] == p->curve)
+        p->feature->kind[s] = TM_ON_PATCH;
+}
+
+/* Appends the nodes after the first stop up to the second, and takes them. Two edges of
+ * one face would be flattened to a straight angle, so their third side is taken. */
+static tm_status take(tm_path_finder *p, const tm_path_stop *from,
+                      const tm_path_stop *to, tm_error *error)
+{
+    const size_t begin = p->path_count;
+    tm_status status = TM_OK;
+    for (uint32_t s = to->node; status == TM_OK && s != from->node; s = p->visit[s].from)
+        status = append(p, s, error);
+    if (status != TM_OK)
+        return status;
+    for (size_t i = begin, j = p->path_count; i + 1 < j; i++) {
+        const uint32_t s = p->path[i];
+        p->path[i] = p->path[--j];
+        p->path[j] = s;
+    }
+    size_t kept = begin;
+    for (size_t i = begin; i < p->path_count; i++) {
+        const uint32_t previous = kept > begin ? p->path[kept - 1] : from->node;
+        if (i + 1 < p->path_count &&
+            can_cut_short(p->skin, previous, p->path[i], p->path[i + 1]))
+            continue;
+        p->path[kept++] = p->path[i];
+    }
+    p->path_count = kept;
+    for (size_t i = begin; i < kept; i++)
+        put_on_curve(p, p->path[i]);
+    return TM_OK;
+}
+
+/* Cuts the quadrilaterals whose diagonals the new part of the path takes. */
+static tm_status cut_faces(tm_path_finder *p, size_t begin, tm_error *error)
+{
+    for (size_t i = begin; i < p->path_count; i++) {
+        const uint32_t s = p->path[i - 1], t = p->path[i];
+        const uint32_t f = common_face(p->skin, s, t, TM_NONE);
+        if (f == TM_NONE || !is_diagonal(p->skin, f, s, t) ||
+            common_face(p->skin, s, t, f) != TM_NONE)
+            continue;
+        void *cuts = tm_grow(p->cuts, &p->cut_room, p->cut_count + 1, sizeof *p->cuts);
+        if (!cuts)
+            return tm_fail_memory(error);
+        p->cuts = cuts;
+        p->cuts[p->cut_count++] = f;
+        p->skin->cut[f] = corner_in(p->skin, f, s) % 2 ? TM_CUT_13 : TM_CUT_02;
+    }
+    return TM_OK;
+}
+
+/* Gives back what a path that did not get through has taken. */
+static void release(tm_path_finder *p)
+{
+    for (size_t i = 0; i < p->path_count; i++)
+        take_off_curve(p, p->path[i]);
+    for (unsigned i = 0; i < p->stops; i++)
+        take_off_curve(p, p->stop[i].node);
+    for (size_t i = 0; i < p->cut_count; i++)
+        p->skin->cut[p->cuts[i]] = TM_UNCUT;
+}
+
+static void mark_edge(tm_path_finder *p, uint32_t s, uint32_t t)
+{
+    for (uint32_t f = common_face(p->skin, s, t, TM_NONE); f != TM_NONE;
+         f = common_face(p->skin, s, t, f)) {
+        const unsigned k = tm_skin_corners(p->skin, f);
+        const unsigned i = corner_in(p->skin, f, s), j = corner_in(p->skin, f, t);
+        if ((i + 1) % k == j)
+            p->on_path[f] |= (uint8_t)(1u << i);
+        else if ((j + 1) % k == i)
+            p->on_path[f] |= (uint8_t)(1u << j);
+    }
+}
+
+static void enter(tm_path_finder *p)
+{
+    for (size_t i = 1; i < p->path_count; i++)
+        mark_edge(p, p->path[i - 1], p->path[i]);
+    for (size_t i = 0; i < p->path_count; i++) {
+        const uint32_t s = p->path[i];
+        const bool around = p->path[0] == p->path[p->path_count - 1];
+        if (p->feature->kind[s] != TM_ON_CURVE || (i == 0 && !around))
+            continue;
+        p->feature->along[s][0] = i > 0 ? p->path[i - 1] : p->path[p->path_count - 2];
+        p->feature->along[s][1] =
+            i + 1 < p->path_count ? p->path[i + 1] : p->path[1];
+    }
+}
+
+static tm_status measure(tm_path_finder *p, tm_error *error)
+{
+    const tm_surface *surface = p->surface;
+    const size_t begin = surface->curve_start[p->curve];
+    const size_t count = surface->curve_start[p->curve + 1] - begin;
+    void *room = tm_grow(p->length, &p->length_room, count, sizeof *p->length);
+    if (!room)
+        return tm_fail_memory(error);
+    p->length = room;
+    p->length[0] = 0;
+    for (size_t i = 1; i < count; i++)
+        p->length[i] =
+            p->length[i - 1] +
+            sqrt(tm_distance2(surface->xyz[surface->curve_node[begin + i - 1]],
+                              surface->xyz[surface->curve_node[begin + i]]));
+    p->total = p->length[count - 1];
+    return TM_OK;
+}
+
+/* The place of the curve at a length along it. */
+static void place_on_curve(const tm_path_finder *p, double param, double xyz[3])
+{
+    const uint32_t *node = p->surface->curve_node + p->surface->curve_start[p->curve];
+    size_t i = 0;
+    const size_t last = p->surface->curve_start[p->curve + 1] -
+                        p->surface->curve_start[p->curve] - 2;
+    while (i < last && p->length[i + 1] < param)
+        i++;
+    const double *a = p->surface->xyz[node[i]];
+    const double *b = p->surface->xyz[node[i + 1]];
+    const double t = (param - p->length[i]) / (p->length[i + 1] - p->length[i]);
+    for (int j = 0; j < 3; j++)
+        xyz[j] = a[j] + t * (b[j] - a[j]);
+}
+
+/* The free node closest to a point. */
+typedef struct {
+    const tm_path_finder *p;
+    const double *point;
+    uint32_t node;
+    double distance2;
+} nearest;
+
+static void compare_nearest(void *context, uint32_t s)
+{
+    nearest *n = context;
+    double xyz[3];
+    if (n->p->feature->kind[s] != TM_ON_PATCH)
+        return;
+    place_of(n->p, s, xyz);
+    const double d = tm_distance2(n->point, xyz);
+    if (d < n->distance2 || (d == n->distance2 && s < n->node)) {
+        n->node = s;
+        n->distance2 = d;
+    }
+}
+
+static uint32_t node_near(const tm_path_finder *p, double param)
+{
+    double point[3];
+    place_on_curve(p, param, point);
+    nearest n = {p, point, TM_NONE, INFINITY};
+    tm_skin_cells_near(p->cells, point, compare_nearest, &n);
+    const double reach = n.node == TM_NONE ? 0 : tube * p->size[n.node];
+    return n.distance2 <= reach * reach ? n.node : TM_NONE;
+}
+
+/* Where the path must pass: its ends, and two or three places more where it comes back to
+ * where it began. False where a node is missing. */
+static bool find_stops(tm_path_finder *p, uint32_t from, uint32_t to)
+{
+    enum { THIRDS = TM_PATH_STOPS - 1 };
+    p->closed = from == to;
+    p->stops = 0;
+    if (!p->closed) {
+        p->stop[p->stops++] = (tm_path_stop){from, 0};
+        p->stop[p->stops++] = (tm_path_stop){to, p->total};
+        return true;
+    }
+    for (unsigned i = 0; i < THIRDS; i++) {
+        const double param = p->total * i / THIRDS;
+        const uint32_t s = i == 0 && from != TM_NONE ? from : node_near(p, param);
+        if (s == TM_NONE)
+            return false;
+        put_on_curve(p, s);
+        p->stop[p->stops++] = (tm_path_stop){s, param};
+    }
+    p->stop[p->stops++] = (tm_path_stop){p->stop[0].node, p->total};
+    return true;
+}
+
+static tm_status find_path(tm_path_finder *p, bool *found, tm_error *error)
+{
+    tm_status status = append(p, p->stop[0].node, error);
+    for (unsigned i = 1; status == TM_OK && i < p->stops; i++) {
+        const size_t begin = p->path_count;
+        status = search(p, &p->stop[i - 1], &p->stop[i], found, error);
+        if (status != TM_OK || !*found)
+            return status;
+        status = take(p, &p->stop[i - 1], &p->stop[i], error);
+        if (status == TM_OK)
+            status = cut_faces(p, begin, error);
+    }
+    return status;
+}
+
+tm_status tm_path_along_curve(tm_path_finder *finder, uint32_t curve, uint32_t from,
+                              uint32_t to, bool *found, tm_error *error)
+{
+    tm_path_finder *p = finder;
+    *found = false;
+    p->curve = curve;
+    p->path_count = p->cut_count = 0;
+    tm_status status = measure(p, error);
+    if (status != TM_OK)
+        return status;
+    if (find_stops(p, from, to))
+        status = find_path(p, found, error);
+    if (status == TM_OK && *found)
+        enter(p);
+    else
+        release(p);
+    return status;
+}

@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "octree_mesh.h"
+
+#include "../base/array.h"
+#include "../base/disjoint_sets.h"
+#include "fit.h"
+#include "settle.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Where the skin's nodes are closest to the surface. Neighbours in number are mostly close
+ * to each other, so that each begins where the last one ended. */
+static tm_status find_closest(tm_octree_mesh *m, const tm_octree *octree,
+                              const tm_surface *surface, tm_error *error)
+{
+    m->at = tm_new(m->skin.nodes, sizeof *m->at);
+    m->held = calloc(m->skin.nodes + 1, sizeof *m->held);
+    if (!m->at || !m->held)
+        return tm_fail_memory(error);
+    uint32_t guess = TM_NONE;
+    for (size_t s = 0; s < m->skin.nodes; s++) {
+        double xyz[3];
+        tm_octree_point(octree, octree->grid[m->skin.grid_node[s]], xyz);
+        m->at[s].triangle = guess;
+        tm_surface_closest(surface, xyz, TM_NONE, &m->at[s]);
+        guess = m->at[s].triangle;
+    }
+    return TM_OK;
+}
+
+/* The pieces of the boundary, and its Euler number. */
+static tm_status measure_boundary(tm_octree_mesh *m, tm_error *error)
+{
+    const tm_skin *skin = &m->skin;
+    uint32_t *parent = tm_new(skin->nodes, sizeof *parent);
+    if (!parent)
+        return tm_fail_memory(error);
+    for (size_t s = 0; s < skin->nodes; s++)
+        parent[s] = (uint32_t)s;
+    int64_t half_edges = 0;
+    for (size_t f = 0; f < skin->faces; f++) {
+        const unsigned k = tm_skin_corners(skin, f);
+        half_edges += k;
+        for (unsigned i = 1; i < k; i++) {
+            const uint32_t a = tm_set_root(parent, skin->face[f][0]);
+            const uint32_t b = tm_set_root(parent, skin->face[f][i]);
+            parent[a > b ? a : b] = a > b ? b : a;
+        }
+    }
+    for (size_t s = 0; s < skin->nodes; s++)
+        m->report.components += tm_set_root(parent, (uint32_t)s) == s;
+    m->report.euler = (int64_t)skin->nodes - half_edges / 2 + (int64_t)skin->faces;
+    free(parent);
+    return TM_OK;
+}
+
+static tm_status count_lost(tm_octree_mesh *m, const tm_octree *octree, tm_error *error)
+{
+    uint8_t *lost = tm_new(octree->leaves, sizeof *lost);
+    if (!lost)
+        return tm_fail_memory(error);
+    m->report.lost = tm_solid_find_lost(&m->solid, octree, lost);
+    for (size_t l = 0; m->report.lost > 0 && l < octree->leaves; l++)
+        if (lost[l]) {
+            tm_leaf_centre(octree, &octree->leaf[l], m->report.lost_at);
+            break;
+        }
+    free(lost);
+    return TM_OK;
+}
+
+static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *surface,
+                      tm_error *error)
+{
+    tm_octree_mesh_report *r = &m->report;
+    tm_status status = tm_solid_choose(&m->solid, octree, surface, error);
+    if (status == TM_OK && m->solid.count == 0)
+        status = tm_fail(error, TM_ERROR_INPUT,
+                         "no leaf is inside the surface: it needs a finer level");
+    if (status == TM_OK)
+        status = count_lost(m, octree, error);
+    if (status == TM_OK)
+        status = tm_skin_find(&m->skin, octree, &m->solid, error);
+    if (status == TM_OK)
+        status = measure_boundary(m, error);
+    if (status == TM_OK)
+        status = find_closest(m, octree, surface, error);
+    if (status == TM_OK)
+        status = tm_feature_find(&m->feature, &m->skin, octree, surface, m->at, error);
+    if (status == TM_OK)
+        status = tm_assemble(&m->assembly, octree, &m->solid, &m->skin, error);
+    if (status == TM_OK)
+        status = tm_fit(&m->assembly, octree, &m->skin, &m->feature, surface,
+                        m->at, error);
+    if (status == TM_OK)
+        status = tm_settle(m, surface, error);
+    if (status != TM_OK)
+        return status;
+    r->filled = m->solid.filled;
+    r->removed = m->solid.removed;
+    r->corners_lost = m->feature.corners_lost;
+    r->curves_lost = m->feature.curves_lost;
+    if (m->feature.lost != TM_NONE)
+        memcpy(r->feature_lost_at, surface->xyz[m->feature.lost],
+               sizeof r->feature_lost_at);
+    return TM_OK;
+}
+
+tm_status tm_octree_mesh_make(tm_octree_mesh *mesh, const tm_octree *octree,
+                              tm_surface *surface, tm_error *error)
+{
+    *mesh = (tm_octree_mesh){0};
+    const size_t bytes = surface->triangles * sizeof *surface->patch;
+    uint32_t *patch = tm_new(surface->triangles, sizeof *patch);
+    if (!patch)
+        return tm_fail_memory(error);
+    memcpy(patch, surface->patch, bytes);
+    const tm_status status = make(mesh, octree, surface, error);
+    memcpy(surface->patch, patch, bytes);
+    free(patch);
+    return status;
+}
+
+void tm_octree_mesh_free(tm_octree_mesh *mesh)
+{
+    tm_solid_free(&mesh->solid);
+    tm_skin_free(&mesh->skin);
+    tm_feature_free(&mesh->feature);
+    tm_assembly_free(&mesh->assembly);
+    free(mesh->at);
+    free(mesh->held);
+    *mesh = (tm_octree_mesh){0};
+}
+
+/* Unmarks leaves that are as deep as they may be; returns how many are left. */
+static size_t keep_shallow(const tm_octree *octree, unsigned deepest, uint8_t *lost)
+{
+    size_t count = 0;
+    for (size_t l = 0; l < octree->leaves; l++) {
+        lost[l] = lost[l] && octree->leaf[l].level < deepest;
+        count += lost[l];
+    }
+    return count;
+}
+
+tm_status tm_octree_resolve(tm_octree *octree, const tm_surface *surface, unsigned levels,
+                            tm_error *error)
+{
+    unsigned deepest = levels;
+    for (size_t l = 0; l < octree->leaves; l++)
+        if (octree->leaf[l].level + levels > deepest)
+            deepest = octree->leaf[l].level + levels;
+    if (deepest > TM_OCTREE_LEVEL_MAX)
+        deepest = TM_OCTREE_LEVEL_MAX;
+    tm_status status = TM_OK;
+    for (bool more = levels > 0; status == TM_OK && more;) {
+        tm_solid solid;
+        uint8_t *lost = tm_new(octree->leaves, sizeof *lost);
+        status = lost ? tm_solid_choose(&solid, octree, surface, error)
+                      : tm_fail_memory(error);
+        if (status == TM_OK) {
+            tm_solid_find_lost(&solid, octree, lost);
+            more = keep_shallow(octree, deepest, lost) > 0;
+        }
+        if (lost)
+            tm_solid_free(&solid);
+        if (status == TM_OK && more)
+            status = tm_octree_refine(octree, surface, lost, error);
+        free(lost);
+    }
+    return status;
+}

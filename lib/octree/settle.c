@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "settle.h"
+
+#include "../base/array.h"
+#include "../mixed/optimise_surface.h"
+#include "../quality/jens.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Half of the way so many times, then all of it. */
+enum { HALVES = 5 };
+
+/* An element below is not taken for valid: it must be so in other programs too. */
+static const double least_valid = 1e-6;
+
+typedef struct {
+    tm_mixed_mesh *mesh;
+    const double (*base)[3];
+    uint8_t *steps;  /* [nodes]: how often it went half of its way back */
+    bool *changed;   /* [nodes]: in the last round */
+    bool *to_change; /* [nodes]: in this one */
+    size_t invalid;  /* elements whose nodes are all on the lattice */
+} retreat;
+
+static bool has_changed(const retreat *r, size_t e)
+{
+    for (size_t i = r->mesh->start[e]; i < r->mesh->start[e + 1]; i++)
+        if (r->changed[r->mesh->item[i]])
+            return true;
+    return false;
+}
+
+/* Marks the nodes of an invalid element that can go back; false where none can. */
+static bool mark_nodes(retreat *r, size_t e)
+{
+    bool any = false;
+    for (size_t i = r->mesh->start[e]; i < r->mesh->start[e + 1]; i++) {
+        const uint32_t n = r->mesh->item[i];
+        if (r->steps[n] <= HALVES) {
+            r->to_change[n] = true;
+            any = true;
+        }
+    }
+    return any;
+}
+
+static void go_back(retreat *r, size_t n)
+{
+    double *xyz = r->mesh->xyz[n];
+    r->steps[n]++;
+    for (int i = 0; i < 3; i++)
+        xyz[i] = r->steps[n] > HALVES ? r->base[n][i] : (xyz[i] + r->base[n][i]) / 2;
+}
+
+/* One round over the elements at nodes that changed; false when all are valid. */
+static bool take_back(retreat *r)
+{
+    const tm_mixed_mesh *mesh = r->mesh;
+    bool any = false;
+    for (size_t e = 0; e < mesh->elements; e++) {
+        const size_t k = mesh->start[e + 1] - mesh->start[e];
+        if (!has_changed(r, e) ||
+            tm_jens(k, (const double(*)[3])mesh->xyz, mesh->item + mesh->start[e]) >=
+                least_valid)
+            continue;
+        if (mark_nodes(r, e))
+            any = true;
+        else
+            r->invalid++;
+    }
+    for (size_t n = 0; n < mesh->nodes; n++) {
+        r->changed[n] = r->to_change[n];
+        if (r->to_change[n])
+            go_back(r, n);
+        r->to_change[n] = false;
+    }
+    return any;
+}
+
+static tm_status hold_back(tm_octree_mesh *m, tm_error *error)
+{
+    tm_mixed_mesh *mesh = &m->assembly.mesh;
+    retreat r = {.mesh = mesh,
+                 .base = (const double(*)[3])m->assembly.base,
+                 .steps = calloc(mesh->nodes + 1, 1),
+                 .changed = malloc(mesh->nodes + 1),
+                 .to_change = calloc(mesh->nodes + 1, 1)};
+    if (!r.steps || !r.changed || !r.to_change) {
+        free(r.steps);
+        free(r.changed);
+        free(r.to_change);
+        return tm_fail_memory(error);
+    }
+    memset(r.changed, true, mesh->nodes);
+    while (take_back(&r))
+        ;
+    m->report.invalid = r.invalid;
+    for (size_t s = 0; s < m->skin.nodes; s++) {
+        m->held[s] = r.steps[m->assembly.outer + s] > 0;
+        m->report.held_back += m->held[s];
+    }
+    free(r.steps);
+    free(r.changed);
+    free(r.to_change);
+    return TM_OK;
+}
+
+/* What each node may do while elements are improved. */
+static tm_node_rule *find_rules(const tm_octree_mesh *m)
+{
+    static const uint8_t freedom[] = {[TM_ON_PATCH] = TM_MOVES_ON_SURFACE,
+                                      [TM_ON_CURVE] = TM_MOVES_ON_CURVE,
+                                      [TM_ON_CORNER] = TM_MOVES_NOT};
+    const tm_assembly *a = &m->assembly;
+    tm_node_rule *rule = tm_new(a->mesh.nodes, sizeof *rule);
+    for (size_t n = 0; rule && n < a->mesh.nodes; n++)
+        rule[n] = (tm_node_rule){.where = TM_NONE, .freedom = TM_MOVES_FREELY};
+    for (size_t s = 0; rule && s < m->skin.nodes; s++)
+        rule[a->outer + s] = (tm_node_rule){.where = m->feature.of[s],
+                                            .freedom = freedom[m->feature.kind[s]]};
+    return rule;
+}
+
+tm_status tm_settle(tm_octree_mesh *mesh, const tm_surface *surface, tm_error *error)
+{
+    const double threshold = 0.2;
+    const tm_boundary boundary = tm_boundary_of_surface(surface);
+    const tm_optimise_options options = {
+        .threshold = threshold, .held_threshold = threshold, .effort = 1};
+    tm_optimise_report report;
+    tm_node_rule *rule = find_rules(mesh);
+    if (!rule)
+        return tm_fail_memory(error);
+    tm_status status = tm_mixed_optimise(&mesh->assembly.mesh, rule, &boundary, &options,
+                                         &report, error);
+    free(rule);
+    if (status == TM_OK)
+        status = hold_back(mesh, error);
+    return status;
+}
