@@ -50,7 +50,8 @@ static inline void tm_octree_child(const uint32_t anchor[3], unsigned shift, uns
         child[i] = anchor[i] + ((c >> i & 1) ? half : 0);
 }
 
-/* Appends a leaf. TM_ERROR_SYSTEM: memory; TM_ERROR_INPUT: there are too many. */
+/* Appends a leaf. TM_ERROR_SYSTEM: memory, also that of an octree of so many leaves;
+ * TM_ERROR_INPUT: there are more than TM_LEAVES_MAX. */
 tm_status tm_leaf_list_add(tm_leaf_list *list, const uint32_t anchor[3], unsigned level,
                            bool crossed, tm_error *error);
 
