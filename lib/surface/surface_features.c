@@ -169,13 +169,13 @@ static tm_status find_edges(feature_finder *f, tm_error *error)
         f->edges = list_edges(f, NULL, parent);
         number_patches(surface, parent);
         f->edge = tm_new(f->edges, sizeof *f->edge);
-        if (f->edge)
+        if (f->edge) {
             list_edges(f, f->edge, parent);
-        else
+            unite_edges(f);
+        } else {
             status = tm_fail_memory(error);
+        }
     }
-    if (status == TM_OK)
-        unite_edges(f);
     free(parent);
     return status;
 }
