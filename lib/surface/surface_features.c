@@ -16,9 +16,8 @@ static const double pi = 3.14159265358979323846;
  * that opens by 60°. */
 static const double tip_angle = 180;
 
-/* A triangle whose height is less than this part of its longest edge, and also of the
- * surface, has no normal of its own: the coordinates of a file with six digits do not say
- * which it is. */
+/* A triangle whose height is less than this part of the surface has no normal of its own:
+ * coordinates of six digits, or of 32 bits, do not say which it is. */
 static const double least_height = 1e-6;
 
 typedef struct sharp_edge {
@@ -49,7 +48,7 @@ static bool own_normal(const tm_surface *surface, uint32_t t, double normal[3])
         longest2 = fmax(longest2, tm_distance2(p[i], p[(i + 1) % 3]));
     tm_triangle_normal(normal, p[0], p[1], p[2]);
     double length = tm_norm(normal);
-    double size = fmin(sqrt(longest2), tm_distance2(surface->low, surface->high));
+    double size = sqrt(tm_distance2(surface->low, surface->high));
     if (!(length > least_height * size * sqrt(longest2)))
         return false;
     for (int i = 0; i < 3; i++)
@@ -170,13 +169,13 @@ static tm_status find_edges(feature_finder *f, tm_error *error)
         f->edges = list_edges(f, NULL, parent);
         number_patches(surface, parent);
         f->edge = tm_new(f->edges, sizeof *f->edge);
-        if (f->edge)
+        if (f->edge) {
             list_edges(f, f->edge, parent);
-        else
+            unite_edges(f);
+        } else {
             status = tm_fail_memory(error);
+        }
     }
-    if (status == TM_OK)
-        unite_edges(f);
     free(parent);
     return status;
 }

@@ -173,7 +173,7 @@ static void test_disoriented(void **state)
         const double x = 8 * random_unit() - 4, y = 8 * random_unit() - 4;
         const double z = 2 * random_unit() - 1;
         const double r = hypot(hypot(x, y) - 3, z);
-        if (r < 0.9 || r > 1)
+        if (r < 0.9 || r > 1.05) /* chords are on both sides */
             assert_int_equal(has(&s, x, y, z), r < 1);
     }
     tm_surface_free(&s);
@@ -217,7 +217,7 @@ static void test_open(void **state)
     assert_true(s.by_winding);
     assert_int_equal(s.components, 1);
     assert_int_equal(s.euler, 1);
-    assert_features(&s, 5, 5, 1); /* around the hole */
+    assert_features(&s, 4, 4, 1); /* around the hole */
     for (int i = 0; i < 1000; i++) {
         double q[3], r = 0;
         for (int k = 0; k < 3; k++) {
@@ -476,6 +476,27 @@ static void test_curves(void **state)
     tm_surface_free(&s);
 }
 
+/* Triangles that are thinner than the digits of their coordinates make no features: a
+ * long cylinder, turned, in 32 bits. */
+static void test_needles(void **state)
+{
+    (void)state;
+    double xy[250][2];
+    const uint32_t k = 250;
+    tm_polygon_surface p;
+    tm_surface s;
+    make_star(xy, k, 1, 1);
+    tm_polygon_surface_init(&p);
+    add_prism(&p, (const double(*)[2])xy, k, 10000);
+    turn_nodes(&p, 0.7);
+    for (size_t v = 0; v < p.nodes; v++)
+        for (int i = 0; i < 3; i++)
+            p.xyz[v][i] = (double)(float)p.xyz[v][i];
+    build(&s, &p, &lenient);
+    assert_features(&s, 2, 0, 3);
+    tm_surface_free(&s);
+}
+
 /* The feature angle decides: the edges of a prism with eight sides turn by 45°. */
 static void test_feature_angle(void **state)
 {
@@ -527,7 +548,7 @@ int main(void)
         cmocka_unit_test(test_not_manifold), cmocka_unit_test(test_one_sided),
         cmocka_unit_test(test_nothing),      cmocka_unit_test(test_polygons),
         cmocka_unit_test(test_curves),       cmocka_unit_test(test_feature_angle),
-        cmocka_unit_test(test_markers),
+        cmocka_unit_test(test_markers),      cmocka_unit_test(test_needles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

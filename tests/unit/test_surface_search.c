@@ -301,6 +301,49 @@ static void test_touching_boxes(void **state)
     tm_surface_free(&s);
 }
 
+/* Polygons between points of a small lattice: flat, folded, crossing, several at an edge.
+ * With lenient only those are refused that have no triangle; searches find what there
+ * is. */
+static void test_soup(void **state)
+{
+    (void)state;
+    const tm_surface_options options = {TM_FEATURE_ANGLE, true};
+    size_t taken = 0;
+    for (int round = 0; round < POINTS; round++) {
+        tm_error error = {0};
+        tm_polygon_surface p;
+        tm_surface s;
+        uint32_t node[6];
+        tm_polygon_surface_init(&p);
+        const unsigned nodes = 3 + random_below(12), side = 2 + random_below(3);
+        for (unsigned v = 0; v < nodes; v++)
+            add_node(&p, random_below(side), random_below(side), random_below(side));
+        for (unsigned f = 1 + random_below(20); f > 0; f--) {
+            const unsigned k = 3 + random_below(4);
+            for (unsigned i = 0; i < k; i++)
+                node[i] = random_below(nodes);
+            add_polygon(&p, node, k);
+        }
+        if (tm_surface_build(&s, &p, &options, &error) == TM_OK) {
+            taken++;
+            if (tm_surface_check(&s, &error) != TM_OK)
+                fail_msg("%s", error.what);
+            tm_surface_point at = {.triangle = TM_NONE};
+            const double q[3] = {random_unit(), random_unit(), random_unit()};
+            tm_surface_closest(&s, q, TM_NONE, &at);
+            assert_true(at.triangle < s.triangles);
+            assert_true(isfinite(at.distance2));
+            if (s.by_winding)
+                assert_true(isfinite(tm_surface_winding_number(&s, q)));
+        } else if (!strstr(error.what, "no triangle is left")) {
+            fail_msg("%s", error.what);
+        }
+        tm_surface_free(&s);
+        tm_polygon_surface_free(&p);
+    }
+    assert_true(taken > POINTS / 2);
+}
+
 int main(void)
 {
     random_start();
@@ -308,6 +351,7 @@ int main(void)
         cmocka_unit_test(test_closest), cmocka_unit_test(test_closest_on_curve),
         cmocka_unit_test(test_inside),  cmocka_unit_test(test_winding),
         cmocka_unit_test(test_boxes),   cmocka_unit_test(test_touching_boxes),
+        cmocka_unit_test(test_soup),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
