@@ -16,13 +16,14 @@ B       peak memory by elements
 worst, average, <0.2, <=0   J_ENS
 defects faces that do not match, edges and nodes where the boundary is not closed or no
         manifold
-shells, Euler   of the boundary, and the surface's if they are others; "!" with a note
+shells, Euler   of the boundary, and the surface's if they are others
 held    boundary nodes that are not on the surface, by the mesh's own account
 nodes off  the largest distance of the other boundary nodes to the surface, by its diagonal
 cover   the largest distance of the surface to the boundary, by the size of the cell there
 corners of the surface that are no node
 sharp   the largest distance of sharp edges to the boundary, by the size of the cell there
 x tetgen  elements by CPU seconds, times TetGen's
+notes   of octree-mesh that name a place
 check   mesh-check: ok, its complaints, or where it counts otherwise"""
 import argparse
 import json
@@ -58,10 +59,10 @@ SHARP_DEGREES = 40
 ON_SURFACE = 1e-9
 SAMPLES = 200  # along the diagonal
 MOST_PARTS = 64
-FORMAT = ("%-20s %9s %8s %8s %6s %7s %7s %6s %5s %7s %7s %9s %6s %9s %6s %7s %6s %8s  %s")
+FORMAT = ("%-20s %9s %8s %8s %6s %7s %7s %6s %5s %7s %7s %9s %6s %9s %6s %7s %6s %8s %5s  %s")
 HEAD = ["", "elements", "nodes", "s", "B", "worst", "average", "<0.2", "<=0", "defects",
         "shells", "Euler", "held", "nodes off", "cover", "corners", "sharp", "x tetgen",
-        "check"]
+        "notes", "check"]
 
 
 def qualities(mesh):
@@ -348,9 +349,7 @@ def print_row(row):
 
     def beside(key):
         value, of_surface = row[key], row["surface_" + key]
-        sign = "!" if row["notes"] and value != of_surface else ""
-        return ("%d" % value if value == of_surface
-                else "%d(%d)%s" % (value, of_surface, sign))
+        return "%d" % value if value == of_surface else "%d(%d)" % (value, of_surface)
 
     print(FORMAT % (
         row["name"], row["elements"], row["nodes"], text("%.3f", row["cpu"]),
@@ -359,7 +358,7 @@ def print_row(row):
         "%d/%d/%d" % (row["faces"], row["edges"], row["vertices"]), beside("shells"),
         beside("euler"), row["held"], "%.1e" % row["nodes_off"], "%.2f" % row["cover"],
         "%d/%d" % (row["corners_lost"], row["corners"]), "%.2f" % row["sharp"],
-        text("%.2f", row["times_tetgen"]), row["check"]), flush=True)
+        text("%.2f", row["times_tetgen"]), row["notes"], row["check"]), flush=True)
 
 
 def aims(path):
@@ -420,10 +419,10 @@ def main():
     else:
         name, surface, path = args.files
         mesh = mixed_stream.Mesh(path)
-        row = {"name": name, "cpu": args.cpu, "status": args.status, "notes": ""}
+        row = {"name": name, "cpu": args.cpu, "status": args.status, "notes": 0}
         if args.notes:
             with open(args.notes, encoding="utf-8", errors="replace") as notes:
-                row["notes"] = notes.read()
+                row["notes"] = sum(" near (" in line for line in notes)
         examine_mesh(row, mesh, mixed_stream.read_surface(surface))
         row["bytes"] = args.memory and 1024 * args.memory / mesh.count
         row["times_tetgen"] = (args.cpu and args.rate and

@@ -61,7 +61,7 @@ mesh() {
     echo 0 >"$work/status"
     # shellcheck disable=SC2016,SC2086 # for the inner shell; words
     cpu 1 sh -c 'to=$1 status=$2; shift 2; "$@" >"$to" || echo $? >"$status"' sh \
-        "$work/mesh.tm" "$work/status" octree-mesh -q ${OPTIONS:-} "$@" "$file" \
+        "$work/mesh.tm" "$work/status" octree-mesh ${OPTIONS:-} "$@" "$file" \
         >"$work/cpu" 2>"$work/notes" </dev/null
     status=$(cat "$work/status")
     if [ "$status" -gt 1 ]; then
