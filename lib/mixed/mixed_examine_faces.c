@@ -65,52 +65,65 @@ static uint32_t lesser(uint32_t a, uint32_t b)
 
 /* Edges ---------------------------------------------------------------------------- */
 
-/* The far edges of element e: their smaller and larger nodes. How many. */
-static size_t far_edges(const tm_mixed_arrays *mesh, size_t e,
-                        uint32_t far[TM_MIXED_EDGES][2])
+/* The far edges of element e as bits. */
+static uint16_t far_edges(const uint32_t *n, const tm_mixed_shape *shape)
 {
-    const uint32_t *n = mesh->item + mesh->start[e];
-    const tm_mixed_shape *shape = &tm_mixed_shapes[mesh->start[e + 1] - mesh->start[e]];
     uint32_t least[TM_MIXED_FACES];
+    uint32_t far = 0;
     tm_mixed_least(shape, n, least);
-    size_t count = 0;
     for (size_t i = 0; i < shape->edges; i++) {
-        const uint32_t a = n[shape->edge[i][0]], b = n[shape->edge[i][1]];
-        const uint32_t small = lesser(a, b);
-        far[count][0] = small;
-        far[count][1] = small == a ? b : a;
-        count += small != least[shape->edge_face[i][0]] &&
-                 small != least[shape->edge_face[i][1]];
+        const uint32_t small = lesser(n[shape->edge[i][0]], n[shape->edge[i][1]]);
+        const bool is_far = (small != least[shape->edge_face[i][0]]) &
+                            (small != least[shape->edge_face[i][1]]);
+        far |= (uint32_t)is_far << i;
     }
-    return count;
+    return (uint16_t)far;
+}
+
+/* start[v + 2] counts; the number of all. */
+static size_t count_far_edges(walk *w, uint16_t *far)
+{
+    const tm_mixed_arrays *mesh = w->mesh;
+    size_t *count = w->far.start + 2, all = 0;
+    for (size_t e = 0; e < mesh->elements; e++) {
+        const uint32_t *n = mesh->item + mesh->start[e];
+        const tm_mixed_shape *shape =
+            &tm_mixed_shapes[mesh->start[e + 1] - mesh->start[e]];
+        far[e] = is_whole(w, e) ? far_edges(n, shape) : 0;
+        for (uint32_t left = far[e]; left != 0; left &= left - 1, all++) {
+            const uint8_t *edge = shape->edge[__builtin_ctz(left)];
+            count[lesser(n[edge[0]], n[edge[1]])]++;
+        }
+    }
+    return all;
 }
 
 static bool list_far_edges(walk *w)
 {
     const tm_mixed_arrays *mesh = w->mesh;
-    uint32_t far[TM_MIXED_EDGES][2];
-    size_t all = 0;
+    uint16_t *far = tm_new(mesh->elements, sizeof *far);
     w->far.start = calloc(mesh->nodes + 2, sizeof *w->far.start);
-    if (!w->far.start)
+    if (far && w->far.start)
+        w->far.item = tm_new(count_far_edges(w, far), sizeof *w->far.item);
+    if (!w->far.item) {
+        free(far);
         return false;
-    /* start[v + 2] counts, then start[v + 1] is where the next edge of v goes. */
-    size_t *next = w->far.start + 1;
-    for (size_t e = 0; e < mesh->elements; e++) {
-        const size_t count = is_whole(w, e) ? far_edges(mesh, e, far) : 0;
-        for (size_t i = 0; i < count; i++)
-            next[far[i][0] + 1]++;
-        all += count;
     }
-    w->far.item = tm_new(all, sizeof *w->far.item);
-    if (!w->far.item)
-        return false;
+    /* start[v + 1] is where the next edge of v goes. */
+    size_t *next = w->far.start + 1;
     for (size_t v = 0; v < mesh->nodes; v++)
         next[v + 1] += next[v];
     for (size_t e = 0; e < mesh->elements; e++) {
-        const size_t count = is_whole(w, e) ? far_edges(mesh, e, far) : 0;
-        for (size_t i = 0; i < count; i++)
-            w->far.item[next[far[i][0]]++] = far[i][1];
+        const uint32_t *n = mesh->item + mesh->start[e];
+        const tm_mixed_shape *shape =
+            &tm_mixed_shapes[mesh->start[e + 1] - mesh->start[e]];
+        for (uint32_t left = far[e]; left != 0; left &= left - 1) {
+            const uint8_t *edge = shape->edge[__builtin_ctz(left)];
+            const uint32_t a = n[edge[0]], b = n[edge[1]], small = lesser(a, b);
+            w->far.item[next[small]++] = small == a ? b : a;
+        }
     }
+    free(far);
     return true;
 }
 
