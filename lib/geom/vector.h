@@ -63,8 +63,8 @@ static inline double tm_triangle_area(const double a[3], const double b[3],
     return tm_norm(normal) / 2;
 }
 
-/* The area of the bilinear surface with the corners a b c d in cyclic order: the length of
- * its normal, which is linear along its lines, by 2 × 2 Gauss points. Exact where the
+/* The area of the bilinear surface with the corners a b c d in cyclic order: the length
+ * of its normal, which is linear along its lines, by 2 × 2 Gauss points. Exact where the
  * quadrilateral is plane and convex; where d is by h times the side of a square off the
  * plane of the others, the error is below 2e-3 h^4 of the area (h <= 1/2). */
 static inline double tm_bilinear_area(const double a[3], const double b[3],

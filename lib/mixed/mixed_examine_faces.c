@@ -235,7 +235,7 @@ static bool is_right(const walk *w, const face_run *run, const tm_mixed_face *ro
         return false;
     if (run->elements == 2 && run->first[!second]->half / HALVES != side[1])
         return false;
-    const int sign = w->sign[side[0]];
+    const int8_t sign = w->sign[side[0]];
     const bool alike = row->turned == run->first[second]->turned;
     return sign == 0 || alike == (sign > 0);
 }

@@ -407,6 +407,18 @@ dangling edges                       1
 END
 }
 
+@test "tetrahedra of .mix are examined as those of .ele, by each number of threads alike" {
+    many >many.tm
+    awk '$1 == ".ele" { print ".mix"; getline; print $1, 0; mix = 1; next }
+        mix && NF == 5 { $1 = $1 " 4" }
+        { print }' many.tm >mix.tm
+    run -1 mesh-check -j 1 mix.tm
+    diff <(echo "$output" | sed '2,6d; s/element/tetrahedron/; s/tetrahedrons/tetrahedra/') \
+        <(mesh-check many.tm | sed 2d)
+    cmp <(mesh-check -j 3 --json - mix.tm) <(mesh-check -j 1 --json - mix.tm)
+    [ "$output" = "$(mesh-check -j 3 mix.tm)" ]
+}
+
 @test "facets of mixed elements: the reference, the face, the sense" {
     sed 's/^\.end/.facet\n2 1\n1 1 -1 4 1 4 3 2 5\n2 4 -1 3 6 7 12 -7\n.end/' \
         <(mixed) >facets.tm
@@ -419,7 +431,7 @@ END
     [ "$stderr" = "mesh-check: far.tm: .facet: row 2: element 5 is out of range (there are 4)" ]
     sed 's/^1 1 -1 4 1 4 3 2/1 1 -1 4 1 2 3 4/' facets.tm >turned.tm
     run -1 mesh-check turned.tm
-    [[ "$output" =~ "row 1 of .facet is no face of the elements that it names" ]]
+    [[ "$output" == *"row 1 of .facet is no face of the elements that it names"* ]]
 }
 
 @test "volumes and areas of mixed elements are VTK's; its wedge is ours" {

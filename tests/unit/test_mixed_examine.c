@@ -656,7 +656,8 @@ static void test_divisions(void **state)
         tm_examination again;
         tm_error error;
         assert_int_equal(tm_mixed_examine(&again, &mesh, 3, &error), TM_OK);
-        assert_memory_equal(&again, &found, sizeof found);
+        assert_memory_equal(again.defect, found.defect, sizeof found.defect);
+        assert_true(again.volume == found.volume && again.area == found.area);
     }
     for (size_t k = 0; k < TM_ELEMENT_KINDS; k++)
         assert_true(seen[k] > 10 * ROUNDS);

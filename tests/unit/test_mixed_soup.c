@@ -384,7 +384,8 @@ static void expect_nodes(const soup *s, tm_examination *x)
             const bool edge = u != v && is_edge(s, u, v);
             size_t faces = 0;
             used |= edge;
-            duplicate |= u < v && memcmp(s->xyz[u], s->xyz[v], sizeof *s->xyz) == 0;
+            duplicate |= u < v && s->xyz[u][0] == s->xyz[v][0] &&
+                         s->xyz[u][1] == s->xyz[v][1] && s->xyz[u][2] == s->xyz[v][2];
             x->euler -= u < v && edge;
             for (size_t f = 0; f < s->faces && u < v; f++)
                 faces += boundary[f] && has_edge(&s->of[f], u, v);
