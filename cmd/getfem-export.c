@@ -11,9 +11,9 @@ int main(int argc, char **argv)
     filter f = {
         .name = "getfem-export",
         .synopsis = "[options] [FILE]",
-        .purpose =
-            "Writes mixed elements, tetrahedra or triangles as a mesh file of the finite\n"
-            "element library GetFEM.",
+        .purpose = "Writes mixed elements, tetrahedra or triangles as a mesh file of the "
+                   "finite\n"
+                   "element library GetFEM.",
         .help = "",
         .options = long_options,
         .letters = FILTER_LETTERS,

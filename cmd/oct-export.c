@@ -11,9 +11,9 @@ int main(int argc, char **argv)
     filter f = {
         .name = "oct-export",
         .synopsis = "[options] [FILE]",
-        .purpose =
-            "Writes the octants of a stream as an .oct restart file of the mixed-element\n"
-            "octree mesher.",
+        .purpose = "Writes the octants of a stream as an .oct restart file of the "
+                   "mixed-element\n"
+                   "octree mesher.",
         .help = "",
         .options = long_options,
         .letters = FILTER_LETTERS,

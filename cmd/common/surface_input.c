@@ -85,7 +85,8 @@ static tm_status copy_nodes(const tm_block *node, tm_polygon_surface *surface,
 /* A main mesh that is triangles alone becomes the part `surface`, unless there is one. */
 static void rename_surface(tm_stream *stream)
 {
-    if (tm_stream_find(stream, "surface.node") || tm_stream_find(stream, "surface.face") ||
+    if (tm_stream_find(stream, "surface.node") ||
+        tm_stream_find(stream, "surface.face") ||
         tm_content_of(stream) != TM_CONTENT_SURFACE)
         return;
     strcpy(tm_stream_find(stream, ".node")->name, "surface.node");

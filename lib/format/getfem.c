@@ -4,13 +4,14 @@
 #include "../base/array.h"
 #include "cell_faces.h"
 #include "point_table.h"
+#include "polygon_table.h"
 #include "text_rows.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { NODES_MAX = 8, FACES_MAX = 6, WHOLE = 255, ROW = 64 };
+enum { TRIANGLE = 3, NODES_MAX = 8, FACES_MAX = 6, WHOLE = 255, ROW = 64 };
 
 /* An element of GetFEM: which node of ours each of its nodes is; and its faces, the nodes
  * of ours that are in each as bits. The faces of GT_PK are each opposite to a node; those
@@ -126,11 +127,11 @@ static tm_status check_places(const writer *w)
         if (!tm_point_table_join(&table, (double(*)[3])node->real, v, &first))
             status = tm_fail_memory(w->error);
         else if (first != v)
-            status = tm_fail_at(w->error, TM_ERROR_INPUT, NULL, 0, ".node",
-                                "nodes %zu and %zu are in the same place, which GetFEM "
-                                "does not allow",
-                                first + (size_t)w->stream->base,
-                                v + (size_t)w->stream->base);
+            status =
+                tm_fail_at(w->error, TM_ERROR_INPUT, NULL, 0, ".node",
+                           "nodes %zu and %zu are in the same place, which GetFEM "
+                           "does not allow",
+                           first + (size_t)w->stream->base, v + (size_t)w->stream->base);
     }
     tm_point_table_free(&table);
     return status;
@@ -153,35 +154,72 @@ static tm_status add_member(writer *w, double number, uint32_t offset, size_t co
     return TM_OK;
 }
 
-/* Which face of its convex a facet is. */
-static unsigned char face_of(const writer *w, size_t c, const uint32_t *facet,
-                             size_t corners)
+/* The triangles of .face that have a marker of a region. */
+typedef struct marked {
+    const tm_block *face;
+    size_t *start;
+    tm_polygon_table table;
+    unsigned char *taken; /* by an element */
+} marked;
+
+static tm_status find_marked(marked *m, tm_error *error)
+{
+    const tm_block *face = m->face;
+    m->start = tm_new(face->count + 1, sizeof *m->start);
+    m->taken = calloc(face->count, 1);
+    if (!m->start || !m->taken)
+        return tm_fail_memory(error);
+    for (size_t f = 0; f <= face->count; f++)
+        m->start[f] = TRIANGLE * f;
+    for (uint32_t f = 0; f < face->count; f++) {
+        uint32_t first;
+        if (face->marker[f] > 0 &&
+            !tm_polygon_table_join(&m->table, m->start, face->integer, f, &first))
+            return tm_fail_memory(error);
+    }
+    return TM_OK;
+}
+
+/* The nodes of a face of an element; returns how many there are. */
+static size_t nodes_of_face(const uint32_t *node, unsigned bits, uint32_t *corner)
+{
+    size_t corners = 0;
+    for (; bits; bits >>= 1, node++)
+        if (bits & 1)
+            corner[corners++] = *node;
+    return corners;
+}
+
+static tm_status add_element_faces(writer *w, marked *m, size_t e)
 {
     size_t k;
-    const uint32_t *node = tm_row_nodes(w->cell, c, &k);
-    unsigned bits = 0;
-    unsigned char face = 0;
-    for (size_t i = 0; i < k; i++)
-        for (size_t j = 0; j < corners; j++)
-            bits |= (unsigned)(node[i] == facet[j]) << i;
-    while (face + 1 < shapes[k].faces && shapes[k].face[face] != bits)
-        face++;
-    return face;
+    const uint32_t *node = tm_row_nodes(w->cell, e, &k);
+    tm_status status = TM_OK;
+    for (unsigned char i = 0; i < shapes[k].faces && status == TM_OK; i++) {
+        uint32_t corner[NODES_MAX];
+        if (nodes_of_face(node, shapes[k].face[i], corner) != TRIANGLE)
+            continue;
+        uint32_t f = tm_polygon_table_find(&m->table, m->start, m->face->integer, corner,
+                                           TRIANGLE);
+        if (f == TM_NONE || m->taken[f])
+            continue;
+        m->taken[f] = 1;
+        status = add_member(w, m->face->marker[f], 0, e, i);
+    }
+    return status;
 }
 
 static tm_status add_faces(writer *w)
 {
-    tm_cell_faces faces;
-    tm_status status = tm_cell_faces_find(&faces, w->stream, w->error);
-    for (size_t f = 0; f < faces.facets && faces.marker && status == TM_OK; f++) {
-        size_t begin = faces.start[f];
-        uint32_t c = faces.side[f][0];
-        if (faces.marker[f] > 0)
-            status =
-                add_member(w, faces.marker[f], 0, c,
-                           face_of(w, c, faces.node + begin, faces.start[f + 1] - begin));
-    }
-    tm_cell_faces_free(&faces);
+    marked m = {.face = tm_stream_find(w->stream, ".face")};
+    if (!m.face || !m.face->marker)
+        return TM_OK;
+    tm_status status = find_marked(&m, w->error);
+    for (size_t e = 0; e < w->cell->count && status == TM_OK; e++)
+        status = add_element_faces(w, &m, e);
+    tm_polygon_table_free(&m.table);
+    free(m.start);
+    free(m.taken);
     return status;
 }
 

@@ -29,10 +29,10 @@ enum { TM_GETFEM_ELEMENTS = 1000000 };
  * triangles in space. Faces of elements that .face gives a marker m > 0 are the region m,
  * elements whose first attribute is a whole number r >= 0 the region
  * TM_GETFEM_ELEMENTS + r; triangles with a marker m > 0 the region m.
+ * A face between two elements is in the region as that of the first.
  * TM_ERROR_INPUT for other contents, where a marker or attribute is TM_GETFEM_ELEMENTS or
- * more, where two nodes are in one place, which GetFEM refuses, and where
- * tm_cell_faces_find() does. `threads` format. Expected O(n), but for the regions, which
- * are sorted: O(n log n). */
+ * more, and where two nodes are in one place, which GetFEM refuses. `threads` format.
+ * Expected O(n), but for the regions, which are sorted: O(n log n). */
 tm_status tm_getfem_write(tm_text *text, const tm_stream *stream, unsigned threads,
                           tm_error *error);
 

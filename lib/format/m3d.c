@@ -51,8 +51,8 @@ static tm_status read_node(reader *r)
         status =
             tm_scan_next_double(&r->scan, "the number before a node", &flag, r->error);
     for (int i = 0; i < COORDINATES && status == TM_OK; i++)
-        status = tm_scan_next_double(&r->scan, "a coordinate", &r->xyz[r->nodes][i],
-                                     r->error);
+        status =
+            tm_scan_next_double(&r->scan, "a coordinate", &r->xyz[r->nodes][i], r->error);
     r->nodes++;
     return status;
 }
@@ -101,8 +101,7 @@ static tm_status read_element(reader *r)
     size_t e = r->elements, begin = r->start[e];
     size_t *start = tm_grow(r->start, &r->element_room, e + 2, sizeof *r->start);
     r->start = start ? start : r->start;
-    uint32_t *item =
-        tm_grow(r->item, &r->item_room, begin + NODES_MAX, sizeof *r->item);
+    uint32_t *item = tm_grow(r->item, &r->item_room, begin + NODES_MAX, sizeof *r->item);
     r->item = item ? item : r->item;
     if (!start || !item)
         return tm_fail_memory(r->error);
@@ -147,7 +146,7 @@ static tm_status read_section(reader *r, tm_word word)
         return TM_OK;
     if (nodes ? r->has_nodes : r->has_elements)
         return tm_scan_fail(&r->scan, r->error, "a second section %.*s",
-                            tm_word_shown(word) - 1, word.begin + 1);
+                            tm_word_shown(word) - 2, word.begin + 1);
     tm_scan_end_line(&r->scan);
     tm_status status = read_count(r, "the number of rows", &count);
     if (status != TM_OK)

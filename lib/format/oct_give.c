@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { COORDINATES = 3, OCTANT_NUMBERS = 6, ROOTS_MAX = 1 << 20 };
+enum { COORDINATES = 3, OCTANT_NUMBERS = 6, ROOTS_MAX = 1 << 16 };
 
 /* How far a coordinate may be off, of the largest one. */
 static const double rounding = 2e-8;
@@ -22,9 +22,9 @@ typedef struct giver {
     double low[COORDINATES]; /* of the brick */
     double top[COORDINATES];
     double tolerance;
-    double unit;     /* side of an octant of the finest level */
-    unsigned finest; /* the deepest level */
-    size_t coarsest; /* an octant of the lowest level */
+    double unit;      /* side of an octant of the finest level */
+    unsigned finest;  /* the deepest level */
+    size_t coarsest;  /* an octant of the lowest level */
     uint32_t *anchor; /* [octants][COORDINATES] */
     tm_error *error;
 } giver;
@@ -77,15 +77,15 @@ static tm_status find_unit(giver *g)
 {
     double low[COORDINATES], high[COORDINATES], longest = 0;
     bounds(g->oct, g->coarsest, low, high);
-    g->unit =
-        ldexp(high[0] - low[0], -(int)(g->finest - g->oct->level[g->coarsest]));
+    g->unit = ldexp(high[0] - low[0], -(int)(g->finest - g->oct->level[g->coarsest]));
     for (int i = 0; i < COORDINATES; i++)
         longest = fmax(longest, g->top[i] - g->low[i]);
     double units = round(longest / g->unit);
     if (!(units >= 1 && units < UINT32_MAX) || g->tolerance > longest / units / 4)
-        return tm_fail_at(g->error, TM_ERROR_INPUT, g->name, 0, NULL,
-                          "the octants are too small for the digits of their coordinates, "
-                          "or have no size");
+        return tm_fail_at(
+            g->error, TM_ERROR_INPUT, g->name, 0, NULL,
+            "the octants are too small for the digits of their coordinates, "
+            "or have no size");
     g->unit = longest / units;
     for (size_t o = 0; o < g->oct->octants; o++) {
         double side = side_of(g, o);
@@ -172,6 +172,11 @@ static tm_status give_roots(giver *g, tm_stream *stream)
                           "the octants are in %zu x %zu x %zu cubes of level 0 (at most "
                           "%d)",
                           roots[0], roots[1], roots[2], ROOTS_MAX);
+    const double size = g->unit * (double)side;
+    for (int i = 0; i < COORDINATES; i++)
+        if (!isfinite(g->low[i] + (double)roots[i] * size))
+            return tm_fail_at(g->error, TM_ERROR_INPUT, g->name, 0, NULL,
+                              "a cube of level 0 would be too large (1.8e308)");
     tm_block *root = add(g, stream, ".root", roots[0] * roots[1] * roots[2], 0);
     if (!root)
         return g->error->status;
@@ -180,8 +185,8 @@ static tm_status give_roots(giver *g, tm_stream *stream)
         const size_t at[COORDINATES] = {r % roots[0], r / roots[0] % roots[1],
                                         r / roots[0] / roots[1]};
         for (size_t i = 0; i < COORDINATES; i++)
-            *real++ = g->low[i] + (double)at[i] * g->unit * (double)side;
-        *real++ = g->unit * (double)side;
+            *real++ = g->low[i] + (double)at[i] * size;
+        *real++ = size;
         root->integer[r] = g->finest;
     }
     return TM_OK;
@@ -213,8 +218,7 @@ static tm_status give_hexahedra(giver *g, tm_stream *stream)
         return g->error->status;
     if (oct->points > 0)
         memcpy(node->real, oct->xyz, oct->points * sizeof *oct->xyz);
-    tm_block *mix =
-        add(g, stream, ".mix", oct->octants, TM_OCT_CORNERS * oct->octants);
+    tm_block *mix = add(g, stream, ".mix", oct->octants, TM_OCT_CORNERS * oct->octants);
     if (!mix)
         return g->error->status;
     for (size_t o = 0; o <= oct->octants; o++)

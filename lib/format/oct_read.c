@@ -93,7 +93,8 @@ static tm_status read_octant(reader *r)
     oct->octants++;
     int64_t triangles = 0;
     if (status == TM_OK)
-        status = read_id(r, "the number of triangles in an octant", UINT32_MAX, &triangles);
+        status =
+            read_id(r, "the number of triangles in an octant", UINT32_MAX, &triangles);
     for (int64_t t = 0; t < triangles && status == TM_OK; t++)
         status = read_id(r, "a triangle in an octant", UINT32_MAX, &number);
     return status;

@@ -76,7 +76,8 @@ static tm_status find_tree(writer *w)
     for (size_t r = 0; r < w->root->count; r++) {
         const double *root = w->root->real + ROOT_REALS * r;
         if (w->root->integer[r] != w->finest || root[3] != first[3])
-            return FAIL(".root", "row %zu: its size or finest level is not that of row %u",
+            return FAIL(".root",
+                        "row %zu: its size or finest level is not that of row %u",
                         r + w->stream->base, w->stream->base);
         for (int i = 0; i < 3; i++)
             w->low[i] = fmin(w->low[i], root[i]);
@@ -106,8 +107,9 @@ static tm_status check_octant(const writer *w, size_t o, uint32_t *elements)
             return FAIL(".octant", "row %zu: %u is no multiple of its side, %llu", number,
                         row[1 + i], (unsigned long long)side);
         if (row[1 + i] + side >= UINT64_C(1) << TM_OCTANT_BITS)
-            return FAIL(".octant", "row %zu: it ends %llu units from the corner (2^%d are "
-                                   "too many)",
+            return FAIL(".octant",
+                        "row %zu: it ends %llu units from the corner (2^%d are "
+                        "too many)",
                         number, (unsigned long long)(row[1 + i] + side), TM_OCTANT_BITS);
     }
     if (begin != end && begin != *elements)

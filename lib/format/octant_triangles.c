@@ -152,8 +152,7 @@ static tm_status descend(finder *f, size_t lo, size_t hi, const uint32_t anchor[
         return TM_OK;
     if (hi - lo == 1) {
         uint32_t o = f->place[lo].octant;
-        status =
-            filter(f, from, past, f->octant[o].anchor, f->octant[o].log_side, &end);
+        status = filter(f, from, past, f->octant[o].anchor, f->octant[o].log_side, &end);
         return status == TM_OK ? assign(f, o, past, end) : status;
     }
     for (uint32_t c = 0; c < CHILDREN && status == TM_OK; c++) {

@@ -153,8 +153,8 @@ static size_t value_room(const void *context, size_t first, size_t past)
 static char *put_value(const void *context, size_t row, char *to)
 {
     const column *c = context;
-    to = tm_write_double(
-        to, c->block->attribute[row * c->block->attributes + c->attribute]);
+    to = tm_write_double(to,
+                         c->block->attribute[row * c->block->attributes + c->attribute]);
     *to++ = '\n';
     return to;
 }
