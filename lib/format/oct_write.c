@@ -3,7 +3,6 @@
 #include "oct.h"
 
 #include "../base/array.h"
-#include "../tet/edge_map.h"
 #include "octant_triangles.h"
 #include "point_table.h"
 #include "text_rows.h"
@@ -35,8 +34,10 @@ typedef struct writer {
     size_t points, point_room;
     double (*grid)[3]; /* whole numbers of units */
     tm_point_table table;
-    size_t edges, edge_room;
-    uint32_t (*edge)[3]; /* ends and middle, or 0 */
+    size_t edges, edge_room, middle_room;
+    uint32_t (*edge)[3]; /* ends and the point in the middle, or 0 */
+    double (*middle)[3]; /* of each edge, in units */
+    tm_point_table known;
     tm_octant_triangles meet;
     tm_text *text;
     tm_error *error;
@@ -197,35 +198,41 @@ static tm_status number_points(writer *w)
     return status;
 }
 
-static tm_status add_edge(writer *w, tm_edge_map *known, uint32_t a, uint32_t b)
+/* An edge is known by its middle: where it is along x, the middle is an odd number of
+ * halves of its length in x and a multiple of it in y and z, which no other edge's is. */
+static tm_status add_edge(writer *w, uint32_t a, uint32_t b)
 {
-    double middle[3];
-    if (tm_edge_map_get(known, a, b))
-        return TM_OK;
     void *grown = tm_grow(w->edge, &w->edge_room, w->edges + 1, sizeof *w->edge);
     w->edge = grown ? grown : w->edge;
-    if (!grown || !tm_edge_map_reserve(known, 1))
+    void *moved = tm_grow(w->middle, &w->middle_room, w->edges + 1, sizeof *w->middle);
+    w->middle = moved ? moved : w->middle;
+    if (!grown || !moved)
         return tm_fail_memory(w->error);
+    if (w->edges >= UINT32_MAX)
+        return tm_fail(w->error, TM_ERROR_SYSTEM, "more edges than 32 bits can number");
+    const uint32_t e = (uint32_t)w->edges;
+    uint32_t first;
     for (int i = 0; i < 3; i++)
-        middle[i] = (w->grid[a][i] + w->grid[b][i]) / 2;
-    uint32_t between = tm_point_table_find(&w->table, w->grid, middle);
-    uint32_t *edge = w->edge[w->edges++];
-    edge[0] = a < b ? a : b;
-    edge[1] = a < b ? b : a;
-    edge[2] = between == UINT32_MAX ? 0 : between;
-    tm_edge_map_put(known, a, b, 1);
+        w->middle[e][i] = (w->grid[a][i] + w->grid[b][i]) / 2;
+    if (!tm_point_table_join(&w->known, w->middle, e, &first))
+        return tm_fail_memory(w->error);
+    if (first != e)
+        return TM_OK;
+    uint32_t between = tm_point_table_find(&w->table, w->grid, w->middle[e]);
+    w->edge[e][0] = a < b ? a : b;
+    w->edge[e][1] = a < b ? b : a;
+    w->edge[e][2] = between == UINT32_MAX ? 0 : between;
+    w->edges++;
     return TM_OK;
 }
 
 static tm_status find_edges(writer *w)
 {
-    tm_edge_map known = {0};
     tm_status status = TM_OK;
     for (size_t o = 0; o < w->octants; o++)
         for (int e = 0; e < EDGES && status == TM_OK; e++)
-            status = add_edge(w, &known, w->corner[o][edge_end[e][0]],
-                              w->corner[o][edge_end[e][1]]);
-    tm_edge_map_free(&known);
+            status =
+                add_edge(w, w->corner[o][edge_end[e][0]], w->corner[o][edge_end[e][1]]);
     return status;
 }
 
@@ -348,6 +355,8 @@ tm_status tm_oct_write(tm_text *text, const tm_stream *stream, unsigned threads,
     free(w.corner);
     free(w.grid);
     free(w.edge);
+    free(w.middle);
+    tm_point_table_free(&w.known);
     tm_point_table_free(&w.table);
     tm_octant_triangles_free(&w.meet);
     return status;

@@ -147,7 +147,7 @@ static tm_status descend(finder *f, size_t lo, size_t hi, const uint32_t anchor[
                          unsigned log_side, size_t from, size_t past)
 {
     tm_status status = TM_OK;
-    size_t end;
+    size_t end = past;
     if (lo == hi || from == past)
         return TM_OK;
     if (hi - lo == 1) {
@@ -197,14 +197,12 @@ tm_status tm_octant_triangles_find(tm_octant_triangles *found,
                 .stack = tm_new(triangles, sizeof *f.stack),
                 .stack_room = triangles,
                 .error = error};
-    tm_status status = TM_OK;
-    if (!found->start || !found->count || !f.place || !f.stack)
-        status = tm_fail_memory(error);
-    for (size_t o = 0; o < octants && status == TM_OK; o++)
-        f.place[o] = (place){key_of(octant[o].anchor), (uint32_t)o};
-    for (size_t t = 0; t < triangles && status == TM_OK; t++)
-        f.stack[t] = (uint32_t)t;
-    if (status == TM_OK) {
+    tm_status status = tm_fail_memory(error);
+    if (found->start && found->count && f.place && f.stack) {
+        for (size_t o = 0; o < octants; o++)
+            f.place[o] = (place){key_of(octant[o].anchor), (uint32_t)o};
+        for (size_t t = 0; t < triangles; t++)
+            f.stack[t] = (uint32_t)t;
         qsort(f.place, octants, sizeof *f.place, compare);
         status = check_overlap(&f, octants, base);
     }

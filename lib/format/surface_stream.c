@@ -26,13 +26,13 @@ static tm_status give_nodes(const tm_polygon_surface *surface, tm_stream *stream
     node->attributes = surface->attribute ? surface->attributes : 0;
     node->markers = surface->node_marker != NULL;
     tm_status status = tm_block_allocate(node, surface->nodes, 0, error);
-    if (status != TM_OK || surface->nodes == 0)
+    if (status != TM_OK || !surface->xyz)
         return status;
     memcpy(node->real, surface->xyz, surface->nodes * sizeof *surface->xyz);
-    if (node->attribute)
+    if (node->attribute && surface->attribute)
         memcpy(node->attribute, surface->attribute,
                surface->nodes * node->attributes * sizeof *node->attribute);
-    if (node->marker)
+    if (node->marker && surface->node_marker)
         memcpy(node->marker, surface->node_marker, surface->nodes * sizeof *node->marker);
     return TM_OK;
 }

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # m3d-import, m3d-export and mvm-export: one gives back what the other was given.
-# shellcheck disable=SC2154 # run sets stderr
+# shellcheck disable=SC2154,SC2016 # run sets stderr; sed has its own $
 
 bats_require_minimum_version 1.5.0
 load helpers

@@ -283,7 +283,7 @@ static void read_damaged(const char *text, void (*read)(const char *, size_t))
     size_t length = strlen(text);
     for (size_t size = 0; size <= length; size++)
         read(text, size);
-    for (int i = 0; i < CHANGED; i++) {
+    for (int i = 0; i < CHANGED && length > 0; i++) {
         char changed[BINARY_MAX];
         memcpy(changed, text, length);
         change(changed, length);
