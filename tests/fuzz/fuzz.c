@@ -65,6 +65,16 @@ static const command commands[] = {
     {"visf-import", {INPUT}, false},
     {"visf-export", {"--per-cell", "--binary", "big", INPUT}, false},
     {"vtu-export", {INPUT}, false},
+    {"vtk-export", {INPUT}, false},
+    {"getfem-export", {INPUT}, false},
+    {"mvm-export", {INPUT}, false},
+    {"m3d-export", {"-o", "out.m3d", INPUT}, false},
+    {"m3d-import", {"out.m3d"}, true},
+    {"m3d-import", {INPUT}, false},
+    {"mdl-import", {INPUT}, false},
+    {"oct-export", {"-o", "out.oct", INPUT}, false},
+    {"oct-import", {"out.oct"}, true},
+    {"oct-import", {"-m", "out.m3d", INPUT}, true},
     {"tetgen-mesh", {"--tetgen", "false", INPUT}, true},
 };
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
