@@ -94,12 +94,21 @@ static void slope_of_missing(const tm_cluster *cluster, double (*slope)[3])
     }
 }
 
+static void measure_jens(tm_cluster *cluster)
+{
+    for (size_t e = 0; e < cluster->elements; e++)
+        cluster->jens[e] =
+            tm_jens(cluster->start[e + 1] - cluster->start[e],
+                    (const double(*)[3])cluster->xyz, cluster->item + cluster->start[e]);
+}
+
 double tm_cluster_value(tm_cluster *cluster, tm_objective objective)
 {
     cluster->evaluations++;
-    const double missing =
-        value_of_missing(cluster, objective.untangle ? 1 : objective.number);
-    return objective.untangle ? tm_untangle_value(cluster, objective.number) : missing;
+    if (!objective.untangle)
+        return value_of_missing(cluster, objective.number);
+    measure_jens(cluster);
+    return tm_untangle_value(cluster, objective.number);
 }
 
 void tm_cluster_slope(const tm_cluster *cluster, tm_objective objective,

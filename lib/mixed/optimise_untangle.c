@@ -61,14 +61,17 @@ typedef struct distortion {
     double chi;
 } distortion;
 
-static double find_chi(double determinant, double root)
+/* √(ε² + D²), without the care that hypot() takes: D is near 1. */
+static double find_root(double determinant, double epsilon)
 {
-    /* D + root would lose all digits where D is far below 0. */
-    return determinant >= 0
-               ? (determinant + root) / 2
-               : (root - determinant > 0 ? (root * root - determinant * determinant) /
-                                               (2 * (root - determinant))
-                                         : 0);
+    return sqrt(epsilon * epsilon + determinant * determinant);
+}
+
+/* D + root would lose all digits where D is far below 0. */
+static double find_chi(double determinant, double root, double epsilon)
+{
+    return determinant >= 0 ? (determinant + root) / 2
+                            : epsilon * epsilon / (2 * (root - determinant));
 }
 
 static void measure(const tm_cluster *cluster, size_t e, size_t corner, double epsilon,
@@ -85,14 +88,17 @@ static void measure(const tm_cluster *cluster, size_t e, size_t corner, double e
             d->edge[i][j] =
                 (cluster->xyz[d->node[i + 1]][j] - cluster->xyz[d->node[0]][j]) * scale;
     double trace = 0, normal[3];
-    for (size_t i = 0; i < 3; i++)
-        for (size_t j = 0; j < 3; j++)
-            trace += d->of->m[i][j] * tm_dot(d->edge[i], d->edge[j]);
+    for (size_t i = 0; i < 3; i++) {
+        const size_t j = (i + 1) % 3;
+        trace += d->of->m[i][i] * tm_norm2(d->edge[i]);
+        if (d->of->m[i][j] != 0)
+            trace += 2 * d->of->m[i][j] * tm_dot(d->edge[i], d->edge[j]);
+    }
     tm_cross(normal, d->edge[0], d->edge[1]);
     d->third = trace / 3;
     d->determinant = tm_dot(normal, d->edge[2]) / d->of->determinant;
-    d->root = hypot(epsilon, d->determinant);
-    d->chi = find_chi(d->determinant, d->root);
+    d->root = find_root(d->determinant, epsilon);
+    d->chi = find_chi(d->determinant, d->root, epsilon);
 }
 
 double tm_untangle_value(tm_cluster *cluster, double epsilon)
@@ -148,13 +154,14 @@ void tm_untangle_slope(const tm_cluster *cluster, double epsilon, double (*slope
     }
 }
 
-/* Their section 3: by how much less than before the value became, at least a tenth. */
+/* Their section 3: by how much less than before the value became; but at least by
+ * 0.6, where they have 0.1: it takes too many steps, and untangles less. */
 double tm_untangle_next(const tm_cluster *cluster, double epsilon, double gain)
 {
     const double least = cluster->least_determinant;
-    const double rest = 1 - fmax(gain, 0.1);
+    const double rest = 1 - fmax(gain, 0.6);
     if (least >= 0)
         return rest * epsilon;
-    const double chi = rest * find_chi(least, hypot(epsilon, least));
+    const double chi = rest * find_chi(least, find_root(least, epsilon), epsilon);
     return 2 * sqrt(chi * (chi - least));
 }
