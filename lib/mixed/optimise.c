@@ -28,6 +28,8 @@ enum {
 
 /* The objective becomes the sharper the closer it is to its minimum. */
 static const double sharpness[] = {8, 20, 60};
+enum { UNTANGLE_STAGES = 12, UNTANGLE_ITERATIONS = 20 };
+static const double epsilon_least = 1e-6;
 enum { STAGES = sizeof sharpness / sizeof *sharpness, ITERATIONS = 25 };
 
 static const double (*places_of(const tm_mixed_mesh *mesh))[3]
@@ -164,10 +166,31 @@ void tm_optimise_accept(tm_optimise_work *w)
         w->jens[cluster->element[e]] = measure(w->mesh, cluster->element[e]);
 }
 
+static void sharpen(tm_cluster *cluster)
+{
+    for (size_t s = 0; s < STAGES && cluster->best_score.bad > 0; s++)
+        tm_cluster_descend(cluster, (tm_objective){false, sharpness[s]}, ITERATIONS);
+}
+
+static void untangle(tm_cluster *cluster)
+{
+    double epsilon = 1;
+    for (size_t s = 0; s < UNTANGLE_STAGES && cluster->best_score.inverted > 0; s++) {
+        const double gain = tm_cluster_descend(cluster, (tm_objective){true, epsilon},
+                                               UNTANGLE_ITERATIONS);
+        epsilon = fmax(tm_untangle_next(cluster, epsilon, gain), epsilon_least);
+    }
+}
+
 void tm_optimise_descend(tm_optimise_work *w)
 {
-    for (size_t s = 0; s < STAGES && w->cluster.best_score.bad > 0; s++)
-        tm_cluster_descend(&w->cluster, sharpness[s], ITERATIONS);
+    tm_cluster *cluster = &w->cluster;
+    sharpen(cluster);
+    if (cluster->best_score.inverted == 0)
+        return;
+    untangle(cluster);
+    if (cluster->best_score.inverted == 0)
+        sharpen(cluster);
 }
 
 /* Bad elements that touch `first`, or each other: at most CORE_MOST. */

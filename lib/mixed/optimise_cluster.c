@@ -120,7 +120,7 @@ static bool make_room(tm_cluster *cluster, size_t old_nodes, size_t old_elements
         made = made && RENEW(cluster->start, elements + 1) &&
                RENEW(cluster->item, elements * TM_ELEMENT_NODES_MOST) &&
                RENEW(cluster->threshold, elements) && RENEW(cluster->before, elements) &&
-               RENEW(cluster->jens, elements) &&
+               RENEW(cluster->jens, elements) && RENEW(cluster->element_size, elements) &&
                RENEW(cluster->corner, elements * TM_CORNERS_MOST);
     return made;
 }
@@ -164,6 +164,21 @@ static void measure_sizes(tm_cluster *cluster)
         cluster->size[v] = cluster->size[v] > 0 ? cluster->size[v] / count[v][0] : 1;
 }
 
+static void measure_elements(tm_cluster *cluster)
+{
+    for (size_t e = 0; e < cluster->elements; e++) {
+        const uint32_t *item = cluster->item + cluster->start[e];
+        const tm_element_shape *shape =
+            &tm_element_shapes[cluster->start[e + 1] - cluster->start[e]];
+        double sum = 0;
+        for (size_t i = 0; i < shape->corners; i++)
+            for (size_t j = 1; j < 4; j++)
+                sum += sqrt(tm_distance2(cluster->xyz[item[shape->node[i][0]]],
+                                         cluster->xyz[item[shape->node[i][j]]]));
+        cluster->element_size[e] = sum > 0 ? sum / (double)(3 * shape->corners) : 1;
+    }
+}
+
 /* Where nodes of the boundary are on it, and how far from it those that are held back. */
 static void find_places(tm_cluster *cluster)
 {
@@ -200,6 +215,7 @@ tm_status tm_cluster_gather(tm_cluster *cluster, const tm_cluster_source *source
             cluster->rule[v] = source->rule[cluster->node[v]];
         copy_elements(cluster, source);
         measure_sizes(cluster);
+        measure_elements(cluster);
         find_places(cluster);
         memcpy(cluster->best, cluster->xyz, cluster->moving * sizeof *cluster->best);
         cluster->first = cluster->best_score = tm_cluster_score(cluster);
@@ -246,5 +262,6 @@ void tm_cluster_free(tm_cluster *cluster)
     free(cluster->before);
     free(cluster->jens);
     free(cluster->corner);
+    free(cluster->element_size);
     *cluster = (tm_cluster){0};
 }

@@ -64,7 +64,9 @@ typedef struct tm_cluster {
     double *jens;             /* [elements]: J_ENS now */
     tm_active_corner *corner; /* [elements * TM_CORNERS_MOST] */
     size_t corners;
-    double sum; /* of the terms of the objective */
+    double sum;               /* of the terms of the objective */
+    double *element_size;     /* [elements]: the mean length of the edges, at first */
+    double least_determinant; /* of tm_untangle_value() */
 
     tm_score first, best_score;
     size_t evaluations;
@@ -102,14 +104,28 @@ void tm_cluster_free(tm_cluster *cluster);
 /* Puts node v of the cluster, which moves, to the allowed place closest to a point. */
 void tm_cluster_place(tm_cluster *cluster, size_t v, const double point[3]);
 
-/* The objective, log(1 + Σ e^x - 1 - x) / s with x = s (target - J_ENS) > 0 over all
- * corners, the target being a margin above the threshold and s the sharpness. Fills
+/* What is minimised: the distortion of optimise_untangle.c with the number ε, or what is
+ * missing to the thresholds, with a sharpness. */
+typedef struct tm_objective {
+    bool untangle;
+    double number;
+} tm_objective;
+
+/* log(1 + Σ e^x - 1 - x) / s with x = s (target - J_ENS) > 0 over all corners, the target
+ * being a margin above the threshold and s the sharpness; or the distortion. Fills
  * jens[] and the corners that are below their targets. */
-double tm_cluster_value(tm_cluster *cluster, double sharpness);
+double tm_cluster_value(tm_cluster *cluster, tm_objective objective);
 
 /* Its derivative by the nodes that move, along the boundary where they are on it;
  * tm_cluster_value() was called before. */
-void tm_cluster_slope(const tm_cluster *cluster, double (*slope)[3]);
+void tm_cluster_slope(const tm_cluster *cluster, tm_objective objective,
+                      double (*slope)[3]);
+
+/* The parts of these that are in optimise_untangle.c, and the next ε, where the value
+ * became less by the factor 1 - gain. */
+double tm_untangle_value(tm_cluster *cluster, double epsilon);
+void tm_untangle_slope(const tm_cluster *cluster, double epsilon, double (*slope)[3]);
+double tm_untangle_next(const tm_cluster *cluster, double epsilon, double gain);
 
 /* Takes from a vector at node v what leads off its surface or curve. */
 void tm_cluster_along(const tm_cluster *cluster, size_t v, double vector[3]);
@@ -123,8 +139,10 @@ bool tm_score_better(const tm_score *score, const tm_score *than);
 void tm_cluster_approach(tm_cluster *cluster, size_t v, double factor, double threshold);
 
 /* Minimises from where the nodes are. Places with a score better than best_score are
- * kept in best[]. Ends early where nothing is bad. */
-void tm_cluster_descend(tm_cluster *cluster, double sharpness, unsigned iterations);
+ * kept in best[]. Ends early where nothing is bad. Returns by which part of the value it
+ * became less. */
+double tm_cluster_descend(tm_cluster *cluster, tm_objective objective,
+                          unsigned iterations);
 
 /* A call of tm_mixed_optimise(). */
 typedef struct tm_optimise_work {
