@@ -38,7 +38,9 @@ static const char own_help[] =
     "  -l, --leaves FILE   split the octants whose numbers are in FILE once more\n"
     "  -u, --levels        elements have the level of their octant as attribute\n"
     "      --feature-angle DEG\n"
-    "                      an edge is kept where it is sharper (default 40)\n"
+    "                      an edge is kept where it is sharper (default 40, and none "
+    "if\n"
+    "                      the surface is rough all over)\n"
     "      --resolve N     up to N levels more where a thin part or a gap of the "
     "surface\n"
     "                      would be lost (default 1)\n"
@@ -55,15 +57,18 @@ typedef struct {
 
 static settings read_options(filter *f)
 {
-    settings o = {.surface = {.feature_angle = default_angle}, .resolve = 1};
+    settings o = {.surface = {.feature_angle = default_angle, .unless_rough = true},
+                  .resolve = 1};
     const unsigned default_level = 5;
     int c;
     while ((c = filter_option(f)) != -1) {
         if (c == 'u')
             o.levels = true;
         else if (c == FEATURE_ANGLE)
-            o.surface.feature_angle =
-                filter_number(f, "--feature-angle", optarg, 0, straight_angle);
+            o.surface =
+                (tm_surface_options){.feature_angle = filter_number(
+                                         f, "--feature-angle", optarg, 0, straight_angle),
+                                     .lenient = o.surface.lenient};
         else if (c == RESOLVE)
             o.resolve =
                 (unsigned)filter_integer(f, "--resolve", optarg, 0, TM_OCTREE_LEVEL_MAX);

@@ -158,6 +158,8 @@ static void note_mending(const filter *f, const tm_surface *s)
         filter_note(f, "%s: %zu triangles without area are dropped", name, s->flat);
     if (s->open_edges)
         filter_note(f, "%s: the surface is open at %zu edges", name, s->open_edges);
+    if (s->rough)
+        filter_verbose(f, "%s: the surface is rough: no edge is kept as sharp", name);
     if (s->crossings)
         filter_note(f, "%s: the surface crosses itself at %zu pairs of triangles", name,
                     s->crossings);

@@ -46,6 +46,7 @@ typedef struct tm_surface {
     size_t open_edges; /* with one triangle; 0 unless lenient */
     size_t crossings;  /* pairs of triangles that meet elsewhere than in a common node or
                           edge; 0 unless lenient */
+    bool rough;        /* it has sharp edges all over: none is taken for one */
     bool by_winding;   /* the inside is where the winding number is above 1/2 */
 } tm_surface;
 
@@ -54,6 +55,7 @@ typedef struct tm_surface {
 
 typedef struct tm_surface_options {
     double feature_angle; /* an edge is sharp where its normals differ by more: degrees */
+    bool unless_rough;    /* no edge is, where about as many turn by half the angle */
     bool lenient;         /* open surfaces, and such that cross themselves, are taken */
 } tm_surface_options;
 

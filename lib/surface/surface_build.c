@@ -69,7 +69,8 @@ static tm_status prepare(tm_surface *surface, const tm_surface_options *options,
     if (status == TM_OK)
         status = tm_surface_turn(surface, error);
     if (status == TM_OK)
-        status = tm_surface_find_features(surface, options->feature_angle, error);
+        status = tm_surface_find_features(surface, options->feature_angle,
+                                          options->unless_rough, error);
     if (status == TM_OK) {
         tm_surface_tree_refresh(surface);
         status = tm_surface_curve_build(surface, error);

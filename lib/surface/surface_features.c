@@ -353,8 +353,39 @@ static tm_status find_curves(feature_finder *f, tm_error *error)
     return TM_OK;
 }
 
+/* The edges that turn by more than an angle of that cosine. */
+static size_t count_turning(const feature_finder *f, double cosine)
+{
+    const feature_finder finder = {
+        .surface = f->surface, .normal = f->normal, .most_cosine = cosine};
+    size_t count = 0;
+    for (uint32_t t = 0; t < f->surface->triangles; t++)
+        for (unsigned i = 0; i < 3; i++) {
+            const uint32_t n = f->surface->across[t][i];
+            count += n != TM_NONE && n > t && is_sharp(&finder, t, n);
+        }
+    return count;
+}
+
+/* On what is made, edges are sharp or they are not, and many are flat. A surface that has
+ * more edges in between than sharp ones is rough all over, as a scanned bone is, and has no
+ * edges; so is one that has half as many, if few are flat. */
+static void smooth_if_rough(feature_finder *f, double angle)
+{
+    const double below_all_cosines = -2, flat_angle = 5;
+    const size_t few = 3; /* less than a third */
+    const size_t all = count_turning(f, -below_all_cosines);
+    const size_t flat = all - count_turning(f, cos(flat_angle * pi / 180));
+    const size_t sharp = count_turning(f, f->most_cosine);
+    const size_t between = count_turning(f, cos(angle / 2 * pi / 180)) - sharp;
+    if (sharp == 0 || between < sharp / 2 || (between < sharp && flat >= all / few))
+        return;
+    f->most_cosine = below_all_cosines;
+    f->surface->rough = true;
+}
+
 tm_status tm_surface_find_features(tm_surface *surface, double feature_angle,
-                                   tm_error *error)
+                                   bool unless_rough, tm_error *error)
 {
     feature_finder f = {.surface = surface,
                         .most_cosine = cos(feature_angle * pi / 180),
@@ -362,6 +393,8 @@ tm_status tm_surface_find_features(tm_surface *surface, double feature_angle,
     tm_status status = f.normal ? TM_OK : tm_fail_memory(error);
     if (status == TM_OK) {
         find_normals(&f);
+        if (unless_rough)
+            smooth_if_rough(&f, feature_angle);
         status = find_edges(&f, error);
     }
     if (status == TM_OK)

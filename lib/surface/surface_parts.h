@@ -45,7 +45,7 @@ tm_status tm_surface_turn(tm_surface *surface, tm_error *error);
 
 /* Curves, corners and patches. */
 tm_status tm_surface_find_features(tm_surface *surface, double feature_angle,
-                                   tm_error *error);
+                                   bool unless_rough, tm_error *error);
 
 /* The corner i of t for which across[t][i] is n; 3: none. */
 static inline unsigned tm_surface_side(const tm_surface *surface, uint32_t t, uint32_t n)
