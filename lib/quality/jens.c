@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Two corners are computed at a time, in both halves of a 16-byte vector (an extension
+/* Each edge is measured once, for the corners at both of its ends. Two edges and two
+ * corners are computed at a time, in both halves of a 16-byte vector (an extension
  * that GCC and Clang have on every machine). Both halves do what scalar code would, so
  * results do not depend on the machine. */
 #include "jens.h"
@@ -9,7 +10,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-enum { TETRAHEDRON = 4, PYRAMID = 5, WEDGE = 6, HEXAHEDRON = 8 };
+enum { TETRAHEDRON = 4, PYRAMID = 5, WEDGE = 6, HEXAHEDRON = 8, EDGES_MOST = 12 };
 
 #define ALL_4(k) (k), (k), (k), (k)
 
@@ -47,28 +48,102 @@ const tm_element_shape tm_element_shapes[TM_ELEMENT_NODES_MOST + 1] = {
                     {ALL_4(TM_K_HEXAHEDRON), ALL_4(TM_K_HEXAHEDRON)}},
 };
 
+/* Edges from a node of the element to another, an even number of them, and the three at
+ * each corner of tm_element_shapes, in such an order that their determinant is positive
+ * where that of the edges that leave the corner is. */
+typedef struct edge_table {
+    size_t edges;
+    unsigned char edge[EDGES_MOST][2];
+    unsigned char corner[TM_CORNERS_MOST][3];
+} edge_table;
+
+static const edge_table edge_tables[TM_ELEMENT_NODES_MOST + 1] = {
+    [TETRAHEDRON] = {6,
+                     {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}},
+                     {{0, 1, 2}, {0, 3, 4}, {1, 3, 5}, {5, 2, 4}}},
+    [PYRAMID] = {8,
+                 {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 4}, {2, 3}, {2, 4}, {3, 4}},
+                 {{0, 1, 2},
+                  {0, 3, 4},
+                  {3, 5, 6},
+                  {1, 5, 7},
+                  {4, 6, 2},
+                  {6, 7, 4},
+                  {7, 2, 6},
+                  {2, 4, 7}}},
+    [WEDGE] =
+        {10, /* the last one twice */
+         {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 4}, {2, 5}, {3, 4}, {3, 5}, {4, 5}, {4, 5}},
+         {{1, 0, 2}, {3, 0, 4}, {3, 1, 5}, {7, 6, 2}, {8, 6, 4}, {8, 7, 5}}},
+    [HEXAHEDRON] = {12,
+                    {{0, 1},
+                     {0, 3},
+                     {0, 4},
+                     {1, 2},
+                     {1, 5},
+                     {2, 3},
+                     {2, 6},
+                     {3, 7},
+                     {4, 5},
+                     {4, 7},
+                     {5, 6},
+                     {6, 7}},
+                    {{0, 1, 2},
+                     {0, 3, 4},
+                     {3, 5, 6},
+                     {1, 5, 7},
+                     {8, 9, 2},
+                     {8, 10, 4},
+                     {10, 11, 6},
+                     {9, 11, 7}}},
+};
+
 typedef double pair __attribute__((vector_size(2 * sizeof(double))));
 
 typedef struct vector_pair {
     pair x, y, z;
 } vector_pair;
 
+/* The edges of an element: their vectors and squared lengths, in pairs. */
+typedef union edge_numbers {
+    pair two[EDGES_MOST / 2];
+    double one[EDGES_MOST];
+} edge_numbers;
+
+typedef struct edge_vectors {
+    edge_numbers x, y, z, length2;
+} edge_vectors;
+
 /* Products of three squared lengths outside of these are not trusted. */
 static const double low = 1e-250;
 static const double high = 1e250;
 
-/* (to - from) of both corners. */
-static inline vector_pair edges(const double from[2][3], const double a[3],
-                                const double b[3])
+static inline void measure_edges(const edge_table *table, const double (*xyz)[3],
+                                 const uint32_t *item, edge_vectors *edge)
 {
-    return (vector_pair){(pair){a[0], b[0]} - (pair){from[0][0], from[1][0]},
-                         (pair){a[1], b[1]} - (pair){from[0][1], from[1][1]},
-                         (pair){a[2], b[2]} - (pair){from[0][2], from[1][2]}};
+    for (size_t e = 0; e < table->edges; e += 2) {
+        const unsigned char *first = table->edge[e], *second = table->edge[e + 1];
+        const double *a = xyz[item[first[0]]], *b = xyz[item[first[1]]];
+        const double *c = xyz[item[second[0]]], *d = xyz[item[second[1]]];
+        const pair x = (pair){b[0], d[0]} - (pair){a[0], c[0]};
+        const pair y = (pair){b[1], d[1]} - (pair){a[1], c[1]};
+        const pair z = (pair){b[2], d[2]} - (pair){a[2], c[2]};
+        edge->x.two[e / 2] = x;
+        edge->y.two[e / 2] = y;
+        edge->z.two[e / 2] = z;
+        edge->length2.two[e / 2] = x * x + y * y + z * z;
+    }
 }
 
-static inline pair norm2(vector_pair v)
+static inline pair two_of(const edge_numbers *number, size_t i, size_t j)
 {
-    return v.x * v.x + v.y * v.y + v.z * v.z;
+    return (pair){number->one[i], number->one[j]};
+}
+
+static inline vector_pair two_edges(const edge_vectors *edge, size_t i, size_t j)
+{
+    return (vector_pair){two_of(&edge->x, i, j), two_of(&edge->y, i, j),
+                         two_of(&edge->z, i, j)};
 }
 
 static inline pair determinant(vector_pair a, vector_pair b, vector_pair c)
@@ -109,25 +184,26 @@ double tm_scaled_jacobian(const double p[3], const double a[3], const double b[3
 void tm_scaled_jacobians(const tm_element_shape *shape, const double (*xyz)[3],
                          const uint32_t *item, double jacobian[TM_CORNERS_MOST])
 {
-    double p[TM_ELEMENT_NODES_MOST][3];
-    const size_t corners = shape->corners;
-    for (size_t i = 0; i < corners; i += 2) {
-        const unsigned char *first = shape->node[i], *second = shape->node[i + 1];
-        memcpy(p[0], xyz[item[first[0]]], sizeof p[0]);
-        memcpy(p[1], xyz[item[second[0]]], sizeof p[1]);
-        const vector_pair a = edges(p, xyz[item[first[1]]], xyz[item[second[1]]]);
-        const vector_pair b = edges(p, xyz[item[first[2]]], xyz[item[second[2]]]);
-        const vector_pair c = edges(p, xyz[item[first[3]]], xyz[item[second[3]]]);
-        const pair product = norm2(a) * norm2(b) * norm2(c);
-        const pair length = {sqrt(product[0]), sqrt(product[1])};
-        const pair value = determinant(a, b, c) / length;
-        for (size_t j = 0; j < 2; j++) {
-            const unsigned char *n = shape->node[i + j];
-            jacobian[i + j] = low < product[j] && product[j] < high
-                                  ? value[j]
-                                  : tm_scaled_jacobian(xyz[item[n[0]]], xyz[item[n[1]]],
-                                                       xyz[item[n[2]]], xyz[item[n[3]]]);
-        }
+    const edge_table *table = &edge_tables[shape - tm_element_shapes];
+    pair value[TM_CORNERS_MOST / 2], product[TM_CORNERS_MOST / 2];
+    edge_vectors edge;
+    measure_edges(table, xyz, item, &edge);
+    for (size_t i = 0; i < shape->corners; i += 2) {
+        const unsigned char *m = table->corner[i], *n = table->corner[i + 1];
+        value[i / 2] =
+            determinant(two_edges(&edge, m[0], n[0]), two_edges(&edge, m[1], n[1]),
+                        two_edges(&edge, m[2], n[2]));
+        product[i / 2] = two_of(&edge.length2, m[0], n[0]) *
+                         two_of(&edge.length2, m[1], n[1]) *
+                         two_of(&edge.length2, m[2], n[2]);
+    }
+    for (size_t i = 0; i < shape->corners; i++) {
+        const unsigned char *n = shape->node[i];
+        const double length6 = product[i / 2][i % 2];
+        jacobian[i] = low < length6 && length6 < high
+                          ? value[i / 2][i % 2] / sqrt(length6)
+                          : tm_scaled_jacobian(xyz[item[n[0]]], xyz[item[n[1]]],
+                                               xyz[item[n[2]]], xyz[item[n[3]]]);
     }
 }
 

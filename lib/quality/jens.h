@@ -42,7 +42,7 @@ enum { TM_CORNERS_MOST = 8, TM_ELEMENT_NODES_MOST = 8 };
  * positive order, are node[i][1 … 3]. A pyramid has eight: those of its base, and at its
  * apex each three lateral edges that follow each other. */
 typedef struct tm_element_shape {
-    size_t corners; /* an even number */
+    size_t corners;
     unsigned char node[TM_CORNERS_MOST][4];
     double k[TM_CORNERS_MOST];
 } tm_element_shape;
@@ -59,7 +59,8 @@ static inline double tm_jens_of(double jacobian, double k)
     return jacobian >= -k ? jacobian / k : -(1 + k) - jacobian;
 }
 
-/* J_S of every corner, in the order of the shape; item are the element's nodes. */
+/* J_S of every corner, in the order of the shape, which is one of tm_element_shapes; item
+ * are the element's nodes. */
 void tm_scaled_jacobians(const tm_element_shape *shape, const double (*xyz)[3],
                          const uint32_t *item, double jacobian[TM_CORNERS_MOST]);
 
