@@ -333,13 +333,17 @@ def check(row, path):
         told = json.loads(run.stdout)
     except (OSError, ValueError):
         return "-"
-    numbers = ["nodes", "elements", "boundary_faces", "components", "euler", "volume", "area"]
+    numbers = ["nodes", "elements", "tetrahedra", "pyramids", "wedges", "hexahedra",
+               "boundary_faces", "components", "euler", "volume", "area"]
     found = ["%d %s" % (count, key.replace("_", " ")) for key, count in told.items()
              if isinstance(count, (int, float)) and count and key not in numbers]
-    own = {"elements": "elements", "boundary_faces": "boundary_faces", "euler": "euler",
-           "components": "shells"}
-    found += ["%s %d" % (key, told[key]) for key, mine in own.items()
-              if key in told and told[key] != row[mine]]
+    # Of the solid: half of the boundary's; a solid with a void has two shells.
+    told["boundary's euler"] = 2 * told["euler"]
+    own = {"elements": row["elements"], "boundary_faces": row["boundary_faces"],
+           "boundary's euler": row["euler"]}
+    found += ["%s %d" % (key, told[key]) for key, mine in own.items() if told[key] != mine]
+    if told["components"] > row["shells"]:
+        found.append("components %d" % told["components"])
     return ", ".join(found) or "ok"
 
 
