@@ -4,6 +4,7 @@
 #include "../base/array.h"
 #include "../base/disjoint_sets.h"
 #include "fit.h"
+#include "islands.h"
 #include "settle.h"
 
 #include <stdlib.h>
@@ -70,6 +71,37 @@ static tm_status count_lost(tm_octree_mesh *m, const tm_octree *octree, tm_error
     return TM_OK;
 }
 
+static tm_status find_skin_once(tm_octree_mesh *m, const tm_octree *octree,
+                                const tm_surface *surface, tm_error *error)
+{
+    tm_skin_free(&m->skin);
+    free(m->at);
+    free(m->held);
+    m->at = NULL;
+    m->held = NULL;
+    m->report.components = 0;
+    tm_status status = tm_skin_find(&m->skin, octree, &m->solid, error);
+    if (status == TM_OK)
+        status = measure_boundary(m, error);
+    if (status == TM_OK)
+        status = find_closest(m, octree, surface, error);
+    return status;
+}
+
+/* The skin, without pieces that the surface does not have. */
+static tm_status find_skin(tm_octree_mesh *m, const tm_octree *octree,
+                           const tm_surface *surface, tm_error *error)
+{
+    bool changed = false;
+    tm_status status = find_skin_once(m, octree, surface, error);
+    if (status == TM_OK && m->report.components > surface->components)
+        status = tm_islands_remove(&m->solid, octree, &m->skin, surface, m->at, &changed,
+                                   error);
+    if (status == TM_OK && changed)
+        status = find_skin_once(m, octree, surface, error);
+    return status;
+}
+
 static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *surface,
                       tm_error *error)
 {
@@ -79,13 +111,9 @@ static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *su
         status = tm_fail(error, TM_ERROR_INPUT,
                          "no leaf is inside the surface: it needs a finer level");
     if (status == TM_OK)
+        status = find_skin(m, octree, surface, error);
+    if (status == TM_OK)
         status = count_lost(m, octree, error);
-    if (status == TM_OK)
-        status = tm_skin_find(&m->skin, octree, &m->solid, error);
-    if (status == TM_OK)
-        status = measure_boundary(m, error);
-    if (status == TM_OK)
-        status = find_closest(m, octree, surface, error);
     if (status == TM_OK)
         status = tm_feature_find(&m->feature, &m->skin, octree, surface, m->at, error);
     if (status == TM_OK)
