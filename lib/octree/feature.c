@@ -4,6 +4,7 @@
 #include "../base/array.h"
 #include "../base/disjoint_sets.h"
 #include "../geom/vector.h"
+#include "feature_cut.h"
 #include "feature_path.h"
 #include "feature_region.h"
 #include "feature_select.h"
@@ -42,7 +43,7 @@ static int compare_candidates(const void *a, const void *b)
 
 static void consider(void *context, uint32_t s)
 {
-    const double reach = 1.75; /* sides of a leaf */
+    const double reach = 3.5; /* sides of a leaf */
     finder *find = context;
     const tm_octree *octree = find->path.octree;
     const tm_surface *surface = find->path.surface;
@@ -254,6 +255,8 @@ tm_status tm_feature_find(tm_feature *feature, tm_skin *skin, const tm_octree *o
         status = find_curves(&find, surface, error);
     if (status == TM_OK)
         status = tm_feature_regions(feature, skin, surface, find.path.on_path, at, error);
+    if (status == TM_OK)
+        tm_feature_cut_wide(feature, skin, octree, surface, find.path.on_path);
     free_finder(&find);
     tm_skin_cells_free(&cells);
     return status;

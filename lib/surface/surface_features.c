@@ -291,7 +291,8 @@ static tm_status find_corners(feature_finder *f, tm_error *error)
         return tm_fail_memory(error);
     add_angles(surface, sum);
     for (uint32_t v = 0; v < surface->nodes; v++) {
-        f->corner[v] = is_corner(f, v) || sum[v] < tip_angle;
+        f->corner[v] =
+            is_corner(f, v) || (sum[v] < tip_angle && !f->surface->rough);
         surface->corners += f->corner[v];
     }
     free(sum);
