@@ -160,8 +160,9 @@ typedef struct tm_optimise_work {
     tm_optimise_report *report;
 } tm_optimise_work;
 
-/* Minimises, the more sharply the closer it comes, until nothing is bad. */
-void tm_optimise_descend(tm_optimise_work *work);
+/* Minimises, the more sharply the closer it comes, until nothing is bad; where that
+ * leaves elements inverted, it may untangle first. */
+void tm_optimise_descend(tm_optimise_work *work, bool may_untangle);
 
 /* Takes the best places of the cluster into the mesh. */
 void tm_optimise_accept(tm_optimise_work *work);
