@@ -85,7 +85,7 @@ floor() {
     base) echo 0 ;;
     geom | stream) echo 1 ;;
     quality | surface | format) echo 2 ;;
-    tet | poly | octree) echo 3 ;;
+    tet | poly | mixed | octree) echo 3 ;;
     *) echo unknown ;;
     esac
 }
