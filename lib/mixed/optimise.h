@@ -50,6 +50,8 @@ typedef struct tm_optimise_options {
     double held_threshold;    /* the same for elements near nodes that are brought to the
                                  boundary; not above the others */
     unsigned effort;          /* how often what remains is tried again; 1 is usual */
+    size_t most_measured;     /* no more is begun once so many elements were measured in
+                                 all; 0: no limit */
 } tm_optimise_options;
 
 typedef struct tm_optimise_report {
@@ -60,6 +62,7 @@ typedef struct tm_optimise_report {
     size_t moved;       /* nodes */
     size_t clusters;    /* of bad elements that were worked on, each time counted */
     size_t evaluations; /* of the objective */
+    size_t measured;    /* elements, in all of these */
 } tm_optimise_report;
 
 /* Raises J_ENS of bad elements by moving nodes up to three elements away from them, and

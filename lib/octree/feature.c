@@ -256,7 +256,7 @@ tm_status tm_feature_find(tm_feature *feature, tm_skin *skin, const tm_octree *o
     if (status == TM_OK)
         status = tm_feature_regions(feature, skin, surface, find.path.on_path, at, error);
     if (status == TM_OK)
-        tm_feature_cut_wide(feature, skin, octree, surface, find.path.on_path);
+        tm_feature_cut_wide(feature, skin, octree, surface, find.path.on_path, at);
     free_finder(&find);
     tm_skin_cells_free(&cells);
     return status;

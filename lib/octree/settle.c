@@ -126,8 +126,14 @@ tm_status tm_settle(tm_octree_mesh *mesh, const tm_surface *surface, tm_error *e
 {
     const double threshold = 0.2;
     const tm_boundary boundary = tm_boundary_of_surface(surface);
+    /* What can be mended takes a few measurements of each element; where the surface is
+     * too fine for the leaves there would be no end. */
+    const size_t few = 4, at_least = 1000000;
     const tm_optimise_options options = {
-        .threshold = threshold, .held_threshold = threshold, .effort = 1};
+        .threshold = threshold,
+        .held_threshold = threshold,
+        .effort = 1,
+        .most_measured = at_least + few * mesh->assembly.mesh.elements};
     tm_optimise_report report;
     tm_node_rule *rule = find_rules(mesh);
     if (!rule)
