@@ -7,8 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Measured on the bench's surfaces: more sweeps change the worst elements little. */
-enum { SKIN_SWEEPS = 4, CORE_SWEEPS = 6, HEXAHEDRON = 8 };
+/* Measured on the bench's surfaces: more sweeps change the worst elements little. Curves
+ * are swept alone first: their nodes may be crowded at an end. */
+enum { CURVE_SWEEPS = 8, SKIN_SWEEPS = 4, CORE_SWEEPS = 6, HEXAHEDRON = 8 };
 
 typedef struct {
     tm_assembly *assembly;
@@ -75,9 +76,10 @@ static void fit_skin(const fitter *fit)
         memcpy(point, xyz[fit->assembly->outer + s], sizeof point);
         put(fit, s, point);
     }
-    for (int sweep = 0; sweep < SKIN_SWEEPS; sweep++)
+    for (int sweep = 0; sweep < CURVE_SWEEPS + SKIN_SWEEPS; sweep++)
         for (size_t s = 0; s < fit->skin->nodes; s++) {
-            if (fit->feature->kind[s] == TM_ON_CORNER)
+            const uint8_t kind = fit->feature->kind[s];
+            if (kind == TM_ON_CORNER || (kind == TM_ON_PATCH && sweep < CURVE_SWEEPS))
                 continue;
             mean_on_skin(fit, s, point);
             put(fit, s, point);
