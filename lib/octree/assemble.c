@@ -247,7 +247,7 @@ static tm_status place_nodes(assembler *a, tm_error *error)
     uint8_t *level = find_levels(a);
     if (!level)
         return tm_fail_memory(error);
-    const double share = 0.1;
+    const double share = 0.08;
     for (size_t s = 0; s < a->skin->nodes; s++) {
         int outward[3];
         const uint32_t node = a->skin->grid_node[s];
