@@ -113,10 +113,9 @@ static inline void make_random_octree(tm_octree *octree, const tm_surface *surfa
 {
     enum { RULES = 3, SPLIT_EVERY = 30 };
     tm_error error;
-    tm_octree_rule rule[RULES] = {
-        {.kind = TM_RULE_SURFACE, .level = 2 + random_below(3)},
-        {.kind = TM_RULE_EVERYTHING, .level = random_below(4)},
-        {.kind = TM_RULE_BOX, .level = random_below(6)}};
+    tm_octree_rule rule[RULES] = {{.kind = TM_RULE_SURFACE, .level = 2 + random_below(3)},
+                                  {.kind = TM_RULE_EVERYTHING, .level = random_below(4)},
+                                  {.kind = TM_RULE_BOX, .level = random_below(6)}};
     for (int i = 0; i < 3; i++) {
         const double a = random_between(surface->low[i], surface->high[i]);
         rule[2].low[i] = a;
