@@ -1,0 +1,360 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Whole meshes: what is sharp at turned boxes, and whether the elements of random solids
+ * are valid, fit together, and end on the surface. */
+#include "../../lib/mixed/mixed_examine.h"
+#include "../../lib/octree/octree_mesh.h"
+#include "../../lib/quality/jens.h"
+#include "octree_fixture.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { BOX_CORNERS = 8, BOX_CURVES = 12, BOX_PATCHES = 6, BOXES = 8, ROUNDS = 20 };
+
+static void make_mesh(tm_octree_mesh *mesh, const tm_octree *octree, tm_surface *surface)
+{
+    tm_error error;
+    assert_ok(tm_octree_mesh_make(mesh, octree, surface, &error), &error);
+}
+
+static const double *outer_point(const tm_octree_mesh *mesh, size_t s)
+{
+    return mesh->assembly.mesh.xyz[mesh->assembly.outer + s];
+}
+
+/* No element is inverted, they fit together, and none of the nodes is idle. */
+static void check_elements(const tm_octree_mesh *mesh)
+{
+    const tm_mixed_mesh *m = &mesh->assembly.mesh;
+    const double(*xyz)[3] = (const double(*)[3])m->xyz;
+    tm_error error;
+    tm_examination found;
+    for (size_t e = 0; e < m->elements; e++)
+        assert_true(tm_jens(m->start[e + 1] - m->start[e], xyz, m->item + m->start[e]) >
+                    0);
+    assert_int_equal(mesh->report.invalid, 0);
+    const tm_mixed_arrays arrays = {.nodes = m->nodes,
+                                    .xyz = xyz,
+                                    .elements = m->elements,
+                                    .start = m->start,
+                                    .item = m->item};
+    assert_ok(tm_mixed_examine(&found, &arrays, 1, &error), &error);
+    assert_true(tm_examination_is_good(&found));
+    assert_int_equal(found.unused_nodes, 0);
+    assert_true(found.components <= mesh->report.components);
+    assert_int_equal(2 * found.euler, mesh->report.euler);
+}
+
+/* How far an outer node is from where it should be. */
+static double distance_from_place(const tm_octree_mesh *mesh, const tm_surface *surface,
+                                  size_t s)
+{
+    const double *at = outer_point(mesh, s);
+    const uint32_t of = mesh->feature.of[s];
+    double place[3];
+    if (mesh->feature.kind[s] == TM_ON_CORNER)
+        return sqrt(tm_distance2(at, surface->xyz[surface->corner[of]]));
+    if (mesh->feature.kind[s] == TM_ON_CURVE) {
+        size_t segment;
+        tm_surface_closest_on_curve(surface, of, at, place, &segment);
+        return sqrt(tm_distance2(at, place));
+    }
+    tm_surface_point closest = {.triangle = TM_NONE};
+    tm_surface_closest(surface, at, TM_NONE, &closest);
+    return sqrt(closest.distance2);
+}
+
+/* All boundary nodes are on the surface, but those that are held. */
+static void check_boundary(const tm_octree_mesh *mesh, const tm_surface *surface)
+{
+    const double close = 1e-9 * sqrt(tm_distance2(surface->low, surface->high));
+    size_t held = 0;
+    for (size_t s = 0; s < mesh->skin.nodes; s++) {
+        held += mesh->held[s];
+        assert_true(mesh->held[s] || distance_from_place(mesh, surface, s) <= close);
+    }
+    assert_int_equal(held, mesh->report.held_back);
+}
+
+/* Whether two skin nodes are the ends of an edge, or of a diagonal that cuts a face. */
+static bool are_joined(const tm_skin *skin, uint32_t a, uint32_t b)
+{
+    for (size_t i = skin->around_start[a]; i < skin->around_start[a + 1]; i++) {
+        const size_t f = skin->around[i];
+        const uint32_t *face = skin->face[f];
+        const unsigned k = tm_skin_corners(skin, f);
+        unsigned at = 0;
+        while (face[at] != a)
+            at++;
+        if (face[(at + 1) % k] == b || face[(at + k - 1) % k] == b)
+            return true;
+        if (skin->cut[f] == (at % 2 == 0 ? TM_CUT_02 : TM_CUT_13) &&
+            face[(at + 2) % k] == b)
+            return true;
+    }
+    return false;
+}
+
+/* From a node on a curve, away from `before`, to its end: a corner. Returns how many
+ * nodes are passed, this one too. */
+static size_t walk_curve(const tm_octree_mesh *mesh, uint32_t s, uint32_t before,
+                         uint32_t *corner)
+{
+    const tm_feature *feature = &mesh->feature;
+    const uint32_t curve = feature->of[s];
+    size_t passed = 0;
+    while (feature->kind[s] == TM_ON_CURVE) {
+        assert_int_equal(feature->of[s], curve);
+        const uint32_t *along = feature->along[s];
+        assert_true(along[0] == before || along[1] == before);
+        assert_true(are_joined(&mesh->skin, before, s));
+        const uint32_t next = along[0] == before ? along[1] : along[0];
+        before = s;
+        s = next;
+        assert_true(++passed <= mesh->skin.nodes);
+    }
+    assert_true(are_joined(&mesh->skin, before, s));
+    assert_int_equal(feature->kind[s], TM_ON_CORNER);
+    *corner = feature->of[s];
+    return passed;
+}
+
+/* Each curve of a box is one path between its two corners. */
+static void check_curves(const tm_octree_mesh *mesh, const tm_surface *surface)
+{
+    const tm_feature *feature = &mesh->feature;
+    size_t nodes[BOX_CURVES] = {0};
+    uint32_t first[BOX_CURVES];
+    for (uint32_t s = 0; s < mesh->skin.nodes; s++)
+        if (feature->kind[s] == TM_ON_CURVE) {
+            first[feature->of[s]] = s;
+            nodes[feature->of[s]]++;
+        }
+    for (size_t c = 0; c < BOX_CURVES; c++) {
+        assert_true(nodes[c] > 0);
+        uint32_t end[2];
+        const uint32_t *along = feature->along[first[c]];
+        const size_t passed = walk_curve(mesh, first[c], along[0], &end[0]) +
+                              walk_curve(mesh, first[c], along[1], &end[1]);
+        assert_int_equal(passed, nodes[c] + 1);
+        const uint32_t from = surface->curve_node[surface->curve_start[c]];
+        const uint32_t to = surface->curve_node[surface->curve_start[c + 1] - 1];
+        const uint32_t a = surface->corner[end[0]], b = surface->corner[end[1]];
+        assert_true((a == from && b == to) || (a == to && b == from));
+    }
+}
+
+/* Each corner of a box has one node, at its place. */
+static void check_corners(const tm_octree_mesh *mesh, const tm_surface *surface)
+{
+    size_t nodes[BOX_CORNERS] = {0};
+    for (size_t s = 0; s < mesh->skin.nodes; s++)
+        if (mesh->feature.kind[s] == TM_ON_CORNER) {
+            const uint32_t corner = mesh->feature.of[s];
+            nodes[corner]++;
+            if (!mesh->held[s])
+                assert_memory_equal(outer_point(mesh, s),
+                                    surface->xyz[surface->corner[corner]],
+                                    3 * sizeof(double));
+        }
+    for (size_t c = 0; c < BOX_CORNERS; c++)
+        assert_int_equal(nodes[c], 1);
+}
+
+/* Each of the six sides has nodes, and no face has nodes of two of them; a node on a
+ * curve has only sides of the curve beside it. */
+static void check_patches(const tm_octree_mesh *mesh, const tm_surface *surface)
+{
+    const tm_feature *feature = &mesh->feature;
+    bool there[BOX_PATCHES] = {false};
+    for (size_t f = 0; f < mesh->skin.faces; f++) {
+        const uint32_t *face = mesh->skin.face[f];
+        const unsigned k = tm_skin_corners(&mesh->skin, f);
+        for (unsigned i = 0; i < k; i++) {
+            if (feature->kind[face[i]] != TM_ON_PATCH)
+                continue;
+            const uint32_t patch = feature->of[face[i]], next = face[(i + 1) % k];
+            assert_true(patch < BOX_PATCHES);
+            there[patch] = true;
+            if (feature->kind[next] == TM_ON_PATCH)
+                assert_int_equal(feature->of[next], patch);
+            if (feature->kind[next] == TM_ON_CURVE) {
+                const uint32_t *beside = surface->curve_patch[feature->of[next]];
+                assert_true(beside[0] == patch || beside[1] == patch);
+            }
+        }
+    }
+    for (size_t p = 0; p < BOX_PATCHES; p++)
+        assert_true(there[p]);
+}
+
+static void make_turned_box(tm_surface *surface)
+{
+    tm_error error;
+    tm_polygon_surface p;
+    const double low[3] = {0, 0, 0};
+    const double high[3] = {1, random_between(1, 2), random_between(1, 2)};
+    tm_polygon_surface_init(&p);
+    add_box(&p, low, high, false);
+    turn_nodes(&p, random_between(0, 2));
+    const tm_surface_options options = {.feature_angle = TM_FEATURE_ANGLE,
+                                        .unless_rough = true};
+    assert_ok(tm_surface_build(surface, &p, &options, &error), &error);
+    tm_polygon_surface_free(&p);
+    assert_int_equal(surface->corners, BOX_CORNERS);
+    assert_int_equal(surface->curves, BOX_CURVES);
+    assert_int_equal(surface->patches, BOX_PATCHES);
+}
+
+static void test_boxes(void **state)
+{
+    (void)state;
+    for (int round = 0; round < BOXES; round++) {
+        const uint64_t seed = random_state;
+        const tm_octree_rule rule = {.kind = TM_RULE_SURFACE,
+                                     .level = 4 + random_below(2)};
+        tm_surface surface;
+        tm_octree octree;
+        tm_octree_mesh mesh;
+        tm_error error;
+        make_turned_box(&surface);
+        assert_ok(tm_octree_build(&octree, &surface, &rule, 1, &error), &error);
+        printf("box %d (TM_SEED=%" PRIu64 "): %zu leaves\n", round, seed, octree.leaves);
+        make_mesh(&mesh, &octree, &surface);
+        assert_int_equal(mesh.report.corners_lost + mesh.report.curves_lost, 0);
+        assert_int_equal(mesh.report.components, 1);
+        assert_int_equal(mesh.report.euler, 2);
+        check_corners(&mesh, &surface);
+        check_curves(&mesh, &surface);
+        check_patches(&mesh, &surface);
+        check_elements(&mesh);
+        check_boundary(&mesh, &surface);
+        tm_octree_mesh_free(&mesh);
+        tm_octree_free(&octree);
+        tm_surface_free(&surface);
+    }
+}
+
+/* Whether a mesh can be made: a leaf is inside. */
+static bool has_solid(const tm_octree *octree, const tm_surface *surface)
+{
+    tm_error error;
+    tm_solid solid;
+    assert_ok(tm_solid_choose(&solid, octree, surface, &error), &error);
+    const bool has = solid.count > 0;
+    tm_solid_free(&solid);
+    return has;
+}
+
+static void test_random(void **state)
+{
+    (void)state;
+    size_t elements = 0, boundary = 0, held = 0;
+    for (int round = 0; round < ROUNDS; round++) {
+        const uint64_t seed = random_state;
+        tm_surface surface;
+        tm_octree octree;
+        tm_octree_mesh mesh;
+        tm_error error;
+        make_random_surface(&surface);
+        make_random_octree(&octree, &surface);
+        assert_ok(tm_octree_resolve(&octree, &surface, random_below(2), &error), &error);
+        printf("round %d (TM_SEED=%" PRIu64 "): %zu leaves\n", round, seed,
+               octree.leaves);
+        const size_t patches = surface.patches;
+        if (has_solid(&octree, &surface)) {
+            make_mesh(&mesh, &octree, &surface);
+            check_elements(&mesh);
+            check_boundary(&mesh, &surface);
+            elements += mesh.assembly.mesh.elements;
+            boundary += mesh.skin.nodes;
+            held += mesh.report.held_back;
+        } else {
+            assert_int_equal(tm_octree_mesh_make(&mesh, &octree, &surface, &error),
+                             TM_ERROR_INPUT);
+        }
+        assert_int_equal(surface.patches, patches);
+        assert_ok(tm_surface_check(&surface, &error), &error);
+        tm_octree_mesh_free(&mesh);
+        tm_octree_free(&octree);
+        tm_surface_free(&surface);
+    }
+    printf("%zu elements; %zu of %zu boundary nodes are held back\n", elements, held,
+           boundary);
+    assert_true(elements > 0 && held < boundary);
+}
+
+/* A cube with a thin wall, in the middle of which are leaves from level 5 on. */
+static void make_hollow_cube(tm_surface *surface)
+{
+    const double low[3] = {0, 0, 0}, high[3] = {4, 4, 4};
+    const double hollow_low[3] = {0.1, 0.1, 0.1}, hollow_high[3] = {3.9, 3.9, 3.9};
+    const tm_surface_options options = {.feature_angle = TM_FEATURE_ANGLE};
+    tm_error error;
+    tm_polygon_surface p;
+    tm_polygon_surface_init(&p);
+    add_box(&p, low, high, false);
+    add_box(&p, hollow_low, hollow_high, true);
+    assert_ok(tm_surface_build(surface, &p, &options, &error), &error);
+    tm_polygon_surface_free(&p);
+}
+
+/* Leaves in which the surface is lost, when an octree of that level at the surface has
+ * been refined by some more; *deepest: the level of the smallest leaf. */
+static size_t resolve(tm_octree *octree, const tm_surface *surface, unsigned level,
+                      unsigned more, unsigned *deepest)
+{
+    const tm_octree_rule rule = {.kind = TM_RULE_SURFACE, .level = level};
+    tm_error error;
+    tm_solid solid;
+    assert_ok(tm_octree_build(octree, surface, &rule, 1, &error), &error);
+    assert_ok(tm_octree_resolve(octree, surface, more, &error), &error);
+    *deepest = 0;
+    for (size_t l = 0; l < octree->leaves; l++)
+        if (octree->leaf[l].level > *deepest)
+            *deepest = octree->leaf[l].level;
+    uint8_t *mark = malloc(octree->leaves);
+    assert_ok(tm_solid_choose(&solid, octree, surface, &error), &error);
+    const size_t lost = tm_solid_find_lost(&solid, octree, mark);
+    tm_solid_free(&solid);
+    free(mark);
+    return lost;
+}
+
+/* It is refined where it would be lost, as far as is allowed and as is needed. */
+static void test_resolve(void **state)
+{
+    (void)state;
+    enum { LEVEL = 3, NEEDED = 2, MORE = 4 };
+    tm_surface surface;
+    make_hollow_cube(&surface);
+    for (unsigned more = 0; more < MORE; more++) {
+        tm_octree octree;
+        unsigned deepest;
+        const size_t lost = resolve(&octree, &surface, LEVEL, more, &deepest);
+        printf("%u levels more: %zu leaves lost\n", more, lost);
+        assert_int_equal(lost > 0, more < NEEDED);
+        assert_int_equal(deepest, LEVEL + (more < NEEDED ? more : NEEDED));
+        if (lost == 0) {
+            tm_octree_mesh mesh;
+            make_mesh(&mesh, &octree, &surface);
+            assert_int_equal(mesh.report.lost, 0);
+            assert_int_equal(mesh.report.components, 2);
+            assert_int_equal(mesh.report.euler, 4);
+            tm_octree_mesh_free(&mesh);
+        }
+        tm_octree_free(&octree);
+    }
+    tm_surface_free(&surface);
+}
+
+int main(void)
+{
+    random_start();
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_boxes),
+        cmocka_unit_test(test_random),
+        cmocka_unit_test(test_resolve),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
