@@ -28,22 +28,9 @@ enum {
 
 /* The objective becomes the sharper the closer it is to its minimum. */
 static const double sharpness[] = {8, 20, 60};
+enum { UNTANGLE_STAGES = 12, UNTANGLE_ITERATIONS = 20 };
+static const double epsilon_least = 1e-6;
 enum { STAGES = sizeof sharpness / sizeof *sharpness, ITERATIONS = 25 };
-
-typedef struct work {
-    tm_mixed_mesh *mesh;
-    tm_node_rule *rule;
-    const tm_optimise_options *options;
-    double *jens;  /* [elements] */
-    bool *visited; /* [elements]: in this pass */
-    bool *moved;   /* [nodes] */
-    uint32_t *bad; /* elements, the worst first */
-    size_t bads;
-    tm_vicinity vicinity;
-    tm_cluster_source source;
-    tm_cluster cluster;
-    tm_optimise_report *report;
-} work;
 
 static const double (*places_of(const tm_mixed_mesh *mesh))[3]
 {
@@ -56,7 +43,8 @@ static double measure(const tm_mixed_mesh *mesh, size_t e)
                    mesh->item + mesh->start[e]);
 }
 
-static void count_elements(const work *w, size_t *bad, size_t *inverted, double *worst)
+static void count_elements(const tm_optimise_work *w, size_t *bad, size_t *inverted,
+                           double *worst)
 {
     *bad = *inverted = 0;
     *worst = 1;
@@ -67,7 +55,7 @@ static void count_elements(const work *w, size_t *bad, size_t *inverted, double 
     }
 }
 
-static size_t count_held(const work *w)
+static size_t count_held(const tm_optimise_work *w)
 {
     size_t held = 0;
     for (size_t v = 0; v < w->mesh->nodes; v++)
@@ -75,20 +63,16 @@ static size_t count_held(const work *w)
     return held;
 }
 
-static tm_status start_work(work *w, tm_error *error)
+/* Lists the bad elements. */
+static tm_status find_bad(tm_optimise_work *w, tm_error *error)
 {
     const size_t elements = w->mesh->elements;
-    w->jens = tm_new(elements, sizeof *w->jens);
-    w->bad = NULL;
-    if (!w->jens)
-        return tm_fail_memory(error);
+    size_t bads = 0;
     for (size_t e = 0; e < elements; e++)
-        w->jens[e] = measure(w->mesh, e);
-    tm_optimise_report *report = w->report;
-    count_elements(w, &report->bad_before, &report->inverted_before,
-                   &report->worst_before);
-    report->held_before = count_held(w);
-    w->bad = tm_new(report->bad_before, sizeof *w->bad);
+        bads += w->jens[e] < tm_threshold_of(w->options, e);
+    free(w->bad);
+    w->bads = 0;
+    w->bad = tm_new(bads, sizeof *w->bad);
     if (!w->bad)
         return tm_fail_memory(error);
     for (size_t e = 0; e < elements; e++)
@@ -97,8 +81,24 @@ static tm_status start_work(work *w, tm_error *error)
     return TM_OK;
 }
 
+static tm_status start_work(tm_optimise_work *w, tm_error *error)
+{
+    const size_t elements = w->mesh->elements;
+    w->jens = tm_new(elements, sizeof *w->jens);
+    if (!w->jens)
+        return tm_fail_memory(error);
+    for (size_t e = 0; e < elements; e++)
+        w->jens[e] = measure(w->mesh, e);
+    tm_optimise_report *report = w->report;
+    count_elements(w, &report->bad_before, &report->inverted_before,
+                   &report->worst_before);
+    report->held_before = count_held(w);
+    return find_bad(w, error);
+}
+
 /* What is needed only where there is something to do. */
-static tm_status start_moving(work *w, const tm_boundary *boundary, tm_error *error)
+static tm_status start_moving(tm_optimise_work *w, const tm_boundary *boundary,
+                              tm_error *error)
 {
     const tm_mixed_mesh *mesh = w->mesh;
     tm_status status =
@@ -118,7 +118,7 @@ static tm_status start_moving(work *w, const tm_boundary *boundary, tm_error *er
     return TM_OK;
 }
 
-static void end_work(work *w)
+static void end_work(tm_optimise_work *w)
 {
     free(w->jens);
     free(w->bad);
@@ -152,8 +152,7 @@ static void kick_nodes(tm_cluster *cluster, double kick, uint64_t seed)
     }
 }
 
-/* Takes the best places into the mesh. */
-static void accept(work *w)
+void tm_optimise_accept(tm_optimise_work *w)
 {
     const tm_cluster *cluster = &w->cluster;
     for (size_t v = 0; v < cluster->moving; v++) {
@@ -167,14 +166,35 @@ static void accept(work *w)
         w->jens[cluster->element[e]] = measure(w->mesh, cluster->element[e]);
 }
 
-static void descend_all(work *w)
+static void sharpen(tm_cluster *cluster)
 {
-    for (size_t s = 0; s < STAGES && w->cluster.best_score.bad > 0; s++)
-        tm_cluster_descend(&w->cluster, sharpness[s], ITERATIONS);
+    for (size_t s = 0; s < STAGES && cluster->best_score.bad > 0; s++)
+        tm_cluster_descend(cluster, (tm_objective){false, sharpness[s]}, ITERATIONS);
+}
+
+static void untangle(tm_cluster *cluster)
+{
+    double epsilon = 1;
+    for (size_t s = 0; s < UNTANGLE_STAGES && cluster->best_score.inverted > 0; s++) {
+        const double gain = tm_cluster_descend(cluster, (tm_objective){true, epsilon},
+                                               UNTANGLE_ITERATIONS);
+        epsilon = fmax(tm_untangle_next(cluster, epsilon, gain), epsilon_least);
+    }
+}
+
+void tm_optimise_descend(tm_optimise_work *w)
+{
+    tm_cluster *cluster = &w->cluster;
+    sharpen(cluster);
+    if (cluster->best_score.inverted == 0)
+        return;
+    untangle(cluster);
+    if (cluster->best_score.inverted == 0)
+        sharpen(cluster);
 }
 
 /* Bad elements that touch `first`, or each other: at most CORE_MOST. */
-static size_t find_core(work *w, uint32_t first, uint32_t core[CORE_MOST])
+static size_t find_core(tm_optimise_work *w, uint32_t first, uint32_t core[CORE_MOST])
 {
     const tm_mixed_mesh *mesh = w->mesh;
     size_t cores = 0;
@@ -197,8 +217,8 @@ static size_t find_core(work *w, uint32_t first, uint32_t core[CORE_MOST])
     return cores;
 }
 
-static tm_status mend_cluster(work *w, uint32_t first, const pass *how, uint64_t round,
-                              tm_error *error)
+static tm_status mend_cluster(tm_optimise_work *w, uint32_t first, const pass *how,
+                              uint64_t round, tm_error *error)
 {
     uint32_t core[CORE_MOST];
     const size_t cores = find_core(w, first, core);
@@ -210,9 +230,9 @@ static tm_status mend_cluster(work *w, uint32_t first, const pass *how, uint64_t
     w->report->clusters++;
     if (how->kick > 0)
         kick_nodes(cluster, how->kick, first ^ round << 32);
-    descend_all(w);
+    tm_optimise_descend(w);
     if (tm_score_better(&cluster->best_score, &cluster->first))
-        accept(w);
+        tm_optimise_accept(w);
     return TM_OK;
 }
 
@@ -230,7 +250,7 @@ static int compare(const void *a, const void *b)
 }
 
 /* Leaves those that are still bad, the worst first. */
-static tm_status rank_bad(work *w, tm_error *error)
+static tm_status rank_bad(tm_optimise_work *w, tm_error *error)
 {
     size_t count = 0;
     ranked *list = tm_new(w->bads, sizeof *list);
@@ -250,7 +270,8 @@ static tm_status rank_bad(work *w, tm_error *error)
     return TM_OK;
 }
 
-static tm_status make_pass(work *w, const pass *how, uint64_t round, tm_error *error)
+static tm_status make_pass(tm_optimise_work *w, const pass *how, uint64_t round,
+                           tm_error *error)
 {
     tm_status status = rank_bad(w, error);
     for (size_t b = 0; status == TM_OK && b < w->bads; b++) {
@@ -261,7 +282,7 @@ static tm_status make_pass(work *w, const pass *how, uint64_t round, tm_error *e
     return status;
 }
 
-static tm_status mend(work *w, tm_error *error)
+static tm_status mend(tm_optimise_work *w, tm_error *error)
 {
     tm_status status = TM_OK;
     for (size_t p = 0; p < PASSES && status == TM_OK && w->bads > 0; p++)
@@ -272,18 +293,35 @@ static tm_status mend(work *w, tm_error *error)
     return status == TM_OK ? rank_bad(w, error) : status;
 }
 
+/* What nodes that were held back have left bad. */
+static tm_status mend_again(tm_optimise_work *w, tm_error *error)
+{
+    tm_status status = find_bad(w, error);
+    if (status != TM_OK || w->bads == 0)
+        return status;
+    tm_vicinity_free(&w->vicinity);
+    status = tm_vicinity_find(&w->vicinity, w->mesh, w->bad, w->bads, w->rule, RINGS_MOST,
+                              error);
+    return status == TM_OK ? mend(w, error) : status;
+}
+
 tm_status tm_mixed_optimise(tm_mixed_mesh *mesh, tm_node_rule *rule,
                             const tm_boundary *boundary,
                             const tm_optimise_options *options,
                             tm_optimise_report *report, tm_error *error)
 {
     *report = (tm_optimise_report){0};
-    work w = {.mesh = mesh, .rule = rule, .options = options, .report = report};
+    tm_optimise_work w = {
+        .mesh = mesh, .rule = rule, .options = options, .report = report};
     tm_status status = start_work(&w, error);
     if (status == TM_OK && (w.bads > 0 || report->held_before > 0)) {
         status = start_moving(&w, boundary, error);
         if (status == TM_OK)
             status = mend(&w, error);
+        if (status == TM_OK && report->held_before > 0)
+            status = tm_optimise_held(&w, error);
+        if (status == TM_OK && report->held_before > 0)
+            status = mend_again(&w, error);
     }
     if (w.bad) {
         count_elements(&w, &report->bad_after, &report->inverted_after,

@@ -12,10 +12,10 @@
 #include <stdint.h>
 
 typedef enum tm_freedom {
-    TM_FIXED,
-    TM_FREE,
-    TM_ON_SURFACE, /* slides on one patch of a surface, or on all of it */
-    TM_ON_CURVE    /* slides along a curve of it */
+    TM_MOVES_NOT,
+    TM_MOVES_FREELY,
+    TM_MOVES_ON_SURFACE, /* slides on one patch of a surface, or on all of it */
+    TM_MOVES_ON_CURVE    /* slides along a curve of it */
 } tm_freedom;
 
 /* What a node may do. One that is held back is not on its surface or curve yet: it is to

@@ -7,6 +7,7 @@
 #include "../quality/jens.h"
 #include "../stream/stream.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -51,8 +52,8 @@ static bool add_nodes_of(tm_cluster *cluster, const tm_cluster_source *source, u
         const uint32_t v = mesh->item[i];
         if (source->local[v] != TM_NONE)
             continue;
-        if (!all &&
-            (source->rule[v].freedom == TM_FIXED || source->vicinity->row[v] == TM_NONE))
+        if (!all && (source->rule[v].freedom == TM_MOVES_NOT ||
+                     source->vicinity->row[v] == TM_NONE))
             continue;
         if (!add_node(cluster, source, v))
             return false;
@@ -119,7 +120,7 @@ static bool make_room(tm_cluster *cluster, size_t old_nodes, size_t old_elements
         made = made && RENEW(cluster->start, elements + 1) &&
                RENEW(cluster->item, elements * TM_ELEMENT_NODES_MOST) &&
                RENEW(cluster->threshold, elements) && RENEW(cluster->before, elements) &&
-               RENEW(cluster->jens, elements) &&
+               RENEW(cluster->jens, elements) && RENEW(cluster->element_size, elements) &&
                RENEW(cluster->corner, elements * TM_CORNERS_MOST);
     return made;
 }
@@ -163,6 +164,21 @@ static void measure_sizes(tm_cluster *cluster)
         cluster->size[v] = cluster->size[v] > 0 ? cluster->size[v] / count[v][0] : 1;
 }
 
+static void measure_elements(tm_cluster *cluster)
+{
+    for (size_t e = 0; e < cluster->elements; e++) {
+        const uint32_t *item = cluster->item + cluster->start[e];
+        const tm_element_shape *shape =
+            &tm_element_shapes[cluster->start[e + 1] - cluster->start[e]];
+        double sum = 0;
+        for (size_t i = 0; i < shape->corners; i++)
+            for (size_t j = 1; j < 4; j++)
+                sum += sqrt(tm_distance2(cluster->xyz[item[shape->node[i][0]]],
+                                         cluster->xyz[item[shape->node[i][j]]]));
+        cluster->element_size[e] = sum > 0 ? sum / (double)(3 * shape->corners) : 1;
+    }
+}
+
 /* Where nodes of the boundary are on it, and how far from it those that are held back. */
 static void find_places(tm_cluster *cluster)
 {
@@ -172,9 +188,9 @@ static void find_places(tm_cluster *cluster)
         tm_boundary_place *at = &cluster->place[v];
         *at = (tm_boundary_place){.guess = TM_NONE};
         memset(cluster->offset[v], 0, sizeof *cluster->offset);
-        if (rule->freedom == TM_ON_SURFACE)
+        if (rule->freedom == TM_MOVES_ON_SURFACE)
             cluster->boundary->on_surface(cluster->boundary->of, rule->where, p, at);
-        else if (rule->freedom == TM_ON_CURVE)
+        else if (rule->freedom == TM_MOVES_ON_CURVE)
             cluster->boundary->on_curve(cluster->boundary->of, rule->where, p, at);
         if (rule->held)
             tm_subtract(cluster->offset[v], p, at->xyz);
@@ -199,6 +215,7 @@ tm_status tm_cluster_gather(tm_cluster *cluster, const tm_cluster_source *source
             cluster->rule[v] = source->rule[cluster->node[v]];
         copy_elements(cluster, source);
         measure_sizes(cluster);
+        measure_elements(cluster);
         find_places(cluster);
         memcpy(cluster->best, cluster->xyz, cluster->moving * sizeof *cluster->best);
         cluster->first = cluster->best_score = tm_cluster_score(cluster);
@@ -208,6 +225,22 @@ tm_status tm_cluster_gather(tm_cluster *cluster, const tm_cluster_source *source
     for (size_t e = 0; e < cluster->elements; e++)
         source->taken[cluster->element[e]] = false;
     return made ? TM_OK : tm_fail_memory(error);
+}
+
+void tm_cluster_approach(tm_cluster *cluster, size_t v, double factor, double threshold)
+{
+    for (size_t e = 0; e < cluster->elements; e++) {
+        cluster->threshold[e] = fmin(cluster->threshold[e], threshold);
+        cluster->jens[e] = cluster->before[e];
+    }
+    cluster->first = cluster->best_score = tm_cluster_score(cluster);
+    cluster->best_score.bad++; /* as it is now would do */
+    if (cluster->first.bad == 0)
+        cluster->best_score.worst = -INFINITY;
+    for (size_t i = 0; i < 3; i++) {
+        cluster->offset[v][i] *= factor;
+        cluster->xyz[v][i] = cluster->place[v].xyz[i] + cluster->offset[v][i];
+    }
 }
 
 void tm_cluster_free(tm_cluster *cluster)
@@ -229,5 +262,6 @@ void tm_cluster_free(tm_cluster *cluster)
     free(cluster->before);
     free(cluster->jens);
     free(cluster->corner);
+    free(cluster->element_size);
     *cluster = (tm_cluster){0};
 }

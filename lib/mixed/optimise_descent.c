@@ -23,6 +23,7 @@ typedef double vector3[3];
 
 typedef struct descent {
     tm_cluster *cluster;
+    tm_objective objective;
     size_t reals;  /* 3 * moving */
     double *slope; /* of the value, in sizes */
     double *old_slope;
@@ -47,9 +48,10 @@ static void add_multiple(double *to, double factor, const double *of, size_t cou
         to[i] += factor * of[i];
 }
 
-static descent start_descent(tm_cluster *cluster)
+static descent start_descent(tm_cluster *cluster, tm_objective objective)
 {
-    descent d = {.cluster = cluster, .reals = 3 * cluster->moving};
+    descent d = {
+        .cluster = cluster, .objective = objective, .reals = 3 * cluster->moving};
     double *next = cluster->vector;
     d.slope = next;
     d.old_slope = next += d.reals;
@@ -63,7 +65,7 @@ static descent start_descent(tm_cluster *cluster)
 
 static void find_slope(descent *d)
 {
-    tm_cluster_slope(d->cluster, (vector3 *)d->slope);
+    tm_cluster_slope(d->cluster, d->objective, (vector3 *)d->slope);
     for (size_t v = 0; v < d->cluster->moving; v++)
         for (size_t i = 0; i < 3; i++)
             d->slope[3 * v + i] *= d->cluster->size[v];
@@ -148,7 +150,7 @@ static void go_back(tm_cluster *cluster)
 }
 
 /* Goes along the direction until the value has become enough smaller. */
-static bool search_line(const descent *d, double sharpness, double *value)
+static bool search_line(const descent *d, double *value)
 {
     tm_cluster *cluster = d->cluster;
     const double rate = product(d->slope, d->direction, d->reals);
@@ -159,7 +161,7 @@ static bool search_line(const descent *d, double sharpness, double *value)
     double length = 1;
     for (int trial = 0; trial < LINE_TRIALS; trial++) {
         go(d, length);
-        const double now = tm_cluster_value(cluster, sharpness);
+        const double now = tm_cluster_value(cluster, d->objective);
         if (now <= *value + armijo * length * rate) {
             *value = now;
             return true;
@@ -191,22 +193,24 @@ static void remember(descent *d)
     }
 }
 
-void tm_cluster_descend(tm_cluster *cluster, double sharpness, unsigned iterations)
+double tm_cluster_descend(tm_cluster *cluster, tm_objective objective,
+                          unsigned iterations)
 {
-    descent d = start_descent(cluster);
-    double value = tm_cluster_value(cluster, sharpness);
+    descent d = start_descent(cluster, objective);
+    const double first = tm_cluster_value(cluster, objective);
+    double value = first;
     keep_best(cluster);
     unsigned idle = 0;
     find_slope(&d);
     while (iterations-- > 0 && cluster->best_score.bad > 0 && idle < SLOW_MOST) {
         const double before = value;
         if (!find_direction(&d))
-            return;
-        if (!search_line(&d, sharpness, &value)) {
+            break;
+        if (!search_line(&d, &value)) {
             if (d.pairs == 0)
-                return;
+                break;
             d.pairs = 0; /* what was remembered has misled: steepest descent */
-            tm_cluster_value(cluster, sharpness);
+            tm_cluster_value(cluster, objective);
             continue;
         }
         keep_best(cluster);
@@ -215,4 +219,5 @@ void tm_cluster_descend(tm_cluster *cluster, double sharpness, unsigned iteratio
         remember(&d);
         idle = before - value < slow * before ? idle + 1 : 0;
     }
+    return first > 0 ? 1 - value / first : 0;
 }

@@ -16,13 +16,13 @@ void tm_cluster_place(tm_cluster *cluster, size_t v, const double point[3])
     const tm_node_rule *rule = &cluster->rule[v];
     const tm_boundary *boundary = cluster->boundary;
     tm_boundary_place *at = &cluster->place[v];
-    if (rule->freedom == TM_FREE) {
+    if (rule->freedom == TM_MOVES_FREELY) {
         memcpy(cluster->xyz[v], point, sizeof *cluster->xyz);
         return;
     }
     double on[3];
     tm_subtract(on, point, cluster->offset[v]);
-    if (rule->freedom == TM_ON_SURFACE)
+    if (rule->freedom == TM_MOVES_ON_SURFACE)
         boundary->on_surface(boundary->of, rule->where, on, at);
     else
         boundary->on_curve(boundary->of, rule->where, on, at);
@@ -34,20 +34,19 @@ void tm_cluster_along(const tm_cluster *cluster, size_t v, double vector[3])
 {
     const uint8_t freedom = cluster->rule[v].freedom;
     const double *axis = cluster->place[v].axis;
-    if (freedom == TM_FREE)
+    if (freedom == TM_MOVES_FREELY)
         return;
     const double product = tm_dot(vector, axis);
     for (size_t i = 0; i < 3; i++)
-        vector[i] =
-            freedom == TM_ON_CURVE ? product * axis[i] : vector[i] - product * axis[i];
+        vector[i] = freedom == TM_MOVES_ON_CURVE ? product * axis[i]
+                                                 : vector[i] - product * axis[i];
 }
 
-double tm_cluster_value(tm_cluster *cluster, double sharpness)
+static double value_of_missing(tm_cluster *cluster, double sharpness)
 {
     const double(*xyz)[3] = (const double(*)[3])cluster->xyz;
     cluster->corners = 0;
     cluster->sum = 0;
-    cluster->evaluations++;
     for (size_t e = 0; e < cluster->elements; e++) {
         const size_t start = cluster->start[e];
         const tm_element_shape *shape = &tm_element_shapes[cluster->start[e + 1] - start];
@@ -72,7 +71,7 @@ double tm_cluster_value(tm_cluster *cluster, double sharpness)
     return log1p(cluster->sum) / sharpness;
 }
 
-void tm_cluster_slope(const tm_cluster *cluster, double (*slope)[3])
+static void slope_of_missing(const tm_cluster *cluster, double (*slope)[3])
 {
     memset(slope, 0, cluster->moving * sizeof *slope);
     for (size_t c = 0; c < cluster->corners; c++) {
@@ -93,6 +92,32 @@ void tm_cluster_slope(const tm_cluster *cluster, double (*slope)[3])
             for (size_t j = 0; node[i] < cluster->moving && j < 3; j++)
                 slope[node[i]][j] += factor * part[i][j];
     }
+}
+
+static void measure_jens(tm_cluster *cluster)
+{
+    for (size_t e = 0; e < cluster->elements; e++)
+        cluster->jens[e] =
+            tm_jens(cluster->start[e + 1] - cluster->start[e],
+                    (const double(*)[3])cluster->xyz, cluster->item + cluster->start[e]);
+}
+
+double tm_cluster_value(tm_cluster *cluster, tm_objective objective)
+{
+    cluster->evaluations++;
+    if (!objective.untangle)
+        return value_of_missing(cluster, objective.number);
+    measure_jens(cluster);
+    return tm_untangle_value(cluster, objective.number);
+}
+
+void tm_cluster_slope(const tm_cluster *cluster, tm_objective objective,
+                      double (*slope)[3])
+{
+    if (objective.untangle)
+        tm_untangle_slope(cluster, objective.number, slope);
+    else
+        slope_of_missing(cluster, slope);
     for (size_t v = 0; v < cluster->moving; v++)
         tm_cluster_along(cluster, v, slope[v]);
 }
@@ -114,7 +139,9 @@ bool tm_score_better(const tm_score *score, const tm_score *than)
 {
     if (score->fresh > 0 || score->inverted > than->inverted || score->bad > than->bad)
         return false;
+    if (score->inverted < than->inverted || score->bad == 0)
+        return score->bad < than->bad || score->inverted < than->inverted;
     if (score->bad < than->bad)
-        return score->bad == 0 || score->worst >= than->worst;
-    return score->bad > 0 && score->worst > than->worst;
+        return than->inverted > 0 || score->worst >= than->worst;
+    return score->worst > than->worst;
 }

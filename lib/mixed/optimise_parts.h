@@ -64,7 +64,9 @@ typedef struct tm_cluster {
     double *jens;             /* [elements]: J_ENS now */
     tm_active_corner *corner; /* [elements * TM_CORNERS_MOST] */
     size_t corners;
-    double sum; /* of the terms of the objective */
+    double sum;               /* of the terms of the objective */
+    double *element_size;     /* [elements]: the mean length of the edges, at first */
+    double least_determinant; /* of tm_untangle_value() */
 
     tm_score first, best_score;
     size_t evaluations;
@@ -102,14 +104,28 @@ void tm_cluster_free(tm_cluster *cluster);
 /* Puts node v of the cluster, which moves, to the allowed place closest to a point. */
 void tm_cluster_place(tm_cluster *cluster, size_t v, const double point[3]);
 
-/* The objective, log(1 + Σ e^x - 1 - x) / s with x = s (target - J_ENS) > 0 over all
- * corners, the target being a margin above the threshold and s the sharpness. Fills
+/* What is minimised: the distortion of optimise_untangle.c with the number ε, or what is
+ * missing to the thresholds, with a sharpness. */
+typedef struct tm_objective {
+    bool untangle;
+    double number;
+} tm_objective;
+
+/* log(1 + Σ e^x - 1 - x) / s with x = s (target - J_ENS) > 0 over all corners, the target
+ * being a margin above the threshold and s the sharpness; or the distortion. Fills
  * jens[] and the corners that are below their targets. */
-double tm_cluster_value(tm_cluster *cluster, double sharpness);
+double tm_cluster_value(tm_cluster *cluster, tm_objective objective);
 
 /* Its derivative by the nodes that move, along the boundary where they are on it;
  * tm_cluster_value() was called before. */
-void tm_cluster_slope(const tm_cluster *cluster, double (*slope)[3]);
+void tm_cluster_slope(const tm_cluster *cluster, tm_objective objective,
+                      double (*slope)[3]);
+
+/* The parts of these that are in optimise_untangle.c, and the next ε, where the value
+ * became less by the factor 1 - gain. */
+double tm_untangle_value(tm_cluster *cluster, double epsilon);
+void tm_untangle_slope(const tm_cluster *cluster, double epsilon, double (*slope)[3]);
+double tm_untangle_next(const tm_cluster *cluster, double epsilon, double gain);
 
 /* Takes from a vector at node v what leads off its surface or curve. */
 void tm_cluster_along(const tm_cluster *cluster, size_t v, double vector[3]);
@@ -117,8 +133,40 @@ void tm_cluster_along(const tm_cluster *cluster, size_t v, double vector[3]);
 tm_score tm_cluster_score(const tm_cluster *cluster);
 bool tm_score_better(const tm_score *score, const tm_score *than);
 
+/* Lets node v, which is held back, come closer to its place, by that factor of the way
+ * that is missing; 0: all of it. All elements are from now on compared with how they were
+ * when gathered, by thresholds of at most `threshold`. */
+void tm_cluster_approach(tm_cluster *cluster, size_t v, double factor, double threshold);
+
 /* Minimises from where the nodes are. Places with a score better than best_score are
- * kept in best[]. Ends early where nothing is bad. */
-void tm_cluster_descend(tm_cluster *cluster, double sharpness, unsigned iterations);
+ * kept in best[]. Ends early where nothing is bad. Returns by which part of the value it
+ * became less. */
+double tm_cluster_descend(tm_cluster *cluster, tm_objective objective,
+                          unsigned iterations);
+
+/* A call of tm_mixed_optimise(). */
+typedef struct tm_optimise_work {
+    tm_mixed_mesh *mesh;
+    tm_node_rule *rule;
+    const tm_optimise_options *options;
+    double *jens;  /* [elements] */
+    bool *visited; /* [elements]: in this pass */
+    bool *moved;   /* [nodes] */
+    uint32_t *bad; /* elements, the worst first */
+    size_t bads;
+    tm_vicinity vicinity;
+    tm_cluster_source source;
+    tm_cluster cluster;
+    tm_optimise_report *report;
+} tm_optimise_work;
+
+/* Minimises, the more sharply the closer it comes, until nothing is bad. */
+void tm_optimise_descend(tm_optimise_work *work);
+
+/* Takes the best places of the cluster into the mesh. */
+void tm_optimise_accept(tm_optimise_work *work);
+
+/* Brings nodes that are held back to their places. */
+tm_status tm_optimise_held(tm_optimise_work *work, tm_error *error);
 
 #endif

@@ -16,7 +16,6 @@ typedef struct {
     const tm_solid *solid;
     const tm_skin *skin;
     tm_assembly *assembly;
-    uint32_t *core_node; /* [nodes of the octree]: of the mesh */
     bool counting;       /* nothing is written yet */
     size_t face, middles, elements, items; /* so far */
 } assembler;
@@ -24,20 +23,20 @@ typedef struct {
 static tm_status number_core(assembler *a, tm_error *error)
 {
     tm_assembly *to = a->assembly;
-    a->core_node = tm_new(a->octree->nodes, sizeof *a->core_node);
+    a->assembly->core_node = tm_new(a->octree->nodes, sizeof *a->assembly->core_node);
     to->inner = tm_new(a->skin->nodes, sizeof *to->inner);
-    if (!a->core_node || !to->inner)
+    if (!a->assembly->core_node || !to->inner)
         return tm_fail_memory(error);
     for (size_t n = 0; n < a->octree->nodes; n++)
-        a->core_node[n] = a->solid->used[n] ? (uint32_t)to->core++ : TM_NONE;
+        a->assembly->core_node[n] = a->solid->used[n] ? (uint32_t)to->core++ : TM_NONE;
     to->grid_node = tm_new(to->core, sizeof *to->grid_node);
     if (!to->grid_node)
         return tm_fail_memory(error);
     for (size_t n = 0; n < a->octree->nodes; n++)
-        if (a->core_node[n] != TM_NONE)
-            to->grid_node[a->core_node[n]] = (uint32_t)n;
+        if (a->assembly->core_node[n] != TM_NONE)
+            to->grid_node[a->assembly->core_node[n]] = (uint32_t)n;
     for (size_t s = 0; s < a->skin->nodes; s++)
-        to->inner[s] = a->core_node[a->skin->grid_node[s]];
+        to->inner[s] = a->assembly->core_node[a->skin->grid_node[s]];
     to->outer = (uint32_t)to->core;
     return TM_OK;
 }
@@ -155,7 +154,7 @@ static void add_leaf(assembler *a, size_t l)
     uint32_t at[TM_LEAF_CENTRE + 1];
     for (int p = 0; p < TM_LEAF_NODES; p++) {
         const uint32_t node = a->octree->node[l][p];
-        at[p] = node == TM_NONE ? TM_NONE : a->core_node[node];
+        at[p] = node == TM_NONE ? TM_NONE : a->assembly->core_node[node];
     }
     if (has_cut(a, l)) {
         add_star(a, l, at);
@@ -221,6 +220,21 @@ static void add_all(assembler *a, bool counting)
     }
 }
 
+/* The level of the smallest chosen leaf at each node of the octree; one more than that of a
+ * leaf which has it in the middle of an edge or a face. */
+static uint8_t *find_levels(const assembler *a)
+{
+    uint8_t *level = calloc(a->octree->nodes + 1, 1);
+    for (size_t l = 0; level && l < a->octree->leaves; l++)
+        for (unsigned p = 0; a->solid->chosen[l] && p < TM_LEAF_NODES; p++) {
+            const uint32_t node = a->octree->node[l][p];
+            const unsigned here = a->octree->leaf[l].level + (p < TM_LEAF_EDGE ? 0u : 1u);
+            if (node != TM_NONE && here > level[node])
+                level[node] = (uint8_t)here;
+        }
+    return level;
+}
+
 /* Puts all nodes but the middles where they are to begin. */
 static tm_status place_nodes(assembler *a, tm_error *error)
 {
@@ -230,21 +244,15 @@ static tm_status place_nodes(assembler *a, tm_error *error)
         tm_octree_point(a->octree, a->octree->grid[to->grid_node[n]], xyz[n]);
     for (size_t s = 0; s < a->skin->nodes; s++)
         memcpy(xyz[to->outer + s], xyz[to->inner[s]], sizeof *xyz);
-    /* The finest leaf at each node of the skin. */
-    uint8_t *level = calloc(a->skin->nodes + 1, 1);
+    uint8_t *level = find_levels(a);
     if (!level)
         return tm_fail_memory(error);
-    for (size_t f = 0; f < a->skin->faces; f++)
-        for (unsigned i = 0; i < tm_skin_corners(a->skin, f); i++) {
-            const uint32_t s = a->skin->face[f][i];
-            const uint8_t here = a->octree->leaf[a->skin->leaf[f]].level;
-            level[s] = here > level[s] ? here : level[s];
-        }
-    const double share = 0.3;
+    const double share = 0.1;
     for (size_t s = 0; s < a->skin->nodes; s++) {
         int outward[3];
-        tm_octant_mask_outward(a->solid->mask[a->skin->grid_node[s]], outward);
-        const double step = share * a->octree->side / (double)((uint32_t)1 << level[s]);
+        const uint32_t node = a->skin->grid_node[s];
+        tm_octant_mask_outward(a->solid->mask[node], outward);
+        const double step = share * a->octree->side / (double)((uint32_t)1 << level[node]);
         for (int i = 0; i < 3; i++)
             xyz[to->inner[s]][i] -= step * outward[i];
     }
@@ -271,7 +279,6 @@ tm_status tm_assemble(tm_assembly *assembly, const tm_octree *octree,
         memcpy(assembly->base, assembly->mesh.xyz,
                assembly->mesh.nodes * sizeof *assembly->base);
     }
-    free(a.core_node);
     return status;
 }
 
@@ -285,6 +292,7 @@ void tm_assembly_free(tm_assembly *assembly)
     free(assembly->first);
     free(assembly->layer);
     free(assembly->inner);
+    free(assembly->core_node);
     free(assembly->grid_node);
     *assembly = (tm_assembly){0};
 }

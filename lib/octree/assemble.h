@@ -24,11 +24,12 @@ typedef struct tm_assembly {
     size_t core; /* nodes of the octree come first, then the outer ones, then middles */
     size_t middles;
     uint32_t *middle_leaf; /* [middles]: the leaf that it is the centre of */
+    uint32_t *core_node; /* [nodes of the octree]: of the mesh, or TM_NONE */
     uint32_t *grid_node; /* [core]: of the octree */
 } tm_assembly;
 
-/* Makes them. All nodes are at their places on the lattice, but the inner ones a quarter
- * of the smallest leaf around them inside, and there every element is valid.
+/* Makes them. All nodes are at their places on the lattice, but the inner ones a tenth
+ * of the side of the smallest leaf around them inside, and there every element is valid.
  * TM_ERROR_SYSTEM where memory or 32-bit ids are out. *assembly is to be freed, after an
  * error too. O(leaves + elements). */
 tm_status tm_assemble(tm_assembly *assembly, const tm_octree *octree,

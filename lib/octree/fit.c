@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* Measured on the bench's surfaces: more sweeps change the worst elements little. */
-enum { SKIN_SWEEPS = 4, CORE_SWEEPS = 6 };
+enum { SKIN_SWEEPS = 4, CORE_SWEEPS = 6, HEXAHEDRON = 8 };
 
 typedef struct {
     tm_assembly *assembly;
@@ -102,7 +102,8 @@ static bool has_moving(const zone *z, const tm_mixed_mesh *mesh, size_t e)
     return false;
 }
 
-/* The inner nodes, and those in an element with one of them that are not outer ones. */
+/* The inner nodes, those in an element with one of them, and those of elements that are no
+ * hexahedra, without the outer ones. */
 static tm_status find_moving(const fitter *fit, zone *z, tm_error *error)
 {
     const tm_assembly *a = fit->assembly;
@@ -119,7 +120,7 @@ static tm_status find_moving(const fitter *fit, zone *z, tm_error *error)
     for (size_t s = 0; s < fit->skin->nodes; s++)
         z->order[a->inner[s]] = 0;
     for (size_t e = 0; e < mesh->elements; e++)
-        if (has_moving(z, mesh, e))
+        if (has_moving(z, mesh, e) || mesh->start[e + 1] - mesh->start[e] != HEXAHEDRON)
             for (size_t i = mesh->start[e]; i < mesh->start[e + 1]; i++)
                 moves[mesh->item[i]] = true;
     for (size_t n = 0; n < mesh->nodes; n++) {
@@ -212,18 +213,22 @@ static void mean_of(const zone *z, size_t n, const double (*xyz)[3], double mean
 }
 
 /* A node below the skin that has smaller neighbours on one side only is not at their mean
- * on the lattice, and is to stay so. */
+ * on the lattice. The middle of a leaf stays so; other nodes go half of the way: then a
+ * leaf is less high than wide over a face that is divided in four, and its elements are
+ * better than on the lattice (J_ENS of tetrahedra 0.59 in the mean, not 0.47). */
 static tm_status find_bias(const fitter *fit, zone *z, tm_error *error)
 {
     const tm_assembly *a = fit->assembly;
+    const double core_share = 0.5;
     z->bias = calloc(z->nodes + 1, sizeof *z->bias);
     if (!z->bias)
         return tm_fail_memory(error);
     for (size_t n = 0; n < z->nodes; n++) {
         const double *at = a->mesh.xyz[z->node[n]];
+        const double share = z->node[n] < a->outer ? core_share : 1;
         mean_of(z, n, (const double(*)[3])a->mesh.xyz, z->bias[n]);
         for (int j = 0; j < 3; j++)
-            z->bias[n][j] = at[j] - z->bias[n][j];
+            z->bias[n][j] = share * (at[j] - z->bias[n][j]);
     }
     for (size_t s = 0; s < fit->skin->nodes; s++)
         memset(z->bias[z->order[a->inner[s]]], 0, sizeof *z->bias);
@@ -241,9 +246,9 @@ static void average(const zone *z, tm_mixed_mesh *mesh)
         }
 }
 
-tm_status tm_fit(tm_assembly *assembly, const tm_octree *octree, const tm_skin *skin,
-                 const tm_feature *feature, const tm_surface *surface,
-                 tm_surface_point *at, tm_error *error)
+tm_status tm_fit(tm_assembly *assembly, const tm_octree *octree,
+                 const tm_skin *skin, const tm_feature *feature,
+                 const tm_surface *surface, tm_surface_point *at, tm_error *error)
 {
     const fitter fit = {assembly, skin, feature, surface, at};
     double(*xyz)[3] = assembly->mesh.xyz;

@@ -2,6 +2,7 @@
 #include "settle.h"
 
 #include "../base/array.h"
+#include "../mixed/optimise_surface.h"
 #include "../quality/jens.h"
 
 #include <stdlib.h>
@@ -105,10 +106,36 @@ static tm_status hold_back(tm_octree_mesh *m, tm_error *error)
     return TM_OK;
 }
 
-tm_status tm_settle(tm_octree_mesh *mesh, const tm_octree *octree,
-                    const tm_surface *surface, tm_error *error)
+/* What each node may do while elements are improved. */
+static tm_node_rule *find_rules(const tm_octree_mesh *m)
 {
-    (void)octree;
-    (void)surface;
-    return hold_back(mesh, error);
+    static const uint8_t freedom[] = {[TM_ON_PATCH] = TM_MOVES_ON_SURFACE,
+                                      [TM_ON_CURVE] = TM_MOVES_ON_CURVE,
+                                      [TM_ON_CORNER] = TM_MOVES_NOT};
+    const tm_assembly *a = &m->assembly;
+    tm_node_rule *rule = tm_new(a->mesh.nodes, sizeof *rule);
+    for (size_t n = 0; rule && n < a->mesh.nodes; n++)
+        rule[n] = (tm_node_rule){.where = TM_NONE, .freedom = TM_MOVES_FREELY};
+    for (size_t s = 0; rule && s < m->skin.nodes; s++)
+        rule[a->outer + s] = (tm_node_rule){.where = m->feature.of[s],
+                                            .freedom = freedom[m->feature.kind[s]]};
+    return rule;
+}
+
+tm_status tm_settle(tm_octree_mesh *mesh, const tm_surface *surface, tm_error *error)
+{
+    const double threshold = 0.2;
+    const tm_boundary boundary = tm_boundary_of_surface(surface);
+    const tm_optimise_options options = {
+        .threshold = threshold, .held_threshold = threshold, .effort = 1};
+    tm_optimise_report report;
+    tm_node_rule *rule = find_rules(mesh);
+    if (!rule)
+        return tm_fail_memory(error);
+    tm_status status = tm_mixed_optimise(&mesh->assembly.mesh, rule, &boundary, &options,
+                                         &report, error);
+    free(rule);
+    if (status == TM_OK)
+        status = hold_back(mesh, error);
+    return status;
 }

@@ -16,9 +16,8 @@ static const double pi = 3.14159265358979323846;
  * that opens by 60°. */
 static const double tip_angle = 180;
 
-/* A triangle whose height is less than this part of its longest edge, and also of the
- * surface, has no normal of its own: the coordinates of a file with six digits do not say
- * which it is. */
+/* A triangle whose height is less than this part of the surface has no normal of its own:
+ * coordinates of six digits, or of 32 bits, do not say which it is. */
 static const double least_height = 1e-6;
 
 typedef struct sharp_edge {
@@ -49,7 +48,7 @@ static bool own_normal(const tm_surface *surface, uint32_t t, double normal[3])
         longest2 = fmax(longest2, tm_distance2(p[i], p[(i + 1) % 3]));
     tm_triangle_normal(normal, p[0], p[1], p[2]);
     double length = tm_norm(normal);
-    double size = fmin(sqrt(longest2), tm_distance2(surface->low, surface->high));
+    double size = sqrt(tm_distance2(surface->low, surface->high));
     if (!(length > least_height * size * sqrt(longest2)))
         return false;
     for (int i = 0; i < 3; i++)
@@ -138,6 +137,8 @@ static size_t list_edges(const feature_finder *f, sharp_edge *edge, uint32_t *pa
 static void unite_edges(feature_finder *f)
 {
     size_t kept = 0;
+    if (f->edges == 0)
+        return;
     qsort(f->edge, f->edges, sizeof *f->edge, compare_edges);
     for (size_t e = 0; e < f->edges; e++)
         if (kept == 0 ||
@@ -168,13 +169,13 @@ static tm_status find_edges(feature_finder *f, tm_error *error)
         f->edges = list_edges(f, NULL, parent);
         number_patches(surface, parent);
         f->edge = tm_new(f->edges, sizeof *f->edge);
-        if (f->edge)
+        if (f->edge) {
             list_edges(f, f->edge, parent);
-        else
+            unite_edges(f);
+        } else {
             status = tm_fail_memory(error);
+        }
     }
-    if (status == TM_OK)
-        unite_edges(f);
     free(parent);
     return status;
 }
@@ -262,10 +263,11 @@ static bool is_corner(const feature_finder *f, uint32_t v)
            !is_taken_back(f, v, ends[1], ends[0]);
 }
 
-/* Adds the angle of every triangle to its corners' sums: degrees. */
+/* Adds the angle of every triangle to its corners' sums: degrees; and a full angle to the
+ * ends of open edges, which have less anyway. */
 static void add_angles(const tm_surface *surface, double *sum)
 {
-    const double degrees = 180 / pi;
+    const double degrees = 180 / pi, full = 360;
     for (size_t t = 0; t < surface->triangles; t++)
         for (int i = 0; i < 3; i++) {
             const uint32_t *v = surface->triangle[t];
@@ -274,6 +276,10 @@ static void add_angles(const tm_surface *surface, double *sum)
             tm_subtract(b, surface->xyz[v[(i + 2) % 3]], surface->xyz[v[i]]);
             tm_cross(cross, a, b);
             sum[v[i]] += atan2(tm_norm(cross), tm_dot(a, b)) * degrees;
+            if (surface->across[t][i] == TM_NONE) {
+                sum[v[i]] += full;
+                sum[v[(i + 1) % 3]] += full;
+            }
         }
 }
 
@@ -318,6 +324,8 @@ static void follow(feature_finder *f, uint32_t v, uint32_t e, size_t *used)
         f->done[e] = true;
         v = other_end(f, e, v);
         surface->curve_node[(*used)++] = v;
+        surface->curve_length[c] += sqrt(tm_distance2(surface->xyz[f->edge[e].node[0]],
+                                                      surface->xyz[f->edge[e].node[1]]));
         if (f->corner[v] || v == first)
             return;
         e = f->at[f->start[v] + (f->at[f->start[v]] == e)];
@@ -331,7 +339,9 @@ static tm_status find_curves(feature_finder *f, tm_error *error)
     surface->curve_start = tm_new(f->edges + 1, sizeof *surface->curve_start);
     surface->curve_node = tm_new(2 * f->edges, sizeof *surface->curve_node);
     surface->curve_patch = tm_new(f->edges, sizeof *surface->curve_patch);
-    if (!surface->curve_start || !surface->curve_node || !surface->curve_patch)
+    surface->curve_length = calloc(f->edges + 1, sizeof *surface->curve_length);
+    if (!surface->curve_length || !surface->curve_start || !surface->curve_node ||
+        !surface->curve_patch)
         return tm_fail_memory(error);
     /* From corners; what is left has none. */
     for (int closed = 0; closed < 2; closed++)

@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "mixed_stream.h"
+
+#include <stdlib.h>
+
+/* Moves an array from one owner to another. */
+#define MOVE(to, from) ((to) = (void *)(from), (from) = NULL)
+
+/* No element has a node twice. */
+static tm_status check(const tm_mixed_mesh *mesh, unsigned base, tm_error *error)
+{
+    for (size_t e = 0; e < mesh->elements; e++) {
+        for (size_t i = mesh->start[e]; i < mesh->start[e + 1]; i++)
+            for (size_t j = mesh->start[e]; j < i; j++)
+                if (mesh->item[i] == mesh->item[j])
+                    return tm_fail_at(error, TM_ERROR_INPUT, NULL, 0, ".mix",
+                                      "element %zu names a node twice", e + base);
+    }
+    return TM_OK;
+}
+
+tm_status tm_mixed_mesh_take(tm_mixed_mesh *mesh, tm_stream *stream, tm_error *error)
+{
+    *mesh = (tm_mixed_mesh){0};
+    tm_block *node = tm_stream_find(stream, ".node");
+    tm_block *mix = tm_stream_find(stream, ".mix");
+    if (node) {
+        MOVE(mesh->xyz, node->real);
+        mesh->nodes = node->count;
+    }
+    if (mix) {
+        MOVE(mesh->start, mix->start);
+        MOVE(mesh->item, mix->item);
+        mesh->elements = mix->count;
+    }
+    if (!mesh->start) {
+        mesh->start = calloc(1, sizeof *mesh->start);
+        if (!mesh->start)
+            return tm_fail_memory(error);
+    }
+    return check(mesh, stream->base, error);
+}
+
+/* Whether a block may get so many rows. */
+static bool fits(const tm_block *block, size_t rows)
+{
+    if (!block)
+        return rows == 0;
+    return block->count == rows || (block->attributes == 0 && !block->markers);
+}
+
+tm_status tm_mixed_mesh_give(tm_mixed_mesh *mesh, tm_stream *stream, tm_error *error)
+{
+    tm_block *node = tm_stream_find(stream, ".node");
+    tm_block *mix = tm_stream_find(stream, ".mix");
+    if (!fits(node, mesh->nodes) || !fits(mix, mesh->elements))
+        return tm_fail(error, TM_ERROR_INTERNAL,
+                       "%zu nodes and %zu elements do not fit into their blocks",
+                       mesh->nodes, mesh->elements);
+    if (node) {
+        free(node->real);
+        MOVE(node->real, mesh->xyz);
+        node->count = mesh->nodes;
+    }
+    if (mix) {
+        free(mix->start);
+        free(mix->item);
+        MOVE(mix->start, mesh->start);
+        MOVE(mix->item, mesh->item);
+        mix->count = mesh->elements;
+    }
+    tm_mixed_mesh_free(mesh);
+    return TM_OK;
+}
+
+void tm_mixed_mesh_free(tm_mixed_mesh *mesh)
+{
+    free(mesh->xyz);
+    free(mesh->start);
+    free(mesh->item);
+    *mesh = (tm_mixed_mesh){0};
+}
