@@ -483,7 +483,7 @@ static void test_thresholds(void **state)
     double *thresholds = calloc(g.mesh.elements, sizeof *thresholds);
     size_t bad = 0;
     for (size_t e = 0; e < g.mesh.elements; e++) {
-        thresholds[e] = e % 7 == 0 ? 0.4 : -1;
+        thresholds[e] = e % 7 == 0 ? 0.3 : -1;
         bad += g.before[e] < thresholds[e];
     }
     const tm_optimise_options options = {0, thresholds, -1, 1};
@@ -495,7 +495,7 @@ static void test_thresholds(void **state)
     assert_true(bad > 0);
     assert_int_equal(report.bad_after, 0);
     for (size_t e = 0; e < g.mesh.elements; e += 7)
-        assert_true(quality(&g, e) >= 0.4);
+        assert_true(quality(&g, e) >= 0.3);
     free(thresholds);
     free_grid(&g);
 }
