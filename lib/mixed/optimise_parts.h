@@ -101,6 +101,9 @@ tm_status tm_cluster_gather(tm_cluster *cluster, const tm_cluster_source *source
                             tm_error *error);
 void tm_cluster_free(tm_cluster *cluster);
 
+/* Finds place[v], where node v should be that is at a point. */
+void tm_cluster_find(tm_cluster *cluster, size_t v, const double point[3]);
+
 /* Puts node v of the cluster, which moves, to the allowed place closest to a point. */
 void tm_cluster_place(tm_cluster *cluster, size_t v, const double point[3]);
 
@@ -166,6 +169,13 @@ void tm_optimise_descend(tm_optimise_work *work, bool may_untangle);
 
 /* Takes the best places of the cluster into the mesh. */
 void tm_optimise_accept(tm_optimise_work *work);
+
+/* Mends what is bad and near the nodes that vicinity has, pass after pass. */
+tm_status tm_optimise_mend(tm_optimise_work *work, tm_error *error);
+
+/* Lets nodes of elements that stay below release_threshold leave corners, curves and
+ * patches, and mends again. */
+tm_status tm_optimise_release(tm_optimise_work *work, tm_error *error);
 
 /* Brings nodes that are held back to their places. */
 tm_status tm_optimise_held(tm_optimise_work *work, tm_error *error);
