@@ -120,6 +120,7 @@ static bool make_room(tm_cluster *cluster, size_t old_nodes, size_t old_elements
                RENEW(cluster->place, nodes) && RENEW(cluster->offset, nodes) &&
                RENEW(cluster->size, nodes) && RENEW(cluster->old, nodes) &&
                RENEW(cluster->places, nodes) && RENEW(cluster->best, nodes) &&
+               RENEW(cluster->pull, nodes) &&
                RENEW(cluster->vector, 3 * nodes * TM_CLUSTER_VECTORS);
     if (elements > old_elements)
         made = made && RENEW(cluster->start, elements + 1) &&
@@ -256,6 +257,7 @@ void tm_cluster_free(tm_cluster *cluster)
     free(cluster->old);
     free(cluster->places);
     free(cluster->best);
+    free(cluster->pull);
     free(cluster->vector);
     free(cluster->element);
     free(cluster->start);

@@ -129,7 +129,7 @@ void tm_cluster_slope(const tm_cluster *cluster, tm_objective objective,
                       double (*slope)[3])
 {
     if (objective.untangle)
-        tm_untangle_slope(cluster, objective.number, slope);
+        memcpy(slope, cluster->pull, cluster->moving * sizeof *slope);
     else
         slope_of_missing(cluster, slope);
     for (size_t v = 0; v < cluster->moving; v++)

@@ -67,6 +67,7 @@ typedef struct tm_cluster {
     double sum;               /* of the terms of the objective */
     double *element_size;     /* [elements]: the mean length of the edges, at first */
     double least_determinant; /* of tm_untangle_value() */
+    double (*pull)[3];        /* [moving]: its derivative */
 
     tm_score first, best_score;
     size_t evaluations;
@@ -124,10 +125,9 @@ double tm_cluster_value(tm_cluster *cluster, tm_objective objective);
 void tm_cluster_slope(const tm_cluster *cluster, tm_objective objective,
                       double (*slope)[3]);
 
-/* The parts of these that are in optimise_untangle.c, and the next ε, where the value
- * became less by the factor 1 - gain. */
+/* The distortion; its derivative, which is nearly always needed, goes to pull[]. The next
+ * ε, where the value became less by the factor 1 - gain. */
 double tm_untangle_value(tm_cluster *cluster, double epsilon);
-void tm_untangle_slope(const tm_cluster *cluster, double epsilon, double (*slope)[3]);
 double tm_untangle_next(const tm_cluster *cluster, double epsilon, double gain);
 
 /* Takes from a vector at node v what leads off its surface or curve. */
@@ -171,7 +171,7 @@ void tm_optimise_descend(tm_optimise_work *work, bool may_untangle);
 void tm_optimise_accept(tm_optimise_work *work);
 
 /* Mends what is bad and near the nodes that vicinity has, pass after pass. */
-tm_status tm_optimise_mend(tm_optimise_work *work, tm_error *error);
+tm_status tm_optimise_mend(tm_optimise_work *work, unsigned effort, tm_error *error);
 
 /* Lets nodes of elements that stay below release_threshold leave corners, curves and
  * patches, and mends again. */

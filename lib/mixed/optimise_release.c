@@ -70,7 +70,7 @@ static tm_status release_around(tm_optimise_work *w, size_t e, size_t step, list
     return status;
 }
 
-/* Releases nodes, and mends if there were any. */
+/* Releases nodes, and mends if there were any. Only the last time with full effort. */
 static tm_status make_step(tm_optimise_work *w, size_t step, list *nodes, tm_error *error)
 {
     tm_status status = TM_OK;
@@ -82,7 +82,10 @@ static tm_status make_step(tm_optimise_work *w, size_t step, list *nodes, tm_err
         status = step >= AROUND_FROM ? release_around(w, e, step, nodes, error)
                                      : release_nodes(w, e, step, nodes, error);
     }
-    return status == TM_OK && nodes->count > before ? tm_optimise_mend(w, error) : status;
+    const bool last = step + 1 == STEPS;
+    if (status != TM_OK || (nodes->count == before && !last))
+        return status;
+    return tm_optimise_mend(w, last ? w->options->effort : 0, error);
 }
 
 /* Nodes that did not move have their rules again. */
