@@ -71,9 +71,15 @@ static void mean_on_skin(const fitter *fit, size_t s, double mean[3])
 static void fit_skin(const fitter *fit)
 {
     double point[3];
-    const double(*xyz)[3] = (const double(*)[3])fit->assembly->mesh.xyz;
     for (size_t s = 0; s < fit->skin->nodes; s++) {
-        memcpy(point, xyz[fit->assembly->outer + s], sizeof point);
+        double *outer = fit->assembly->mesh.xyz[fit->assembly->outer + s];
+        const uint32_t of = fit->feature->of[s];
+        if (fit->feature->kind[s] == TM_ON_PATCH &&
+            (of == TM_NONE || of == fit->surface->patch[fit->at[s].triangle])) {
+            memcpy(outer, fit->at[s].xyz, sizeof point); /* at is where it is closest */
+            continue;
+        }
+        memcpy(point, outer, sizeof point);
         put(fit, s, point);
     }
     for (int sweep = 0; sweep < CURVE_SWEEPS + SKIN_SWEEPS; sweep++)

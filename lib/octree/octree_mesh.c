@@ -106,8 +106,8 @@ static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *su
                       tm_error *error)
 {
     tm_octree_mesh_report *r = &m->report;
-    tm_status status = tm_solid_choose(&m->solid, octree, surface, error);
-    if (status == TM_OK && m->solid.count == 0)
+    tm_status status = TM_OK;
+    if (m->solid.count == 0)
         status = tm_fail(error, TM_ERROR_INPUT,
                          "no leaf is inside the surface: it needs a finer level");
     if (status == TM_OK)
@@ -138,7 +138,19 @@ static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *su
 tm_status tm_octree_mesh_make(tm_octree_mesh *mesh, const tm_octree *octree,
                               tm_surface *surface, tm_error *error)
 {
-    *mesh = (tm_octree_mesh){0};
+    tm_solid solid;
+    tm_status status = tm_solid_choose(&solid, octree, surface, error);
+    *mesh = (tm_octree_mesh){.solid = solid};
+    if (status == TM_OK)
+        status = tm_octree_mesh_make_of(mesh, octree, &solid, surface, error);
+    return status;
+}
+
+tm_status tm_octree_mesh_make_of(tm_octree_mesh *mesh, const tm_octree *octree,
+                                 tm_solid *solid, tm_surface *surface, tm_error *error)
+{
+    *mesh = (tm_octree_mesh){.solid = *solid};
+    *solid = (tm_solid){0};
     const size_t bytes = surface->triangles * sizeof *surface->patch;
     uint32_t *patch = tm_new(surface->triangles, sizeof *patch);
     if (!patch)

@@ -17,25 +17,29 @@ static size_t keep_shallow(const tm_octree *octree, unsigned deepest, uint8_t *s
     return count;
 }
 
-/* Splits leaves with surface but no boundary close by, until there are none. */
-static tm_status split_lost(tm_octree *octree, const tm_surface *surface,
-                            unsigned deepest, tm_error *error)
+/* Splits leaves with surface but no boundary close by, until there are none; then makes
+ * the mesh. */
+static tm_status make_without_loss(tm_octree_mesh *mesh, tm_octree *octree,
+                                   tm_surface *surface, unsigned deepest, tm_error *error)
 {
+    tm_solid solid = {0};
     tm_status status = TM_OK;
     for (bool more = true; status == TM_OK && more;) {
-        tm_solid solid = {0};
         uint8_t *lost = tm_new(octree->leaves, sizeof *lost);
+        tm_solid_free(&solid);
         status = lost ? tm_solid_choose(&solid, octree, surface, error)
                       : tm_fail_memory(error);
         if (status == TM_OK) {
             tm_solid_find_lost(&solid, octree, lost);
             more = keep_shallow(octree, deepest, lost) > 0;
         }
-        tm_solid_free(&solid);
         if (status == TM_OK && more)
             status = tm_octree_refine(octree, surface, lost, error);
         free(lost);
     }
+    if (status == TM_OK)
+        return tm_octree_mesh_make_of(mesh, octree, &solid, surface, error);
+    tm_solid_free(&solid);
     return status;
 }
 
@@ -79,9 +83,7 @@ static tm_status try_split(tm_octree_mesh *mesh, tm_octree *octree, tm_surface *
     if (status == TM_OK)
         status = tm_octree_refine(&finer, surface, split, error);
     if (status == TM_OK)
-        status = split_lost(&finer, surface, deepest, error);
-    if (status == TM_OK)
-        status = tm_octree_mesh_make(mesh, &finer, surface, error);
+        status = make_without_loss(mesh, &finer, surface, deepest, error);
     *better = status == TM_OK && mesh->report.held_back < held;
     if (*better) {
         tm_octree_free(octree);
@@ -108,9 +110,8 @@ tm_status tm_octree_mesh_resolve(tm_octree_mesh *mesh, tm_octree *octree,
     if (deepest > TM_OCTREE_LEVEL_MAX)
         deepest = TM_OCTREE_LEVEL_MAX;
     tm_status status =
-        levels > 0 ? split_lost(octree, surface, deepest, error) : TM_OK;
-    if (status == TM_OK)
-        status = tm_octree_mesh_make(mesh, octree, surface, error);
+        levels > 0 ? make_without_loss(mesh, octree, surface, deepest, error)
+                   : tm_octree_mesh_make(mesh, octree, surface, error);
     for (bool better = levels > 0; status == TM_OK && better;) {
         uint8_t *split =
             mesh->report.held_back > 0 ? mark_held(mesh, octree, deepest) : NULL;
