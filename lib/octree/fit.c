@@ -246,19 +246,11 @@ static void average(const zone *z, tm_mixed_mesh *mesh)
         }
 }
 
-tm_status tm_fit(tm_assembly *assembly, const tm_octree *octree,
-                 const tm_skin *skin, const tm_feature *feature,
+tm_status tm_fit(tm_assembly *assembly, const tm_skin *skin, const tm_feature *feature,
                  const tm_surface *surface, tm_surface_point *at, tm_error *error)
 {
     const fitter fit = {assembly, skin, feature, surface, at};
-    double(*xyz)[3] = assembly->mesh.xyz;
     zone z = {0};
-    /* The lattice as it was before there was a layer. */
-    for (size_t s = 0; s < skin->nodes; s++)
-        memcpy(xyz[assembly->inner[s]], xyz[assembly->outer + s], sizeof *xyz);
-    for (size_t i = 0; i < assembly->middles; i++)
-        tm_leaf_centre(octree, &octree->leaf[assembly->middle_leaf[i]],
-                       xyz[assembly->core + skin->nodes + i]);
     tm_status status = find_moving(&fit, &z, error);
     if (status == TM_OK)
         status = find_neighbours(&z, &assembly->mesh, error);

@@ -119,10 +119,9 @@ static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *su
     if (status == TM_OK)
         status = tm_assemble(&m->assembly, octree, &m->solid, &m->skin, error);
     if (status == TM_OK)
-        status = tm_fit(&m->assembly, octree, &m->skin, &m->feature, surface,
-                        m->at, error);
+        status = tm_fit(&m->assembly, &m->skin, &m->feature, surface, m->at, error);
     if (status == TM_OK)
-        status = tm_settle(m, surface, error);
+        status = tm_settle(m, octree, surface, error);
     if (status != TM_OK)
         return status;
     r->filled = m->solid.filled;
