@@ -6,6 +6,7 @@
 
 #include "../lib/base/json.h"
 #include "../lib/octree/octree_mesh_stream.h"
+#include "../lib/octree/resolve.h"
 #include "../lib/quality/jens.h"
 
 #include <stdlib.h>
@@ -166,8 +167,7 @@ int main(int argc, char **argv)
     surface_input_build(&f, &o.surface, &surface, &stream);
     if (tm_octree_build(&octree, &surface, o.rules.rules.rule, o.rules.rules.count,
                         &error) != TM_OK ||
-        tm_octree_resolve(&octree, &surface, o.resolve, &error) != TM_OK ||
-        tm_octree_mesh_make(&mesh, &octree, &surface, &error) != TM_OK)
+        tm_octree_mesh_resolve(&mesh, &octree, &surface, o.resolve, &error) != TM_OK)
         filter_fail(&f, &error);
     octree_rules_free(&o.rules);
     note_losses(&f, &surface, &mesh.report);

@@ -304,12 +304,12 @@ static tm_status make_pass(tm_optimise_work *w, const pass *how, uint64_t round,
     return status;
 }
 
-static tm_status mend(tm_optimise_work *w, tm_error *error)
+tm_status tm_optimise_mend(tm_optimise_work *w, unsigned effort, tm_error *error)
 {
     tm_status status = TM_OK;
     for (size_t p = 0; p < PASSES && status == TM_OK && w->bads > 0; p++)
         status = make_pass(w, &passes[p], 0, error);
-    const size_t more = (size_t)w->options->effort * LAST_PASSES;
+    const size_t more = (size_t)effort * LAST_PASSES;
     for (size_t p = 0; p < more && status == TM_OK && w->bads > 0; p++)
         status = make_pass(w, &last_passes[p % LAST_PASSES], p + 1, error);
     return status == TM_OK ? rank_bad(w, error) : status;
@@ -324,7 +324,7 @@ static tm_status mend_again(tm_optimise_work *w, tm_error *error)
     tm_vicinity_free(&w->vicinity);
     status = tm_vicinity_find(&w->vicinity, w->mesh, w->bad, w->bads, w->rule, RINGS_MOST,
                               error);
-    return status == TM_OK ? mend(w, error) : status;
+    return status == TM_OK ? tm_optimise_mend(w, w->options->effort, error) : status;
 }
 
 tm_status tm_mixed_optimise(tm_mixed_mesh *mesh, tm_node_rule *rule,
@@ -339,7 +339,10 @@ tm_status tm_mixed_optimise(tm_mixed_mesh *mesh, tm_node_rule *rule,
     if (status == TM_OK && (w.bads > 0 || report->held_before > 0)) {
         status = start_moving(&w, boundary, error);
         if (status == TM_OK)
-            status = mend(&w, error);
+            status = tm_optimise_mend(
+                &w, options->release_threshold > 0 ? 0 : options->effort, error);
+        if (status == TM_OK && options->release_threshold > 0)
+            status = tm_optimise_release(&w, error);
         if (status == TM_OK && report->held_before > 0)
             status = tm_optimise_held(&w, error);
         if (status == TM_OK && report->held_before > 0)

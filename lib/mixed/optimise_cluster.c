@@ -42,6 +42,12 @@ static bool add_element(tm_cluster *cluster, const tm_cluster_source *source, ui
     return true;
 }
 
+static bool may_move(const tm_node_rule *rule)
+{
+    return rule->freedom == TM_MOVES_AT_CORNER ? rule->held
+                                               : rule->freedom != TM_MOVES_NOT;
+}
+
 /* The nodes of an element that are not in the cluster; only those that can move, or all.
  */
 static bool add_nodes_of(tm_cluster *cluster, const tm_cluster_source *source, uint32_t e,
@@ -52,8 +58,7 @@ static bool add_nodes_of(tm_cluster *cluster, const tm_cluster_source *source, u
         const uint32_t v = mesh->item[i];
         if (source->local[v] != TM_NONE)
             continue;
-        if (!all && (source->rule[v].freedom == TM_MOVES_NOT ||
-                     source->vicinity->row[v] == TM_NONE))
+        if (!all && (!may_move(&source->rule[v]) || source->vicinity->row[v] == TM_NONE))
             continue;
         if (!add_node(cluster, source, v))
             return false;
@@ -115,6 +120,7 @@ static bool make_room(tm_cluster *cluster, size_t old_nodes, size_t old_elements
                RENEW(cluster->place, nodes) && RENEW(cluster->offset, nodes) &&
                RENEW(cluster->size, nodes) && RENEW(cluster->old, nodes) &&
                RENEW(cluster->places, nodes) && RENEW(cluster->best, nodes) &&
+               RENEW(cluster->pull, nodes) &&
                RENEW(cluster->vector, 3 * nodes * TM_CLUSTER_VECTORS);
     if (elements > old_elements)
         made = made && RENEW(cluster->start, elements + 1) &&
@@ -188,10 +194,7 @@ static void find_places(tm_cluster *cluster)
         tm_boundary_place *at = &cluster->place[v];
         *at = (tm_boundary_place){.guess = TM_NONE};
         memset(cluster->offset[v], 0, sizeof *cluster->offset);
-        if (rule->freedom == TM_MOVES_ON_SURFACE)
-            cluster->boundary->on_surface(cluster->boundary->of, rule->where, p, at);
-        else if (rule->freedom == TM_MOVES_ON_CURVE)
-            cluster->boundary->on_curve(cluster->boundary->of, rule->where, p, at);
+        tm_cluster_find(cluster, v, p);
         if (rule->held)
             tm_subtract(cluster->offset[v], p, at->xyz);
     }
@@ -254,6 +257,7 @@ void tm_cluster_free(tm_cluster *cluster)
     free(cluster->old);
     free(cluster->places);
     free(cluster->best);
+    free(cluster->pull);
     free(cluster->vector);
     free(cluster->element);
     free(cluster->start);

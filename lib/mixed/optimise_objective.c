@@ -11,23 +11,33 @@
 /* How much better than its threshold an element should be. */
 static const double margin = 0.05;
 
-void tm_cluster_place(tm_cluster *cluster, size_t v, const double point[3])
+void tm_cluster_find(tm_cluster *cluster, size_t v, const double point[3])
 {
     const tm_node_rule *rule = &cluster->rule[v];
     const tm_boundary *boundary = cluster->boundary;
     tm_boundary_place *at = &cluster->place[v];
-    if (rule->freedom == TM_MOVES_FREELY) {
-        memcpy(cluster->xyz[v], point, sizeof *cluster->xyz);
-        return;
+    switch (rule->freedom) {
+    case TM_MOVES_ON_SURFACE:
+        boundary->on_surface(boundary->of, rule->where, point, at);
+        break;
+    case TM_MOVES_ON_CURVE:
+        boundary->on_curve(boundary->of, rule->where, point, at);
+        break;
+    case TM_MOVES_AT_CORNER:
+        boundary->at_corner(boundary->of, rule->where, at);
+        break;
+    default:
+        memcpy(at->xyz, point, sizeof at->xyz);
     }
+}
+
+void tm_cluster_place(tm_cluster *cluster, size_t v, const double point[3])
+{
     double on[3];
     tm_subtract(on, point, cluster->offset[v]);
-    if (rule->freedom == TM_MOVES_ON_SURFACE)
-        boundary->on_surface(boundary->of, rule->where, on, at);
-    else
-        boundary->on_curve(boundary->of, rule->where, on, at);
+    tm_cluster_find(cluster, v, on);
     for (size_t i = 0; i < 3; i++)
-        cluster->xyz[v][i] = at->xyz[i] + cluster->offset[v][i];
+        cluster->xyz[v][i] = cluster->place[v].xyz[i] + cluster->offset[v][i];
 }
 
 void tm_cluster_along(const tm_cluster *cluster, size_t v, double vector[3])
@@ -36,6 +46,10 @@ void tm_cluster_along(const tm_cluster *cluster, size_t v, double vector[3])
     const double *axis = cluster->place[v].axis;
     if (freedom == TM_MOVES_FREELY)
         return;
+    if (freedom == TM_MOVES_AT_CORNER) {
+        memset(vector, 0, 3 * sizeof *vector);
+        return;
+    }
     const double product = tm_dot(vector, axis);
     for (size_t i = 0; i < 3; i++)
         vector[i] = freedom == TM_MOVES_ON_CURVE ? product * axis[i]
@@ -116,7 +130,7 @@ void tm_cluster_slope(const tm_cluster *cluster, tm_objective objective,
                       double (*slope)[3])
 {
     if (objective.untangle)
-        tm_untangle_slope(cluster, objective.number, slope);
+        memcpy(slope, cluster->pull, cluster->moving * sizeof *slope);
     else
         slope_of_missing(cluster, slope);
     for (size_t v = 0; v < cluster->moving; v++)

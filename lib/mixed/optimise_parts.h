@@ -67,6 +67,7 @@ typedef struct tm_cluster {
     double sum;               /* of the terms of the objective */
     double *element_size;     /* [elements]: the mean length of the edges, at first */
     double least_determinant; /* of tm_untangle_value() */
+    double (*pull)[3];        /* [moving]: its derivative */
 
     tm_score first, best_score;
     size_t evaluations;
@@ -102,6 +103,9 @@ tm_status tm_cluster_gather(tm_cluster *cluster, const tm_cluster_source *source
                             tm_error *error);
 void tm_cluster_free(tm_cluster *cluster);
 
+/* Finds place[v], where node v should be that is at a point. */
+void tm_cluster_find(tm_cluster *cluster, size_t v, const double point[3]);
+
 /* Puts node v of the cluster, which moves, to the allowed place closest to a point. */
 void tm_cluster_place(tm_cluster *cluster, size_t v, const double point[3]);
 
@@ -122,10 +126,9 @@ double tm_cluster_value(tm_cluster *cluster, tm_objective objective);
 void tm_cluster_slope(const tm_cluster *cluster, tm_objective objective,
                       double (*slope)[3]);
 
-/* The parts of these that are in optimise_untangle.c, and the next ε, where the value
- * became less by the factor 1 - gain. */
+/* The distortion; its derivative, which is nearly always needed, goes to pull[]. The next
+ * ε, where the value became less by the factor 1 - gain. */
 double tm_untangle_value(tm_cluster *cluster, double epsilon);
-void tm_untangle_slope(const tm_cluster *cluster, double epsilon, double (*slope)[3]);
 double tm_untangle_next(const tm_cluster *cluster, double epsilon, double gain);
 
 /* Takes from a vector at node v what leads off its surface or curve. */
@@ -167,6 +170,13 @@ void tm_optimise_descend(tm_optimise_work *work, bool may_untangle);
 
 /* Takes the best places of the cluster into the mesh. */
 void tm_optimise_accept(tm_optimise_work *work);
+
+/* Mends what is bad and near the nodes that vicinity has, pass after pass. */
+tm_status tm_optimise_mend(tm_optimise_work *work, unsigned effort, tm_error *error);
+
+/* Lets nodes of elements that stay below release_threshold leave corners, curves and
+ * patches, and mends again. */
+tm_status tm_optimise_release(tm_optimise_work *work, tm_error *error);
 
 /* Brings nodes that are held back to their places. */
 tm_status tm_optimise_held(tm_optimise_work *work, tm_error *error);

@@ -38,7 +38,13 @@ static void on_curve(const void *of, uint32_t curve, const double point[3],
     make_unit(at->axis);
 }
 
+static void at_corner(const void *of, uint32_t corner, tm_boundary_place *at)
+{
+    const tm_surface *surface = of;
+    memcpy(at->xyz, surface->xyz[surface->corner[corner]], sizeof at->xyz);
+}
+
 tm_boundary tm_boundary_of_surface(const tm_surface *surface)
 {
-    return (tm_boundary){surface, on_surface, on_curve};
+    return (tm_boundary){surface, on_surface, on_curve, at_corner};
 }

@@ -6,8 +6,8 @@
 #include "../surface/surface.h"
 #include "optimise.h"
 
-/* Rules name patches and curves by their numbers in the surface, which must be there as
- * long as the boundary is. */
+/* Rules name patches, curves and corners by their numbers in the surface, which must be
+ * there as long as the boundary is. */
 tm_boundary tm_boundary_of_surface(const tm_surface *surface);
 
 #endif

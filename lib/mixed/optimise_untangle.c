@@ -101,57 +101,50 @@ static void measure(const tm_cluster *cluster, size_t e, size_t corner, double e
     d->chi = find_chi(d->determinant, d->root, epsilon);
 }
 
+/* Adds the derivative of f at one corner to those of its nodes that move. */
+static void add_slope(const tm_cluster *cluster, const distortion *d, double scale)
+{
+    const double root = sqrt(d->third);
+    const double by_edge = scale * root / d->chi;
+    const double by_determinant =
+        -scale * d->third * root / (d->chi * d->root * d->of->determinant);
+    double from[3] = {0, 0, 0};
+    for (size_t i = 0; i < 3; i++) {
+        const double *m = d->of->m[i];
+        double part[3];
+        tm_cross(part, d->edge[(i + 1) % 3], d->edge[(i + 2) % 3]);
+        for (size_t k = 0; k < 3; k++) {
+            part[k] = by_determinant * part[k] +
+                      by_edge * (m[0] * d->edge[0][k] + m[1] * d->edge[1][k] +
+                                 m[2] * d->edge[2][k]);
+            from[k] += part[k];
+        }
+        const uint32_t v = d->node[i + 1];
+        for (size_t k = 0; v < cluster->moving && k < 3; k++)
+            cluster->pull[v][k] += part[k];
+    }
+    const uint32_t v = d->node[0];
+    for (size_t k = 0; v < cluster->moving && k < 3; k++)
+        cluster->pull[v][k] -= from[k];
+}
+
 double tm_untangle_value(tm_cluster *cluster, double epsilon)
 {
     double sum = 0;
     cluster->least_determinant = INFINITY;
+    memset(cluster->pull, 0, cluster->moving * sizeof *cluster->pull);
     for (size_t e = 0; e < cluster->elements; e++) {
         const size_t nodes = cluster->start[e + 1] - cluster->start[e];
+        const double scale = 1 / cluster->element_size[e];
         for (size_t i = 0; i < tm_element_shapes[nodes].corners; i++) {
             distortion d;
             measure(cluster, e, i, epsilon, &d);
             sum += d.third * sqrt(d.third) / d.chi;
             cluster->least_determinant = fmin(cluster->least_determinant, d.determinant);
+            add_slope(cluster, &d, scale);
         }
     }
     return sum;
-}
-
-static void add_slope(const tm_cluster *cluster, const distortion *d, double scale,
-                      double (*slope)[3])
-{
-    const double by_trace = sqrt(d->third) / (2 * d->chi);
-    const double by_determinant = -d->third * sqrt(d->third) / (d->chi * d->chi) *
-                                  (d->chi / d->root) / d->of->determinant;
-    for (size_t i = 0; i < 3; i++) {
-        double part[3];
-        tm_cross(part, d->edge[(i + 1) % 3], d->edge[(i + 2) % 3]);
-        for (size_t k = 0; k < 3; k++) {
-            part[k] *= by_determinant;
-            for (size_t j = 0; j < 3; j++)
-                part[k] += 2 * by_trace * d->of->m[i][j] * d->edge[j][k];
-            part[k] *= scale;
-        }
-        for (size_t k = 0; k < 3; k++) {
-            if (d->node[i + 1] < cluster->moving)
-                slope[d->node[i + 1]][k] += part[k];
-            if (d->node[0] < cluster->moving)
-                slope[d->node[0]][k] -= part[k];
-        }
-    }
-}
-
-void tm_untangle_slope(const tm_cluster *cluster, double epsilon, double (*slope)[3])
-{
-    memset(slope, 0, cluster->moving * sizeof *slope);
-    for (size_t e = 0; e < cluster->elements; e++) {
-        const size_t nodes = cluster->start[e + 1] - cluster->start[e];
-        for (size_t i = 0; i < tm_element_shapes[nodes].corners; i++) {
-            distortion d;
-            measure(cluster, e, i, epsilon, &d);
-            add_slope(cluster, &d, 1 / cluster->element_size[e], slope);
-        }
-    }
 }
 
 /* Their section 3: by how much less than before the value became; but at least by

@@ -55,12 +55,11 @@ static tm_status allocate(const assembler *a, tm_error *error)
     mesh->xyz = tm_new(mesh->nodes, sizeof *mesh->xyz);
     mesh->start = tm_new(mesh->elements + 1, sizeof *mesh->start);
     mesh->item = tm_new(a->items, sizeof *mesh->item);
-    to->base = tm_new(mesh->nodes, sizeof *to->base);
     to->first = tm_new(a->octree->leaves + 1, sizeof *to->first);
     to->middles = a->middles;
     to->middle_leaf = tm_new(a->middles, sizeof *to->middle_leaf);
     to->layer = tm_new(a->skin->faces, sizeof *to->layer);
-    if (!mesh->xyz || !mesh->start || !mesh->item || !to->base || !to->first ||
+    if (!mesh->xyz || !mesh->start || !mesh->item || !to->first ||
         !to->layer || !to->middle_leaf)
         return tm_fail_memory(error);
     return TM_OK;
@@ -77,21 +76,12 @@ static void add_element(assembler *a, unsigned k, const uint32_t *node)
     a->items += k;
 }
 
-/* A node at the mean of a leaf's corners. */
-static uint32_t new_middle(assembler *a, size_t l, const uint32_t corner[LEAF_CORNERS])
+/* A node in the middle of leaf l. */
+static uint32_t new_middle(assembler *a, size_t l)
 {
-    const size_t node = a->assembly->core + a->skin->nodes + a->middles;
     if (!a->counting)
         a->assembly->middle_leaf[a->middles] = (uint32_t)l;
-    a->middles++;
-    double(*xyz)[3] = a->assembly->mesh.xyz;
-    for (int i = 0; !a->counting && i < 3; i++) {
-        double sum = 0;
-        for (unsigned c = 0; c < LEAF_CORNERS; c++)
-            sum += xyz[corner[c]][i];
-        xyz[node][i] = sum / LEAF_CORNERS;
-    }
-    return (uint32_t)node;
+    return (uint32_t)(a->assembly->core + a->skin->nodes + a->middles++);
 }
 
 /* The element between a face of a leaf, whose k nodes turn counter-clockwise seen from
@@ -116,7 +106,7 @@ static bool is_next(const assembler *a, size_t face, size_t l, unsigned piece)
 static void add_star(assembler *a, size_t l, const uint32_t at[TM_LEAF_NODES])
 {
     const tm_leaf_state state = tm_solid_leaf_state(a->solid, a->octree, l);
-    const uint32_t middle = new_middle(a, l, at);
+    const uint32_t middle = new_middle(a, l);
     size_t next = a->face;
     for (unsigned f = 0; f < LEAF_FACES; f++) {
         tm_piece piece[TM_FACE_PIECES];
@@ -161,7 +151,7 @@ static void add_leaf(assembler *a, size_t l)
         return;
     }
     const tm_transition t = tm_transition_of(tm_solid_leaf_state(a->solid, a->octree, l));
-    at[TM_LEAF_CENTRE] = t.centre ? new_middle(a, l, at) : TM_NONE;
+    at[TM_LEAF_CENTRE] = t.centre ? new_middle(a, l) : TM_NONE;
     for (unsigned i = 0; i < t.pieces; i++) {
         uint32_t node[MOST_NODES];
         for (unsigned c = 0; c < t.piece[i].k; c++)
@@ -220,44 +210,18 @@ static void add_all(assembler *a, bool counting)
     }
 }
 
-/* The level of the smallest chosen leaf at each node of the octree; one more than that of a
- * leaf which has it in the middle of an edge or a face. */
-static uint8_t *find_levels(const assembler *a)
+/* All nodes on the lattice. */
+static void place_nodes(const assembler *a)
 {
-    uint8_t *level = calloc(a->octree->nodes + 1, 1);
-    for (size_t l = 0; level && l < a->octree->leaves; l++)
-        for (unsigned p = 0; a->solid->chosen[l] && p < TM_LEAF_NODES; p++) {
-            const uint32_t node = a->octree->node[l][p];
-            const unsigned here = a->octree->leaf[l].level + (p < TM_LEAF_EDGE ? 0u : 1u);
-            if (node != TM_NONE && here > level[node])
-                level[node] = (uint8_t)here;
-        }
-    return level;
-}
-
-/* Puts all nodes but the middles where they are to begin. */
-static tm_status place_nodes(assembler *a, tm_error *error)
-{
-    tm_assembly *to = a->assembly;
+    const tm_assembly *to = a->assembly;
     double(*xyz)[3] = to->mesh.xyz;
     for (size_t n = 0; n < to->core; n++)
         tm_octree_point(a->octree, a->octree->grid[to->grid_node[n]], xyz[n]);
     for (size_t s = 0; s < a->skin->nodes; s++)
         memcpy(xyz[to->outer + s], xyz[to->inner[s]], sizeof *xyz);
-    uint8_t *level = find_levels(a);
-    if (!level)
-        return tm_fail_memory(error);
-    const double share = 0.08;
-    for (size_t s = 0; s < a->skin->nodes; s++) {
-        int outward[3];
-        const uint32_t node = a->skin->grid_node[s];
-        tm_octant_mask_outward(a->solid->mask[node], outward);
-        const double step = share * a->octree->side / (double)((uint32_t)1 << level[node]);
-        for (int i = 0; i < 3; i++)
-            xyz[to->inner[s]][i] -= step * outward[i];
-    }
-    free(level);
-    return TM_OK;
+    for (size_t m = 0; m < to->middles; m++)
+        tm_leaf_centre(a->octree, &a->octree->leaf[to->middle_leaf[m]],
+                       xyz[to->core + a->skin->nodes + m]);
 }
 
 tm_status tm_assemble(tm_assembly *assembly, const tm_octree *octree,
@@ -270,14 +234,11 @@ tm_status tm_assemble(tm_assembly *assembly, const tm_octree *octree,
         add_all(&a, true);
         status = allocate(&a, error);
     }
-    if (status == TM_OK)
-        status = place_nodes(&a, error);
     if (status == TM_OK) {
         add_all(&a, false);
         assembly->first[octree->leaves] = (uint32_t)a.elements;
         assembly->mesh.start[a.elements] = a.items;
-        memcpy(assembly->base, assembly->mesh.xyz,
-               assembly->mesh.nodes * sizeof *assembly->base);
+        place_nodes(&a);
     }
     return status;
 }
@@ -287,7 +248,6 @@ void tm_assembly_free(tm_assembly *assembly)
     free(assembly->mesh.xyz);
     free(assembly->mesh.start);
     free(assembly->mesh.item);
-    free(assembly->base);
     free(assembly->middle_leaf);
     free(assembly->first);
     free(assembly->layer);

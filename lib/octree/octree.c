@@ -9,6 +9,7 @@
 #include "octree_nodes.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 void tm_octree_free(tm_octree *octree)
 {
@@ -16,6 +17,20 @@ void tm_octree_free(tm_octree *octree)
     free(octree->grid);
     free(octree->node);
     *octree = (tm_octree){.leaves = 0};
+}
+
+tm_status tm_octree_copy(tm_octree *copy, const tm_octree *octree, tm_error *error)
+{
+    *copy = *octree;
+    copy->leaf = tm_new(octree->leaves, sizeof *copy->leaf);
+    copy->grid = tm_new(octree->nodes, sizeof *copy->grid);
+    copy->node = tm_new(octree->leaves, sizeof *copy->node);
+    if (!copy->leaf || !copy->grid || !copy->node)
+        return tm_fail_memory(error);
+    memcpy(copy->leaf, octree->leaf, octree->leaves * sizeof *copy->leaf);
+    memcpy(copy->grid, octree->grid, octree->nodes * sizeof *copy->grid);
+    memcpy(copy->node, octree->node, octree->leaves * sizeof *copy->node);
+    return TM_OK;
 }
 
 /* An octree without leaves. */

@@ -55,7 +55,7 @@ typedef struct tm_surface {
 
 typedef struct tm_surface_options {
     double feature_angle; /* an edge is sharp where its normals differ by more: degrees */
-    bool unless_rough;    /* no edge is, where about as many turn by half the angle */
+    bool unless_rough;    /* no edge is, where many of those that are end freely */
     bool lenient;         /* open surfaces, and such that cross themselves, are taken */
 } tm_surface_options;
 

@@ -13,8 +13,8 @@
 static const double pi = 3.14159265358979323846;
 
 /* The angles of the triangles around the tip of a cone make less than this: that of one
- * that opens by 60°. */
-static const double tip_angle = 180;
+ * that opens by 39°. */
+static const double tip_angle = 120;
 
 /* A triangle whose height is less than this part of the surface has no normal of its own:
  * coordinates of six digits, or of 32 bits, do not say which it is. */
@@ -291,8 +291,7 @@ static tm_status find_corners(feature_finder *f, tm_error *error)
         return tm_fail_memory(error);
     add_angles(surface, sum);
     for (uint32_t v = 0; v < surface->nodes; v++) {
-        f->corner[v] =
-            is_corner(f, v) || (sum[v] < tip_angle && !f->surface->rough);
+        f->corner[v] = is_corner(f, v) || sum[v] < tip_angle;
         surface->corners += f->corner[v];
     }
     free(sum);
@@ -354,35 +353,36 @@ static tm_status find_curves(feature_finder *f, tm_error *error)
     return TM_OK;
 }
 
-/* The edges that turn by more than an angle of that cosine. */
-static size_t count_turning(const feature_finder *f, double cosine)
+/* On what is made, sharp edges follow each other. A surface that has many which end freely
+ * is rough all over, as a scanned bone is, and has no edges. */
+static tm_status smooth_if_rough(feature_finder *f, tm_error *error)
 {
-    const feature_finder finder = {
-        .surface = f->surface, .normal = f->normal, .most_cosine = cosine};
-    size_t count = 0;
-    for (uint32_t t = 0; t < f->surface->triangles; t++)
+    const tm_surface *surface = f->surface;
+    const double below_all_cosines = -2;
+    const size_t many = 10; /* one for so many edges */
+    size_t sharp = 0, ends = 0;
+    uint8_t *at = calloc(surface->nodes + 1, sizeof *at); /* sharp edges; 2: or more */
+    if (!at)
+        return tm_fail_memory(error);
+    for (uint32_t t = 0; t < surface->triangles; t++)
         for (unsigned i = 0; i < 3; i++) {
-            const uint32_t n = f->surface->across[t][i];
-            count += n != TM_NONE && n > t && is_sharp(&finder, t, n);
+            const uint32_t n = surface->across[t][i];
+            if ((n != TM_NONE && n < t) || !is_sharp(f, t, n))
+                continue;
+            uint8_t *p = &at[surface->triangle[t][i]];
+            uint8_t *q = &at[surface->triangle[t][(i + 1) % 3]];
+            *p = *p == 0 ? 1 : 2;
+            *q = *q == 0 ? 1 : 2;
+            sharp++;
         }
-    return count;
-}
-
-/* On what is made, edges are sharp or they are not, and many are flat. A surface that has
- * more edges in between than sharp ones is rough all over, as a scanned bone is, and has no
- * edges; so is one that has half as many, if few are flat. */
-static void smooth_if_rough(feature_finder *f, double angle)
-{
-    const double below_all_cosines = -2, flat_angle = 5;
-    const size_t few = 3; /* less than a third */
-    const size_t all = count_turning(f, -below_all_cosines);
-    const size_t flat = all - count_turning(f, cos(flat_angle * pi / 180));
-    const size_t sharp = count_turning(f, f->most_cosine);
-    const size_t between = count_turning(f, cos(angle / 2 * pi / 180)) - sharp;
-    if (sharp == 0 || between < sharp / 2 || (between < sharp && flat >= all / few))
-        return;
-    f->most_cosine = below_all_cosines;
-    f->surface->rough = true;
+    for (size_t v = 0; v < surface->nodes; v++)
+        ends += at[v] == 1;
+    free(at);
+    if (ends > sharp / many) {
+        f->most_cosine = below_all_cosines;
+        f->surface->rough = true;
+    }
+    return TM_OK;
 }
 
 tm_status tm_surface_find_features(tm_surface *surface, double feature_angle,
@@ -395,9 +395,10 @@ tm_status tm_surface_find_features(tm_surface *surface, double feature_angle,
     if (status == TM_OK) {
         find_normals(&f);
         if (unless_rough)
-            smooth_if_rough(&f, feature_angle);
-        status = find_edges(&f, error);
+            status = smooth_if_rough(&f, error);
     }
+    if (status == TM_OK)
+        status = find_edges(&f, error);
     if (status == TM_OK)
         status = attach_edges(&f, error);
     if (status == TM_OK)

@@ -2,7 +2,7 @@
 /* Whole meshes: what is sharp at turned boxes, and whether the elements of random solids
  * are valid, fit together, and end on the surface. */
 #include "../../lib/mixed/mixed_examine.h"
-#include "../../lib/octree/octree_mesh.h"
+#include "../../lib/octree/resolve.h"
 #include "../../lib/quality/jens.h"
 #include "octree_fixture.h"
 
@@ -258,20 +258,18 @@ static void test_random(void **state)
         tm_error error;
         make_random_surface(&surface);
         make_random_octree(&octree, &surface);
-        assert_ok(tm_octree_resolve(&octree, &surface, random_below(2), &error), &error);
         printf("round %d (TM_SEED=%" PRIu64 "): %zu leaves\n", round, seed,
                octree.leaves);
         const size_t patches = surface.patches;
-        if (has_solid(&octree, &surface)) {
-            make_mesh(&mesh, &octree, &surface);
+        const tm_status status =
+            tm_octree_mesh_resolve(&mesh, &octree, &surface, random_below(2), &error);
+        assert_int_equal(status, has_solid(&octree, &surface) ? TM_OK : TM_ERROR_INPUT);
+        if (status == TM_OK) {
             check_elements(&mesh);
             check_boundary(&mesh, &surface);
             elements += mesh.assembly.mesh.elements;
             boundary += mesh.skin.nodes;
             held += mesh.report.held_back;
-        } else {
-            assert_int_equal(tm_octree_mesh_make(&mesh, &octree, &surface, &error),
-                             TM_ERROR_INPUT);
         }
         assert_int_equal(surface.patches, patches);
         assert_ok(tm_surface_check(&surface, &error), &error);
@@ -299,26 +297,26 @@ static void make_hollow_cube(tm_surface *surface)
     tm_polygon_surface_free(&p);
 }
 
-/* Leaves in which the surface is lost, when an octree of that level at the surface has
- * been refined by some more; *deepest: the level of the smallest leaf. */
-static size_t resolve(tm_octree *octree, const tm_surface *surface, unsigned level,
-                      unsigned more, unsigned *deepest)
+static unsigned deepest_level(const tm_octree *octree)
 {
-    const tm_octree_rule rule = {.kind = TM_RULE_SURFACE, .level = level};
+    unsigned deepest = 0;
+    for (size_t l = 0; l < octree->leaves; l++)
+        if (octree->leaf[l].level > deepest)
+            deepest = octree->leaf[l].level;
+    return deepest;
+}
+
+/* Leaves in which a part of the surface is lost. */
+static size_t count_lost(const tm_octree *octree, const tm_surface *surface)
+{
     tm_error error;
     tm_solid solid;
-    assert_ok(tm_octree_build(octree, surface, &rule, 1, &error), &error);
-    assert_ok(tm_octree_resolve(octree, surface, more, &error), &error);
-    *deepest = 0;
-    for (size_t l = 0; l < octree->leaves; l++)
-        if (octree->leaf[l].level > *deepest)
-            *deepest = octree->leaf[l].level;
-    uint8_t *mark = malloc(octree->leaves);
+    uint8_t *lost = malloc(octree->leaves);
     assert_ok(tm_solid_choose(&solid, octree, surface, &error), &error);
-    const size_t lost = tm_solid_find_lost(&solid, octree, mark);
+    const size_t count = tm_solid_find_lost(&solid, octree, lost);
     tm_solid_free(&solid);
-    free(mark);
-    return lost;
+    free(lost);
+    return count;
 }
 
 /* It is refined where it would be lost, as far as is allowed and as is needed. */
@@ -326,23 +324,28 @@ static void test_resolve(void **state)
 {
     (void)state;
     enum { LEVEL = 3, NEEDED = 2, MORE = 4 };
+    const tm_octree_rule rule = {.kind = TM_RULE_SURFACE, .level = LEVEL};
     tm_surface surface;
     make_hollow_cube(&surface);
     for (unsigned more = 0; more < MORE; more++) {
+        tm_error error;
         tm_octree octree;
-        unsigned deepest;
-        const size_t lost = resolve(&octree, &surface, LEVEL, more, &deepest);
-        printf("%u levels more: %zu leaves lost\n", more, lost);
-        assert_int_equal(lost > 0, more < NEEDED);
-        assert_int_equal(deepest, LEVEL + (more < NEEDED ? more : NEEDED));
-        if (lost == 0) {
-            tm_octree_mesh mesh;
-            make_mesh(&mesh, &octree, &surface);
+        tm_octree_mesh mesh;
+        assert_ok(tm_octree_build(&octree, &surface, &rule, 1, &error), &error);
+        const tm_status status =
+            tm_octree_mesh_resolve(&mesh, &octree, &surface, more, &error);
+        assert_int_equal(deepest_level(&octree), LEVEL + (more < NEEDED ? more : NEEDED));
+        if (more < NEEDED) {
+            assert_int_equal(status, TM_ERROR_INPUT);
+            assert_true(count_lost(&octree, &surface) > 0);
+        } else {
+            assert_ok(status, &error);
             assert_int_equal(mesh.report.lost, 0);
             assert_int_equal(mesh.report.components, 2);
             assert_int_equal(mesh.report.euler, 4);
-            tm_octree_mesh_free(&mesh);
+            check_elements(&mesh);
         }
+        tm_octree_mesh_free(&mesh);
         tm_octree_free(&octree);
     }
     tm_surface_free(&surface);

@@ -3,7 +3,7 @@
  * skin, and the elements there. */
 #include "../../lib/mixed/mixed_examine.h"
 #include "../../lib/mixed/mixed_volume.h"
-#include "../../lib/octree/assemble.h"
+#include "../../lib/octree/base_places.h"
 #include "../../lib/quality/jens.h"
 #include "octree_fixture.h"
 
@@ -345,7 +345,9 @@ static void check_elements(const tm_octree *octree, const tm_solid *solid,
                            const tm_skin *skin, const tm_assembly *a)
 {
     const tm_mixed_mesh *mesh = &a->mesh;
-    const double(*base)[3] = (const double(*)[3])a->base;
+    tm_error error;
+    double(*base)[3] = malloc(mesh->nodes * sizeof *base);
+    assert_ok(tm_base_places(a, octree, solid, skin, base, &error), &error);
     const double volume = leaf_volume(octree, solid), clearly = 0.05;
     double sum = 0;
     assert_int_equal(a->first[0], 0);
@@ -356,8 +358,9 @@ static void check_elements(const tm_octree *octree, const tm_solid *solid,
     assert_int_equal(a->first[octree->leaves], mesh->elements);
     for (size_t e = 0; e < mesh->elements; e++) {
         const size_t k = mesh->start[e + 1] - mesh->start[e];
-        assert_true(tm_jens(k, base, mesh->item + mesh->start[e]) > clearly);
-        sum += tm_mixed_volume(base, mesh->item + mesh->start[e], k);
+        assert_true(tm_jens(k, (const double(*)[3])base, mesh->item + mesh->start[e]) >
+                    clearly);
+        sum += tm_mixed_volume((const double(*)[3])base, mesh->item + mesh->start[e], k);
     }
     assert_true(fabs(sum - volume) <= 1e-9 * volume);
     for (uint32_t s = 0; s < skin->nodes; s++) {
@@ -365,16 +368,16 @@ static void check_elements(const tm_octree *octree, const tm_solid *solid,
         skin_point(octree, skin, s, at);
         assert_memory_equal(base[a->outer + s], at, sizeof at);
     }
-    tm_error error;
     tm_examination found;
     const tm_mixed_arrays arrays = {.nodes = mesh->nodes,
-                                    .xyz = base,
+                                    .xyz = (const double(*)[3])base,
                                     .elements = mesh->elements,
                                     .start = mesh->start,
                                     .item = mesh->item};
     assert_ok(tm_mixed_examine(&found, &arrays, 1, &error), &error);
     assert_true(tm_examination_is_good(&found));
     assert_int_equal(found.unused_nodes, 0);
+    free(base);
 }
 
 static void test_random(void **state)
