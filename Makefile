@@ -127,7 +127,7 @@ $(solver): $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/vem/*.c)) $(library)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lcholmod $(LDLIBS)
 
 # What the tests run.
-tests: all $(unit_tests) $(oracles) $(fuzzer) $(solver)
+tests: all $(unit_tests) $(oracles) $(fuzzer) $(solver) $(shapes)
 
 check: tests
 	sh tests/run.sh $(BUILD)

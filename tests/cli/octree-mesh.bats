@@ -1,0 +1,485 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# octree-mesh: the mesh and what it says of it, every option, what is wrong with surfaces.
+# The places of nodes are judged by code of this file, from the stream alone.
+# shellcheck disable=SC2154 # run sets stderr
+
+bats_require_minimum_version 1.5.0
+load helpers
+
+setup() {
+    cd "$BATS_TEST_TMPDIR" || exit
+    PATH=$PATH:$TM_BUILD/bench
+    surface box off >box.off
+    cat >judge.py <<'END'
+import sys
+from collections import Counter
+import numpy as np
+
+def blocks(name):
+    found, block, header = {}, None, False
+    for line in open(name):
+        if line[0] == '.' or line.startswith('surface.'):
+            block, header = found.setdefault(line.strip(), []), True
+        elif header:
+            header = False
+        elif block is not None:
+            block.append(line.split())
+    return found
+
+def distance(p, t):
+    """From a point to the closest of triangles [n, 3, 3]."""
+    a, b, c = t[:, 0], t[:, 1], t[:, 2]
+    ab, ac, ap = b - a, c - a, p - a
+    dot = lambda u, v: (u * v).sum(1)
+    normal = np.cross(ab, ac)
+    square = dot(normal, normal)
+    v = dot(np.cross(ap, ac), normal) / square
+    w = dot(np.cross(ab, ap), normal) / square
+    inside = (v >= 0) & (w >= 0) & (v + w <= 1)
+    best = np.where(inside, abs(dot(ap, normal)) / np.sqrt(square), np.inf)
+    for u, x in ((a, b), (b, c), (c, a)):
+        s = np.clip(dot(p - u, x - u) / dot(x - u, x - u), 0, 1)
+        best = np.minimum(best, np.linalg.norm(u + s[:, None] * (x - u) - p, axis=1))
+    return best.min()
+
+sides = {4: ((0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3)),
+         5: ((0, 1, 2, 3), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)),
+         6: ((0, 1, 2), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)),
+         8: ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6),
+             (3, 0, 4, 7))}
+block = blocks(sys.argv[1])
+first = int(block['.node'][0][0])
+node = np.array([r[1:4] for r in block['.node']], float)
+place = [int(r[4]) for r in block['.node']]
+corner = np.array([r[1:4] for r in block['surface.node']], float)
+triangle = corner[np.array([r[1:4] for r in block['surface.face']], int) - first]
+faces = Counter()
+for row in block['.mix']:
+    n = [int(i) - first for i in row[2:2 + int(row[1])]]
+    faces.update(frozenset(n[i] for i in side) for side in sides[len(n)])
+boundary = {v for face, times in faces.items() if times == 1 for v in face}
+assert boundary == {v for v, p in enumerate(place) if p != 0}
+close = 1e-9 * np.linalg.norm(corner.max(0) - corner.min(0))
+low, high = triangle.min(1) - close, triangle.max(1) + close
+for v in boundary:
+    assert abs(place[v]) <= 3
+    if place[v] > 0:
+        near = triangle[((low <= node[v]) & (node[v] <= high)).all(1)]
+        assert len(near) and distance(node[v], near) <= close, (v, node[v])
+count = Counter(place)
+print(*(count[p] for p in range(4)), sum(p < 0 for p in place))
+END
+}
+
+# Prints how many nodes are inside, on patches, on curves, on corners, and held back, when
+# the boundary nodes are those that are marked, and on the surface.
+judge() {
+    /usr/bin/python3 -B judge.py "$1"
+}
+
+# A box file with the sides of the cube from LOW to HIGH: cube LOW HIGH LEVEL.
+box_file() {
+    printf 'n_regions 1 # one\n# a comment\n%s %s %s\n%s %s %s\n%s\n' "$1" "$1" "$1" \
+        "$2" "$2" "$2" "$3"
+}
+
+# Prints a surface with more triangles: several OFF files as one.
+together() {
+    awk 'FNR == 2 { nodes = $1; faces = $2; before = all; all += $1; total += $2 }
+        FNR > 2 && FNR <= nodes + 2 { node[++v] = $0 }
+        FNR > nodes + 2 { line = $1; for (i = 2; i <= $1 + 1; i++) line = line " " $i + before
+            face[++f] = line }
+        END { print "OFF"; print all, total, 0
+            for (i = 1; i <= v; i++) print node[i]
+            for (i = 1; i <= f; i++) print face[i] }' "$@"
+}
+
+@test "a cube of one octant" {
+    octree-mesh --no-history -q -u -a 0 --resolve 0 box.off >mesh.tm
+    [ "$(head -n 3 mesh.tm)" = $'termesh 1\n.node\n16 3 1 0' ]
+    diff - <(sed -n '/^\.mix/,/^surface.node/p' mesh.tm) <<'END'
+.mix
+7 1
+1 8 1 2 4 3 5 6 8 7 0
+2 8 1 5 7 3 9 13 15 11 0
+3 8 2 4 8 6 10 12 16 14 0
+4 8 1 2 6 5 9 10 14 13 0
+5 8 3 7 8 4 11 15 16 12 0
+6 8 1 3 4 2 9 11 12 10 0
+7 8 5 6 8 7 13 14 16 15 0
+.root
+1 0
+1 -0.0050000000000000044 -0.0050000000000000044 -0.0050000000000000044 1.01 0
+.octant
+1 0
+1 0 0 0 0 1 8
+surface.node
+END
+    [ "$(header surface.node mesh.tm)" = "8 3 0 0" ]
+    [ "$(header surface.face mesh.tm)" = "12 0" ]
+    mesh-check -q mesh.tm
+}
+
+@test "a cube has its corners and edges" {
+    octree-mesh --json count.json -s 3 box.off >mesh.tm
+    mesh-check --json check.json mesh.tm
+    python3 -c '
+import json
+c = json.load(open("check.json"))
+assert abs(c["volume"] - 1) < 1e-12 and abs(c["area"] - 6) < 1e-12, c'
+    rows .node mesh.tm | awk '
+        { sides = ($2 == 0) + ($2 == 1) + ($3 == 0) + ($3 == 1) + ($4 == 0) + ($4 == 1) }
+        $5 < 0 || sides < $5 { print; wrong = 1 }
+        $5 == 3 { corner[$2 $3 $4]++ }
+        $5 == 2 { edge++ }
+        END { for (c in corner) n += corner[c] == 1
+            exit wrong || n != 8 || edge < 12 * 6 }'
+    [ "$(json count.json lost_corners)" = 0 ]
+    [ "$(json count.json lost_edges)" = 0 ]
+}
+
+@test "sphere, torus, gear, turned box: good meshes whose nodes are on the surface" {
+    surface sphere off >sphere.off
+    shapes torus 12 >torus.off
+    shapes gear 1 >gear.off
+    shapes turned 4 >turned.off
+    for shape in sphere torus gear turned; do
+        echo "$shape"
+        octree-mesh --json count.json -s 4 "$shape.off" >mesh.tm
+        mesh-check --json check.json mesh.tm >report
+        read -r inside patch curve corner held <<<"$(judge mesh.tm)"
+        [ "$(json count.json nodes)" = $((inside + patch + curve + corner + held)) ]
+        [ "$(json count.json boundary_nodes)" = $((patch + curve + corner + held)) ]
+        [ "$(json count.json held_back)" = "$held" ]
+        [ "$(json count.json components)" = 1 ]
+        [ "$(json check.json components)" = 1 ]
+        [ "$(json count.json euler)" = $((2 * $(json check.json euler))) ]
+        [ "$(json count.json inverted)" = 0 ]
+        for kind in tetrahedra:tet pyramids:pyramid wedges:wedge hexahedra:hex; do
+            [ "$(json check.json ${kind%:*})" = "$(json count.json elements ${kind#*:})" ]
+        done
+        [ "$(json count.json octants)" = "$(rows .octant mesh.tm | wc -l)" ]
+        jens-stats --fail-below 1e-9 --json quality.json mesh.tm >/dev/null
+        [ "$(json quality.json negative)" = 0 ]
+        case $shape in
+        sphere) [ "$(json count.json euler) $curve $corner $held" = "2 0 0 0" ] ;;
+        torus) [ "$(json count.json euler) $curve $corner $held" = "0 0 0 0" ] ;;
+        gear) [ "$(json count.json euler)" = 0 ] && [ "$curve" -gt 100 ] &&
+            [ "$corner" -gt 20 ] ;;
+        turned) [ "$(json count.json euler) $corner $held" = "2 8 0" ] && [ "$curve" -gt 100 ] ;;
+        esac
+    done
+}
+
+@test "a surface in every format gives the same mesh" {
+    surface sphere off | octree-mesh --no-history -s 3 >expected.tm
+    for format in coff obj ply ply-little ply-big stl stl-binary mdl poly smesh; do
+        echo "$format"
+        surface sphere "$format" | octree-mesh --no-history -s 3 >got.tm
+        cmp got.tm expected.tm
+        surface sphere "$format" >named
+        octree-mesh --no-history -s 3 named | cmp - expected.tm
+    done
+    # of a stream, with its history; a stream that is a surface alone
+    surface sphere stream >sphere.tm
+    octree-mesh --no-history -s 3 sphere.tm | sed '/^# made by hand$/d' |
+        cmp - expected.tm
+    octree-mesh -s 3 sphere.tm | head -n 3 >head.txt
+    [ "$(sed -n 2p head.txt)" = '# made by hand' ]
+    [[ "$(sed -n 3p head.txt)" == '# octree-mesh '*' -s3 sphere.tm: '*' octants, '*' elements' ]]
+    surface sphere mdl | mdl-import --no-history | octree-mesh --no-history -s 3 >alone.tm
+    judge alone.tm
+    [ "$(header .mix alone.tm)" = "$(header .mix expected.tm)" ]
+    [ "$(rows .node alone.tm | head -n 1 | cut -d ' ' -f 1)" = 0 ]
+    # a mesh of a mesh's surface
+    octree-mesh --no-history -s 3 expected.tm >again.tm
+    cmp again.tm expected.tm
+}
+
+@test "the same input gives the same bytes, for every number of threads" {
+    shapes gear 1 >gear.off
+    octree-mesh -s 4 -j 1 --no-history gear.off >one.tm
+    octree-mesh -s 4 -j 2 --no-history gear.off | cmp - one.tm
+    octree-mesh -s 4 -j 2 --no-history -o two.tm gear.off
+    cmp two.tm one.tm
+    run -1 grep '^#' one.tm
+}
+
+@test "markers of the surface are those of the boundary faces beside them" {
+    surface cube stream | awk '
+        /^surface.face/ { print; getline; print $1, 1; faces = 1; next }
+        faces && NF == 4 { print $0, 10 + int(i); i += 0.5; next }
+        { print }' >cube.tm
+    octree-mesh -s 3 cube.tm >mesh.tm
+    mesh-check --json check.json mesh.tm
+    [ "$(rows surface.face mesh.tm | cut -d ' ' -f 5 | sort | uniq -c | tr -s ' \n' ' ')" = \
+        " 2 10 2 11 2 12 2 13 2 14 2 15 " ]
+    [ "$(header .facet mesh.tm)" = "$(json check.json boundary_faces) 1" ]
+    # sides in the order of their markers: z = 0, 1, y = 0, x = 1, y = 1, x = 0
+    { rows .node mesh.tm; echo; rows .facet mesh.tm; } | awk '
+        BEGIN { split("4 4 3 2 3 2", axis); split("0 1 0 1 1 0", at) }
+        NF == 0 { facets = 1; next }
+        !facets { for (i = 2; i <= 4; i++) x[$1, i] = $i; next }
+        { side = $NF - 9; count[side]++
+          for (i = 5; i < 5 + $4; i++)
+              if (x[$i, axis[side]] != at[side] || $3 != -1) { print; wrong = 1 } }
+        END { for (s = 1; s <= 6; s++) wrong = wrong || count[s] < 49; exit wrong }'
+    octree-mesh -s 3 box.off >plain.tm
+    run -1 grep '^\.facet' plain.tm
+    [ "$(rows .mix plain.tm)" = "$(rows .mix mesh.tm)" ]
+}
+
+@test "-a, -s: levels everywhere or at the surface" {
+    surface sphere off >sphere.off
+    # levels OPTION… : the numbers of octants of each level
+    levels() {
+        octree-mesh -q "$@" sphere.off >mesh.tm
+        rows .octant mesh.tm | cut -d ' ' -f 2 | sort -n | uniq -c | awk '{ print $2 ":" $1 }' |
+            paste -sd ' '
+    }
+    [ "$(levels -a 3)" = 3:512 ]
+    [ "$(levels -a 2 --resolve 0)" = 2:64 ]
+    # octants outside need not be small
+    [[ "$(levels -a 4)" == 3:*' 4:'* ]]
+    [[ "$(levels -s 4)" == *3:*' 4:'* ]]
+    [ "$(levels)" = "$(levels -s 5)" ]
+    [ "$(levels -a 3 -a 2 -s 3)" = 3:512 ]
+}
+
+@test "-b: boxes from a file with comments; -u: levels of the elements" {
+    box_file 0 0.2 5 >fine.reg
+    octree-mesh -u -s 3 -b fine.reg --resolve 0 box.off >mesh.tm
+    rows .octant mesh.tm | awk '
+        { side = 1.01 / 2 ^ $2; low = -0.005
+          meets = 1
+          for (i = 3; i <= 5; i++)
+              meets = meets && low + $i * 1.01 / 32 <= 0.2
+          if (meets && $2 < 5) { print; wrong = 1 }
+          if (meets) fine++ }
+        END { exit wrong || fine < 100 }'
+    { rows .octant mesh.tm; echo; rows .mix mesh.tm; } | awk '
+        NF == 0 { elements = 1; next }
+        !elements { for (e = $6; e < $7; e++) level[e] = $2; next }
+        $NF != level[$1] || NF != $2 + 3 { print; wrong = 1 }
+        { seen[$NF]++ }
+        END { exit wrong || !seen[3] || !seen[4] || !seen[5] }'
+    judge mesh.tm
+    mesh-check -q mesh.tm
+}
+
+@test "-r: on and in the surface of another file, in any format" {
+    awk 'NR == 2 { nodes = $1 }
+        NR > 2 && NR <= nodes + 2 { print $1 / 4, $2 / 4, $3 / 4; next } { print }' \
+        box.off >small.off
+    octree-mesh -s 3 -r small.off 5 --no-history box.off >mesh.tm
+    box_file 0 0.25 5 >small.reg
+    octree-mesh -s 3 -b small.reg --no-history box.off | cmp - mesh.tm
+    octree-mesh -s 3 -r small.off 2 -r small.off 5 --no-history box.off | cmp - mesh.tm
+    octree-mesh -s 3 -r small.off 5 box.off | grep -q '^# octree-mesh [^ ]* -s3 -rsmall.off 5 '
+    # nothing of it is in the mesh
+    [ "$(rows surface.node mesh.tm)" = "$(octree-mesh -s 3 box.off >m.tm; rows surface.node m.tm)" ]
+}
+
+@test "-l: octants of a list are split once more" {
+    octree-mesh -a 2 --resolve 0 box.off >coarse.tm
+    printf '# numbers from 0\n0\n' >first.ref
+    octree-mesh -a 2 -l first.ref --resolve 0 box.off >mesh.tm
+    # the first one became the first eight
+    diff <(rows .octant mesh.tm | head -n 8 | cut -d ' ' -f 2-5) - <<'END'
+3 0 0 0
+3 1 0 0
+3 0 1 0
+3 1 1 0
+3 0 0 1
+3 1 0 1
+3 0 1 1
+3 1 1 1
+END
+    [ "$(rows .octant mesh.tm | wc -l)" = $(($(rows .octant coarse.tm | wc -l) + 7)) ]
+    mesh-check -q mesh.tm
+    echo 64 >none.ref
+    run -3 --separate-stderr octree-mesh -a 2 -l none.ref box.off
+    [[ "$stderr" == *64* ]]
+}
+
+@test "--feature-angle: an edge is kept where it is sharper" {
+    octree-mesh -q -s 3 --feature-angle 80 box.off >kept.tm
+    read -r _ _ curve corner _ <<<"$(judge kept.tm)"
+    [ "$corner" = 8 ] && [ "$curve" -gt 50 ]
+    octree-mesh -q -s 3 --feature-angle 100 box.off >round.tm
+    read -r _ _ curve corner _ <<<"$(judge round.tm)"
+    [ "$corner $curve" = "0 0" ]
+    mesh-check -q round.tm
+}
+
+@test "--resolve: smaller octants where a part would be lost, or a note that names it" {
+    # a wall of 0.1 around a hollow
+    awk 'NR > 2 && NR <= 10 { print $1 * 3.8 + 0.1, $2 * 3.8 + 0.1, $3 * 3.8 + 0.1; next }
+        { print }' box.off >hollow.off
+    awk 'NR > 2 && NR <= 10 { print $1 * 4, $2 * 4, $3 * 4; next } { print }' \
+        box.off >large.off
+    together large.off hollow.off >wall.off
+    run -3 --separate-stderr octree-mesh -s 4 --resolve 0 wall.off
+    [ "$output" = "" ]
+    [[ "$stderr" == *'no leaf is inside the surface: it needs a finer level'* ]]
+    octree-mesh -s 4 --json count.json wall.off >mesh.tm
+    [ "$(json count.json components)" = 2 ]
+    [ "$(json count.json euler)" = 4 ]
+    mesh-check -q mesh.tm
+    # two cubes with a gap that level 3 does not see
+    awk 'NR > 2 && NR <= 10 { print $1 + 1.02, $2, $3; next } { print }' box.off >right.off
+    together box.off right.off >gap.off
+    run -0 --separate-stderr octree-mesh -s 3 --resolve 0 -o gap.tm gap.off
+    [[ "$stderr" == *'octree-mesh: '*' octants with surface are too large for it: a thin part or a gap is lost near ('* ]]
+    [[ "$stderr" == *'the boundary has 1 components and Euler number 2, the surface 2 and 4: '* ]]
+    mesh-check -q gap.tm
+    run -0 --separate-stderr octree-mesh -q -s 3 --resolve 0 -o gap.tm gap.off
+    [ "$stderr" = "" ]
+    octree-mesh -s 3 --resolve 4 --json count.json gap.off >mesh.tm
+    [ "$(json count.json components) $(json count.json euler)" = "2 4" ]
+}
+
+@test "a surface that is inverted is turned, and duplicates are dropped: both are said" {
+    surface sphere off >sphere.off
+    octree-mesh --no-history -s 3 sphere.off >expected.tm
+    awk 'NF == 4 && NR > 2 { print 3, $4, $3, $2; next } { print }' sphere.off >inverted.off
+    run -0 --separate-stderr octree-mesh --no-history -s 3 -o mesh.tm inverted.off
+    [ "$stderr" = 'octree-mesh: inverted.off: triangles were turned, so that all look outward' ]
+    diff <(rows .octant mesh.tm) <(rows .octant expected.tm)
+    judge mesh.tm
+    mesh-check -q mesh.tm
+    # one side of the cube alone
+    awk 'NR == 11 { print 4, $5, $4, $3, $2; next } { print }' box.off >side.off
+    octree-mesh --no-history -s 3 box.off >expected.tm
+    run -0 --separate-stderr octree-mesh --no-history -s 3 -o mesh.tm side.off
+    [ "$stderr" = 'octree-mesh: side.off: triangles were turned, so that all look outward' ]
+    [ "$(header .mix mesh.tm)" = "$(header .mix expected.tm)" ]
+    awk 'NR == 2 { $2 += 20000 } { print }
+        NR == 11 { for (i = 0; i < 20000; i++) print }' box.off >many.off
+    run -0 --separate-stderr octree-mesh --no-history -s 3 -o mesh.tm many.off
+    [ "$stderr" = 'octree-mesh: many.off: 40000 triangles were there twice and are dropped' ]
+    cmp mesh.tm expected.tm
+}
+
+@test "--lenient takes surfaces that are open or cross themselves" {
+    sed '$d; 2s/6/5/' box.off >open.off
+    awk 'NR > 2 && NR <= 10 { print $1 + 0.5, $2 + 0.3, $3 + 0.4; next } { print }' \
+        box.off >moved.off
+    together box.off moved.off >cross.off
+    run -0 --separate-stderr octree-mesh -s 4 --lenient -o mesh.tm open.off
+    [[ "$stderr" == 'octree-mesh: open.off: the surface is open at 4 edges'* ]]
+    mesh-check -q mesh.tm
+    run -0 --separate-stderr octree-mesh -s 4 --lenient -o mesh.tm cross.off
+    [[ "$stderr" == 'octree-mesh: cross.off: the surface crosses itself at '*' pairs of triangles'* ]]
+    mesh-check --json check.json mesh.tm
+    # 2 - 0.5 × 0.7 × 0.6: the union, but for what the level does to the edges inside
+    python3 -c '
+import json
+assert abs(json.load(open("check.json"))["volume"] - 1.79) < 0.1'
+}
+
+@test "what is wrong with a surface: exit 3, what and where, and nothing is written" {
+    # fails FILE MESSAGE [OPTION…]
+    fails() {
+        local file=$1 message=$2
+        shift 2
+        echo old >out.tm
+        run -3 --separate-stderr octree-mesh -o out.tm "$@" "$file"
+        # shellcheck disable=SC2053 # a pattern
+        [[ "$stderr" == "octree-mesh: "$message ]]
+        [ "${#stderr_lines[@]}" -eq 1 ]
+        [ "$(cat out.tm)" = old ]
+    }
+    sed '$d; 2s/6/5/' box.off >open.off
+    fails open.off 'open.off: the surface is open: edges with one triangle: 4*'
+    awk 'NR > 2 && NR <= 10 { print $1 + 0.5, $2 + 0.3, $3 + 0.4; next } { print }' \
+        box.off >moved.off
+    together box.off moved.off >cross.off
+    fails cross.off 'cross.off: two pieces of the surface cross: faces * meet near (*'
+    : >empty.off
+    fails empty.off 'empty.off: is empty*'
+    printf 'OFF\n0 0 0\n' >none.off
+    fails none.off 'none.off: the surface is empty: *'
+    sed '4s/.*/0 nan 0/' box.off >nan.off
+    fails nan.off "nan.off:4: the y coordinate: 'nan' is not a number"
+    sed '4s/.*/0 1e200 0/' box.off >huge.off
+    fails huge.off 'huge.off:*'
+    printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n' >flat.off
+    fails flat.off 'flat.off: *'
+    head -c 200 /dev/urandom >noise.bin
+    fails noise.bin 'noise.bin*'
+    mixed >mixed.tm
+    fails mixed.tm 'mixed.tm: surface.node: the stream has no such block*'
+    fails open.off 'open.off: the surface is open*' -r box.off 4
+    fails box.off 'open.off: the surface is open*' -r open.off 4
+    # files of the options
+    printf 'n_regions 2\n0 0 0 1 1 1 4\n' >short.reg
+    fails box.off 'short.reg*' -b short.reg
+    box_file 0 1 18 >deep.reg
+    fails box.off 'deep.reg:*' -b deep.reg
+    echo one >word.ref
+    fails box.off 'word.ref:1: *' -l word.ref
+}
+
+@test "wrong command lines: exit 2" {
+    # refuses MESSAGE OPTION…
+    refuses() {
+        local message=$1
+        shift
+        run -2 --separate-stderr octree-mesh "$@"
+        [ "$output" = "" ]
+        # shellcheck disable=SC2053 # a pattern
+        [[ "${stderr_lines[0]}" == "octree-mesh: "$message ]]
+    }
+    for option in -a -s --resolve; do
+        refuses "$option: '18' is not a whole number in 0 … 17" "$option" 18 box.off
+        refuses "$option: '-1' is not a whole number*" "$option" -1 box.off
+        refuses "$option: '2.5' is not a whole number*" "$option" 2.5 box.off
+    done
+    refuses "-r: '18' is not a whole number in 0 … 17" -r box.off 18 box.off
+    refuses '-r box.off lacks its level: -r SURFACE L' -r box.off
+    refuses "--feature-angle: '181' *" --feature-angle 181 box.off
+    refuses "--feature-angle: 'x' *" --feature-angle x box.off
+    refuses '*' box.off box.off
+}
+
+@test "files that are not there: exit 4" {
+    for options in "-b nowhere" "-l nowhere" "-r nowhere 3"; do
+        # shellcheck disable=SC2086 # words
+        run -4 --separate-stderr octree-mesh -o out.tm $options box.off
+        [ "$stderr" = "octree-mesh: nowhere: cannot open: No such file or directory" ]
+        [ ! -e out.tm ]
+    done
+    # the nodes of a .poly file that has none
+    surface cube poly | sed '1s/^8/0/; 2,9d' >lonely.poly
+    run -4 --separate-stderr octree-mesh lonely.poly
+    [[ "$stderr" == 'octree-mesh: lonely.node: cannot open: '* ]]
+}
+
+@test "without a folder for temporary files, and without a home" {
+    octree-mesh --no-history -s 3 box.off >expected.tm
+    TMPDIR=/nowhere octree-mesh --no-history -s 3 box.off | cmp - expected.tm
+    (cd / && HOME=/nowhere octree-mesh --no-history -s 3 "$OLDPWD/box.off") | cmp - expected.tm
+}
+
+@test "every filter for mixed elements reads the mesh" {
+    surface cube stream | awk '
+        /^surface.face/ { print; getline; print $1, 1; faces = 1; next }
+        faces && NF == 4 { print $0, 7; next }
+        { print }' | octree-mesh -u -s 3 -o mesh.tm
+    for filter in vtu-export vtk-export m3d-export mvm-export visf-export getfem-export \
+        off-export oct-export mesh-check jens-stats; do
+        echo "$filter"
+        run -0 --separate-stderr "$filter" -o out mesh.tm
+        [ "$stderr" = "" ]
+        [ -s out ]
+    done
+    openfoam-export foam mesh.tm
+    [ -s foam/owner ]
+    # what comes back
+    m3d-export mesh.tm | m3d-import --no-history >again.tm
+    diff <(rows .mix again.tm | cut -d ' ' -f 2) <(rows .mix mesh.tm | cut -d ' ' -f 2)
+    oct-export mesh.tm | oct-import --no-history >again.tm
+    diff <(rows .octant again.tm | cut -d ' ' -f 2-5) \
+        <(rows .octant mesh.tm | cut -d ' ' -f 2-5)
+}
