@@ -40,7 +40,7 @@ tm_status tm_base_places(const tm_assembly *assembly, const tm_octree *octree,
                          const tm_solid *solid, const tm_skin *skin, double (*xyz)[3],
                          tm_error *error)
 {
-    const double share = 0.1;
+    const double share = 0.08;
     uint8_t *level = find_levels(octree, solid);
     if (!level)
         return tm_fail_memory(error);

@@ -6,7 +6,7 @@
 #include "assemble.h"
 
 /* Fills xyz[assembly->mesh.nodes]: nodes of the lattice as they are on it, but the inner
- * ones a tenth of the side of the smallest leaf around them inside: outward of the skin
+ * ones 0.08 of the side of the smallest leaf around them inside: outward of the skin
  * (octant_mask.h) is a direction in which all of it can be seen, and nothing is tilted by
  * so much that it would turn. Middles are at the means of their leaf's corners.
  * TM_ERROR_SYSTEM where memory is out. O(leaves). */
