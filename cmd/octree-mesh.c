@@ -85,7 +85,8 @@ static settings read_options(filter *f)
     return o;
 }
 
-/* The boundary is not what the surface is: a handle or a piece is lost, or one too much. */
+/* The boundary is not what the surface is: a handle or a piece is lost, or one too much.
+ */
 static void note_topology(const filter *f, const tm_surface *s,
                           const tm_octree_mesh_report *r, double leaf_side)
 {

@@ -86,8 +86,7 @@ static tm_status find_corners(finder *find, tm_error *error)
               compare_candidates);
     for (size_t i = 0; i < find->candidates; i++) {
         const candidate *c = &find->candidate[i];
-        if (find->node_of[c->corner] != TM_NONE ||
-            feature->kind[c->node] != TM_ON_PATCH)
+        if (find->node_of[c->corner] != TM_NONE || feature->kind[c->node] != TM_ON_PATCH)
             continue;
         find->node_of[c->corner] = c->node;
         feature->kind[c->node] = TM_ON_CORNER;

@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Where the skin's nodes are closest to the surface. Neighbours in number are mostly close
- * to each other, so that each begins where the last one ended. */
+/* Where the skin's nodes are closest to the surface. Neighbours in number are mostly
+ * close to each other, so that each begins where the last one ended. */
 static tm_status find_closest(tm_octree_mesh *m, const tm_octree *octree,
                               const tm_surface *surface, tm_error *error)
 {

@@ -109,9 +109,9 @@ tm_status tm_octree_mesh_resolve(tm_octree_mesh *mesh, tm_octree *octree,
     deepest += levels;
     if (deepest > TM_OCTREE_LEVEL_MAX)
         deepest = TM_OCTREE_LEVEL_MAX;
-    tm_status status =
-        levels > 0 ? make_without_loss(mesh, octree, surface, deepest, error)
-                   : tm_octree_mesh_make(mesh, octree, surface, error);
+    tm_status status = levels > 0
+                           ? make_without_loss(mesh, octree, surface, deepest, error)
+                           : tm_octree_mesh_make(mesh, octree, surface, error);
     for (bool better = levels > 0; status == TM_OK && better;) {
         uint8_t *split =
             mesh->report.held_back > 0 ? mark_held(mesh, octree, deepest) : NULL;

@@ -61,9 +61,8 @@ static bool take_back(retreat *r)
     bool any = false;
     for (size_t e = 0; e < mesh->elements; e++) {
         const size_t k = mesh->start[e + 1] - mesh->start[e];
-        if (!has_changed(r, e) ||
-            tm_jens(k, (const double(*)[3])mesh->xyz, mesh->item + mesh->start[e]) >=
-                least_valid)
+        if (!has_changed(r, e) || tm_jens(k, (const double(*)[3])mesh->xyz,
+                                          mesh->item + mesh->start[e]) >= least_valid)
             continue;
         if (mark_nodes(r, e))
             any = true;
@@ -100,9 +99,8 @@ static tm_status hold_back(tm_octree_mesh *m, const tm_octree *octree, tm_error 
                  .steps = calloc(nodes + 1, 1),
                  .changed = malloc(nodes + 1),
                  .to_change = calloc(nodes + 1, 1)};
-    tm_status status = base && r.steps && r.changed && r.to_change
-                           ? TM_OK
-                           : tm_fail_memory(error);
+    tm_status status =
+        base && r.steps && r.changed && r.to_change ? TM_OK : tm_fail_memory(error);
     if (status == TM_OK)
         status = tm_base_places(&m->assembly, octree, &m->solid, &m->skin, base, error);
     if (status == TM_OK)
