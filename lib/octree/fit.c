@@ -9,7 +9,7 @@
 
 /* Measured on the bench's surfaces: more sweeps change the worst elements little. Curves
  * are swept alone first: their nodes may be crowded at an end. */
-enum { CURVE_SWEEPS = 8, SKIN_SWEEPS = 4, CORE_SWEEPS = 6, HEXAHEDRON = 8 };
+enum { CURVE_SWEEPS = 8, SKIN_SWEEPS = 2, CORE_SWEEPS = 6, HEXAHEDRON = 8 };
 
 typedef struct {
     tm_assembly *assembly;
