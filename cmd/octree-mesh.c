@@ -112,7 +112,7 @@ static void note_losses(const filter *f, const tm_surface *s,
                     "is lost near (%g, %g, %g); a finer level there, or --resolve, may "
                     "keep it",
                     r->lost, r->lost_at[0], r->lost_at[1], r->lost_at[2]);
-    if (r->components != s->components || r->euler != s->euler)
+    if (!s->by_winding && (r->components != s->components || r->euler != s->euler))
         note_topology(f, s, r, leaf_side);
     if (r->corners_lost + r->curves_lost)
         filter_note(f,

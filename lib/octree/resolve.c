@@ -30,7 +30,7 @@ static tm_status make_without_loss(tm_octree_mesh *mesh, tm_octree *octree,
         status = lost ? tm_solid_choose(&solid, octree, surface, error)
                       : tm_fail_memory(error);
         if (status == TM_OK) {
-            tm_solid_find_lost(&solid, octree, lost);
+            tm_solid_find_lost(&solid, octree, surface, lost);
             more = keep_shallow(octree, deepest, lost) > 0;
         }
         if (status == TM_OK && more)

@@ -236,12 +236,13 @@ void tm_solid_free(tm_solid *solid)
     *solid = (tm_solid){0};
 }
 
-size_t tm_solid_find_lost(const tm_solid *solid, const tm_octree *octree, uint8_t *lost)
+size_t tm_solid_find_lost(const tm_solid *solid, const tm_octree *octree,
+                          const tm_surface *surface, uint8_t *lost)
 {
     const tm_octant_mask full = 0xff;
     size_t count = 0;
     for (size_t l = 0; l < octree->leaves; l++) {
-        bool near = !octree->leaf[l].crossed;
+        bool near = !octree->leaf[l].crossed || surface->by_winding;
         for (int p = 0; !near && p < TM_LEAF_EDGE; p++) {
             const tm_octant_mask mask = solid->mask[octree->node[l][p]];
             near = mask != 0 && mask != full;

@@ -32,7 +32,9 @@ void tm_solid_flip(tm_solid *solid, const tm_octree *octree, size_t leaf);
 void tm_solid_find_used(tm_solid *solid, const tm_octree *octree);
 
 /* Marks the leaves that the surface crosses but none of whose corners is on the boundary
- * of the chosen ones: there a thin part, or a gap, is lost. Returns how many. */
-size_t tm_solid_find_lost(const tm_solid *solid, const tm_octree *octree, uint8_t *lost);
+ * of the chosen ones: there a thin part, or a gap, is lost. Returns how many. None where
+ * the inside is by the winding number: there surface may be within the solid. */
+size_t tm_solid_find_lost(const tm_solid *solid, const tm_octree *octree,
+                          const tm_surface *surface, uint8_t *lost);
 
 #endif
