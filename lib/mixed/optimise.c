@@ -22,7 +22,7 @@ typedef struct pass {
 } pass;
 
 static const pass passes[] = {
-    {0, false, 0}, {1, false, 0}, {0, true, 0}, {1, true, 0}, {2, true, 0}};
+    {0, false, 0}, {1, false, 0}, {0, true, 0}, {1, true, 0}, {2, false, 0}};
 static const pass last_passes[] = {
     {0, true, 0.1}, {0, true, 0.3}, {1, true, 0.1}, {1, true, 0.3}};
 enum {
