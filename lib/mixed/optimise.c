@@ -2,6 +2,7 @@
 #include "optimise.h"
 
 #include "../base/array.h"
+#include "../geom/vector.h"
 #include "../quality/jens.h"
 #include "../stream/stream.h"
 #include "optimise_parts.h"
@@ -162,7 +163,7 @@ void tm_optimise_accept(tm_optimise_work *w)
     const tm_cluster *cluster = &w->cluster;
     for (size_t v = 0; v < cluster->moving; v++) {
         const uint32_t node = cluster->node[v];
-        if (memcmp(w->mesh->xyz[node], cluster->best[v], sizeof *cluster->best) == 0)
+        if (tm_distance2(w->mesh->xyz[node], cluster->best[v]) == 0)
             continue;
         memcpy(w->mesh->xyz[node], cluster->best[v], sizeof *cluster->best);
         w->moved[node] = true;

@@ -4,6 +4,7 @@
 #include "optimise_parts.h"
 
 #include "../base/array.h"
+#include "../geom/vector.h"
 #include "../stream/stream.h"
 
 #include <stdlib.h>
@@ -93,7 +94,7 @@ static void take_back(tm_optimise_work *w, const list *nodes)
 {
     for (size_t i = 0; i < nodes->count; i++) {
         const released *one = &nodes->item[i];
-        if (memcmp(w->mesh->xyz[one->node], one->xyz, sizeof one->xyz) == 0)
+        if (tm_distance2(w->mesh->xyz[one->node], one->xyz) == 0)
             w->rule[one->node] = one->rule;
         else
             w->report->released++;

@@ -339,7 +339,8 @@ static tm_surface build_cube(void)
     tm_polygon_surface polygons;
     tm_polygon_surface_init(&polygons);
     for (unsigned v = 0; v < 8; v++) {
-        const double xyz[3] = {v % 2 * SIDE, v / 2 % 2 * SIDE, v / 4 * SIDE};
+        const double xyz[3] = {(v & 1) * (double)SIDE, (v >> 1 & 1) * (double)SIDE,
+                               (v >> 2) * (double)SIDE};
         assert_int_equal(tm_polygon_surface_add_node(&polygons, xyz, &error), TM_OK);
     }
     for (unsigned d = 0; d < 3; d++) {
@@ -527,15 +528,15 @@ static void test_thresholds(void **state)
 {
     (void)state;
     grid g = make_grid(HEXAHEDRON);
-    throw_nodes(&g, &cube, 0.3, 1);
+    throw_nodes(&g, &cube, 0.35, 1);
     remember(&g);
     double *thresholds = calloc(g.mesh.elements, sizeof *thresholds);
     size_t bad = 0;
     for (size_t e = 0; e < g.mesh.elements; e++) {
-        thresholds[e] = e % 7 == 0 ? 0.3 : -1;
+        thresholds[e] = e % 7 == 0 ? 0.25 : 0.02;
         bad += g.before[e] < thresholds[e];
     }
-    const tm_optimise_options options = {0, thresholds, -1, 0, 1};
+    const tm_optimise_options options = {0, thresholds, 0.02, 0, 3};
     tm_optimise_report report;
     tm_error error;
     assert_int_equal(tm_mixed_optimise(&g.mesh, g.rule, &cube, &options, &report, &error),
@@ -544,7 +545,7 @@ static void test_thresholds(void **state)
     assert_true(bad > 0);
     assert_int_equal(report.bad_after, 0);
     for (size_t e = 0; e < g.mesh.elements; e += 7)
-        assert_true(quality(&g, e) >= 0.3);
+        assert_true(quality(&g, e) >= 0.25);
     free(thresholds);
     free_grid(&g);
 }
