@@ -25,7 +25,7 @@ typedef struct pass {
 static const pass passes[] = {
     {0, false, 0}, {1, false, 0}, {0, true, 0}, {1, true, 0}, {2, false, 0}};
 static const pass last_passes[] = {
-    {0, true, 0.1}, {0, true, 0.3}, {1, true, 0.1}, {1, true, 0.3}};
+    {0, true, 0.1}, {0, true, 0.3}, {1, true, 0.1}, {1, true, 0.3}, {2, true, 0.1}};
 enum {
     PASSES = sizeof passes / sizeof *passes,
     LAST_PASSES = sizeof last_passes / sizeof *last_passes

@@ -273,7 +273,7 @@ static void check(const grid *g, const tm_boundary *boundary, double threshold,
 
 static tm_optimise_report optimise(grid *g, const tm_boundary *boundary, double threshold)
 {
-    const tm_optimise_options options = {threshold, NULL, threshold, 0, 1};
+    const tm_optimise_options options = {threshold, NULL, threshold, 0, 3};
     tm_optimise_report report;
     tm_error error;
     assert_int_equal(
