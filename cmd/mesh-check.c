@@ -2,6 +2,7 @@
 /* mesh-check: what is wrong with a mesh, as exit status and as a list. */
 #include "common/filter.h"
 
+#include "../lib/mixed/mixed_examine.h"
 #include "../lib/poly/poly_examine.h"
 #include "../lib/tet/examine.h"
 
@@ -9,24 +10,25 @@
 
 static const struct option long_options[] = {FILTER_OPTIONS};
 
-/* Elements that are not examined: an error where they are all that there is. */
-static void refuse_other_elements(const filter *f, const tm_stream *stream)
+/* The blocks of elements; the first that there is, is examined. */
+static const char *const element_block[] = {".ele", ".cell", ".mix"};
+enum { TETRAHEDRA, POLYHEDRA, MIXED, ELEMENT_BLOCKS };
+
+/* Which elements are examined, with a note for each other block; tetrahedra, of which
+ * there are none, where there is no block. */
+static int choose(const filter *f, const tm_stream *stream)
 {
-    const bool tetrahedra = tm_stream_find(stream, ".ele");
-    const bool polyhedra = tm_stream_find(stream, ".cell");
-    if (tetrahedra && polyhedra)
-        filter_note(f, "%s: .cell is not examined, only .ele", filter_input_name(f));
-    if (!tm_stream_find(stream, ".mix"))
-        return;
-    if (tetrahedra || polyhedra) {
-        filter_note(f, "%s: .mix is not examined, only %s", filter_input_name(f),
-                    tetrahedra ? ".ele" : ".cell");
-        return;
+    int chosen = ELEMENT_BLOCKS;
+    for (int i = 0; i < ELEMENT_BLOCKS; i++) {
+        if (!tm_stream_find(stream, element_block[i]))
+            continue;
+        if (chosen == ELEMENT_BLOCKS)
+            chosen = i;
+        else
+            filter_note(f, "%s: %s is not examined, only %s", filter_input_name(f),
+                        element_block[i], element_block[chosen]);
     }
-    tm_error error;
-    tm_fail_at(&error, TM_ERROR_INPUT, filter_input_name(f), 0, ".mix",
-               "mesh-check reads tetrahedra (.ele) or polyhedra (.cell)");
-    filter_fail(f, &error);
+    return chosen == ELEMENT_BLOCKS ? TETRAHEDRA : chosen;
 }
 
 static tm_tet_arrays arrays_of(const tm_stream *stream)
@@ -59,9 +61,13 @@ static void examine(const filter *f, const tm_stream *stream, tm_examination *fo
 {
     tm_error error;
     tm_status status;
-    if (tm_stream_find(stream, ".cell") && !tm_stream_find(stream, ".ele")) {
+    const int chosen = choose(f, stream);
+    if (chosen == POLYHEDRA) {
         const tm_poly_arrays mesh = tm_poly_arrays_of(stream);
         status = tm_poly_examine(found, &mesh, f->threads, &error);
+    } else if (chosen == MIXED) {
+        const tm_mixed_arrays mesh = tm_mixed_arrays_of(stream);
+        status = tm_mixed_examine(found, &mesh, f->threads, &error);
     } else {
         const tm_tet_arrays mesh = arrays_of(stream);
         status = tm_tet_examine(found, &mesh, f->threads, &error);
@@ -100,10 +106,10 @@ int main(int argc, char **argv)
         .name = "mesh-check",
         .synopsis = "[FILE]",
         .purpose =
-            "Says what is wrong with a mesh of tetrahedra or polyhedra: inverted,\n"
-            "flat and overlapping ones, polyhedra that are not closed, a boundary\n"
-            "that is not closed or not manifold, duplicate nodes. Exit status 1 if\n"
-            "anything is.",
+            "Says what is wrong with a mesh of tetrahedra, polyhedra or mixed elements:\n"
+            "inverted, flat and overlapping ones, faces that do not match, polyhedra\n"
+            "that are not closed, a boundary that is not closed or not manifold,\n"
+            "duplicate nodes. Exit status 1 if anything is.",
         .help = "",
         .options = long_options,
         .letters = FILTER_LETTERS,
@@ -116,7 +122,6 @@ int main(int argc, char **argv)
 
     tm_stream stream;
     filter_read(&f, &stream);
-    refuse_other_elements(&f, &stream);
     tm_examination found;
     examine(&f, &stream, &found);
     write_report(&f, &found, stream.base);

@@ -6,8 +6,11 @@
 
 #include "../lib/base/json.h"
 #include "../lib/octree/octree_mesh_stream.h"
+#include "../lib/octree/resolve.h"
 #include "../lib/quality/jens.h"
+#include "../lib/surface/thin_place.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 enum { FEATURE_ANGLE = FILTER_OWN, RESOLVE, LENIENT };
@@ -38,7 +41,9 @@ static const char own_help[] =
     "  -l, --leaves FILE   split the octants whose numbers are in FILE once more\n"
     "  -u, --levels        elements have the level of their octant as attribute\n"
     "      --feature-angle DEG\n"
-    "                      an edge is kept where it is sharper (default 40)\n"
+    "                      an edge is kept where it is sharper (default 40, and none "
+    "if\n"
+    "                      the surface is rough all over)\n"
     "      --resolve N     up to N levels more where a thin part or a gap of the "
     "surface\n"
     "                      would be lost (default 1)\n"
@@ -55,15 +60,18 @@ typedef struct {
 
 static settings read_options(filter *f)
 {
-    settings o = {.surface = {.feature_angle = default_angle}, .resolve = 1};
+    settings o = {.surface = {.feature_angle = default_angle, .unless_rough = true},
+                  .resolve = 1};
     const unsigned default_level = 5;
     int c;
     while ((c = filter_option(f)) != -1) {
         if (c == 'u')
             o.levels = true;
         else if (c == FEATURE_ANGLE)
-            o.surface.feature_angle =
-                filter_number(f, "--feature-angle", optarg, 0, straight_angle);
+            o.surface =
+                (tm_surface_options){.feature_angle = filter_number(
+                                         f, "--feature-angle", optarg, 0, straight_angle),
+                                     .lenient = o.surface.lenient};
         else if (c == RESOLVE)
             o.resolve =
                 (unsigned)filter_integer(f, "--resolve", optarg, 0, TM_OCTREE_LEVEL_MAX);
@@ -77,9 +85,25 @@ static settings read_options(filter *f)
     return o;
 }
 
-/* What of the surface could not be made, and where. */
+/* The boundary is not what the surface is: a handle or a piece is lost, or one too much. */
+static void note_topology(const filter *f, const tm_surface *s,
+                          const tm_octree_mesh_report *r, double leaf_side)
+{
+    double at[3];
+    char place[128] = "";
+    if (tm_surface_thin_place(s, 2 * leaf_side, at))
+        snprintf(place, sizeof place, ", as near (%g, %g, %g)", at[0], at[1], at[2]);
+    filter_note(f,
+                "the boundary has %zu components and Euler number %lld, the surface %zu "
+                "and %lld: a part or a gap of it is too thin for this level%s",
+                r->components, (long long)r->euler, s->components, (long long)s->euler,
+                place);
+}
+
+/* What of the surface could not be made, and where; leaf_side is that of the smallest
+ * octants. */
 static void note_losses(const filter *f, const tm_surface *s,
-                        const tm_octree_mesh_report *r)
+                        const tm_octree_mesh_report *r, double leaf_side)
 {
     if (r->lost)
         filter_note(f,
@@ -88,11 +112,7 @@ static void note_losses(const filter *f, const tm_surface *s,
                     "keep it",
                     r->lost, r->lost_at[0], r->lost_at[1], r->lost_at[2]);
     if (r->components != s->components || r->euler != s->euler)
-        filter_note(f,
-                    "the boundary has %zu components and Euler number %lld, the surface "
-                    "%zu and %lld: something is too thin for this level",
-                    r->components, (long long)r->euler, s->components,
-                    (long long)s->euler);
+        note_topology(f, s, r, leaf_side);
     if (r->corners_lost + r->curves_lost)
         filter_note(f,
                     "%zu corners and %zu sharp edges of the surface are too close "
@@ -106,6 +126,15 @@ static void note_losses(const filter *f, const tm_surface *s,
                     r->held_back);
     if (r->invalid)
         filter_note(f, "%zu elements are inverted", r->invalid);
+}
+
+static double smallest_side(const tm_octree *octree)
+{
+    double side = octree->side;
+    for (size_t l = 0; l < octree->leaves; l++)
+        if (tm_leaf_side(octree, &octree->leaf[l]) < side)
+            side = tm_leaf_side(octree, &octree->leaf[l]);
+    return side;
 }
 
 static void write_json(filter *f, const tm_octree *octree, const tm_octree_mesh *mesh)
@@ -161,11 +190,10 @@ int main(int argc, char **argv)
     surface_input_build(&f, &o.surface, &surface, &stream);
     if (tm_octree_build(&octree, &surface, o.rules.rules.rule, o.rules.rules.count,
                         &error) != TM_OK ||
-        tm_octree_resolve(&octree, &surface, o.resolve, &error) != TM_OK ||
-        tm_octree_mesh_make(&mesh, &octree, &surface, &error) != TM_OK)
+        tm_octree_mesh_resolve(&mesh, &octree, &surface, o.resolve, &error) != TM_OK)
         filter_fail(&f, &error);
     octree_rules_free(&o.rules);
-    note_losses(&f, &surface, &mesh.report);
+    note_losses(&f, &surface, &mesh.report, smallest_side(&octree));
     if (f.json)
         write_json(&f, &octree, &mesh);
     const size_t nodes = mesh.assembly.mesh.nodes;

@@ -84,8 +84,8 @@ floor() {
     case $1 in
     base) echo 0 ;;
     geom | stream) echo 1 ;;
-    quality | surface | format) echo 2 ;;
-    tet | poly | mixed | octree) echo 3 ;;
+    quality | mixed | surface | format) echo 2 ;;
+    tet | poly | octree) echo 3 ;;
     *) echo unknown ;;
     esac
 }

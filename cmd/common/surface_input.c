@@ -2,25 +2,15 @@
 #include "surface_input.h"
 
 #include "../../lib/base/file.h"
+#include "../../lib/format/cell_faces.h"
 #include "../../lib/format/tetgen_poly.h"
+#include "import_file.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <unistd.h>
-
-static tm_status read_file(const char *file, tm_text *bytes, tm_error *error)
-{
-    int fd = open(file, O_RDONLY | O_CLOEXEC);
-    if (fd < 0)
-        return tm_fail_at(error, TM_ERROR_SYSTEM, file, 0, NULL, "cannot open: %s",
-                          strerror(errno));
-    tm_status status = tm_read_all(fd, file, bytes, error);
-    close(fd);
-    return status;
-}
 
 /* The name with .node for its suffix. */
 static void node_file(const char *name, tm_text *file)
@@ -41,7 +31,7 @@ static tm_status read_nodes_beside(const filter *f, tm_polygon_surface *surface,
     tm_text file = {0}, bytes = {0};
     node_file(f->input, &file);
     tm_status status =
-        file.failed ? tm_fail_memory(error) : read_file(file.byte, &bytes, error);
+        file.failed ? tm_fail_memory(error) : import_file(file.byte, &bytes, error);
     if (status == TM_OK)
         status =
             tm_poly_read(surface, TM_POLY_NODE, bytes.byte, bytes.size, file.byte, error);
@@ -92,15 +82,27 @@ static tm_status copy_nodes(const tm_block *node, tm_polygon_surface *surface,
     return status;
 }
 
-static tm_status take_surface(const tm_stream *stream, const char *name,
+/* A main mesh that is triangles alone becomes the part `surface`, unless there is one. */
+static void rename_surface(tm_stream *stream)
+{
+    if (tm_stream_find(stream, "surface.node") ||
+        tm_stream_find(stream, "surface.face") ||
+        tm_content_of(stream) != TM_CONTENT_SURFACE)
+        return;
+    strcpy(tm_stream_find(stream, ".node")->name, "surface.node");
+    strcpy(tm_stream_find(stream, ".face")->name, "surface.face");
+}
+
+static tm_status take_surface(tm_stream *stream, const char *name,
                               tm_polygon_surface *surface, tm_error *error)
 {
+    rename_surface(stream);
     const tm_block *node = tm_stream_find(stream, "surface.node");
     const tm_block *face = tm_stream_find(stream, "surface.face");
     if (!node)
         return tm_fail_at(error, TM_ERROR_INPUT, name, 0, "surface.node",
                           "the stream has no such block (the surface would be in it and "
-                          "surface.face)");
+                          "surface.face, or in .node and .face alone)");
     surface->base = stream->base;
     tm_status status = copy_nodes(node, surface, error);
     if (status == TM_OK && face)
@@ -156,6 +158,8 @@ static void note_mending(const filter *f, const tm_surface *s)
         filter_note(f, "%s: %zu triangles without area are dropped", name, s->flat);
     if (s->open_edges)
         filter_note(f, "%s: the surface is open at %zu edges", name, s->open_edges);
+    if (s->rough)
+        filter_verbose(f, "%s: the surface is rough: no edge is kept as sharp", name);
     if (s->crossings)
         filter_note(f, "%s: the surface crosses itself at %zu pairs of triangles", name,
                     s->crossings);

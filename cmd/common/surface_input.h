@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A filter's input where that is a surface: a foreign file of any format that is read,
- * or the part `surface` of a stream. */
+ * or the part `surface` of a stream, or a stream whose main mesh is a surface. */
 #ifndef CMD_COMMON_SURFACE_INPUT_H
 #define CMD_COMMON_SURFACE_INPUT_H
 
@@ -9,7 +9,8 @@
 #include "filter.h"
 
 /* Reads FILE or standard input; exits on failure. Of a stream, its blocks and history
- * are in *stream, and surface.node and surface.face in *surface as well; else *stream is
+ * are in *stream, and surface.node and surface.face in *surface as well; where it has
+ * none of them and is .node and .face alone, these have become they. Else *stream is
  * empty. The nodes of a .poly or .smesh file may be in the .node file beside it. */
 tm_format surface_input_read(const filter *f, tm_polygon_surface *surface,
                              tm_stream *stream);

@@ -4,6 +4,7 @@
 #include "../base/array.h"
 #include "../geom/predicates.h"
 #include "../geom/vector.h"
+#include "../mixed/mixed_shape.h"
 #include "polygon_table.h"
 
 #include <stdlib.h>
@@ -11,7 +12,7 @@
 
 #define FAIL(block, ...) tm_fail_at(error, TM_ERROR_INPUT, NULL, 0, block, __VA_ARGS__)
 
-enum { TRIANGLE = 3, QUADRILATERAL = 4, ELEMENT_NODES_MAX = 8, ELEMENT_FACES_MAX = 6 };
+enum { TRIANGLE = 3 };
 
 static const struct {
     const char *block;
@@ -43,32 +44,6 @@ tm_block *tm_content_block(const tm_stream *stream, tm_content content)
 
 /* Elements ------------------------------------------------------------------------- */
 
-/* The faces of an element with its nodes in VTK's order (vtkTetra, vtkPyramid, vtkWedge
- * and vtkHexahedron, GetFaceArray), outward where its volume is positive. Three nodes
- * are a triangle: the fourth is the first again. */
-typedef struct element_shape {
-    unsigned char faces;
-    unsigned char node[ELEMENT_FACES_MAX][QUADRILATERAL];
-} element_shape;
-
-static const element_shape shapes[ELEMENT_NODES_MAX + 1] = {
-    [4] = {4, {{0, 1, 3, 0}, {1, 2, 3, 1}, {2, 0, 3, 2}, {0, 2, 1, 0}}},
-    [5] = {5, {{0, 3, 2, 1}, {0, 1, 4, 0}, {1, 2, 4, 1}, {2, 3, 4, 2}, {3, 0, 4, 3}}},
-    [6] = {5, {{0, 1, 2, 0}, {3, 5, 4, 3}, {0, 3, 4, 1}, {1, 4, 5, 2}, {2, 5, 3, 0}}},
-    [8] = {6,
-           {{0, 4, 7, 3},
-            {1, 2, 6, 5},
-            {0, 1, 5, 4},
-            {3, 7, 6, 2},
-            {0, 3, 2, 1},
-            {4, 5, 6, 7}}},
-};
-
-static size_t face_nodes(const unsigned char face[QUADRILATERAL])
-{
-    return face[3] == face[0] ? TRIANGLE : QUADRILATERAL;
-}
-
 typedef struct finder {
     tm_cell_faces *faces;
     const double (*xyz)[3];
@@ -92,13 +67,13 @@ static const uint32_t *nodes_of(const finder *find, size_t e, size_t *k)
 
 /* Six times the volume that the fans of triangles of all faces enclose, as seen from the
  * first node. */
-static double volume6(const finder *find, const uint32_t *v, const element_shape *shape)
+static double volume6(const finder *find, const uint32_t *v, const tm_mixed_shape *shape)
 {
     double volume = 0;
     const double *origin = find->xyz[v[0]];
     for (size_t i = 0; i < shape->faces; i++) {
-        const unsigned char *face = shape->node[i];
-        for (size_t j = 2; j < face_nodes(face); j++) {
+        const uint8_t *face = shape->face[i];
+        for (size_t j = 2; j < tm_mixed_face_nodes(face); j++) {
             double a[3], b[3], c[3], normal[3];
             tm_subtract(a, find->xyz[v[face[0]]], origin);
             tm_subtract(b, find->xyz[v[face[j - 1]]], origin);
@@ -118,7 +93,7 @@ static int sign_of(const finder *find, size_t e)
     if (k == 4)
         return tm_orient3d(find->xyz[v[0]], find->xyz[v[1]], find->xyz[v[2]],
                            find->xyz[v[3]]);
-    double volume = volume6(find, v, &shapes[k]);
+    double volume = volume6(find, v, &tm_mixed_shapes[k]);
     return (volume > 0) - (volume < 0);
 }
 
@@ -172,11 +147,11 @@ static tm_status meet(finder *find, uint32_t f, const uint32_t *polygon, size_t 
 }
 
 /* Appends a face of element e as a facet, or finds the one that it is. */
-static tm_status add_face(finder *find, const uint32_t *v, const unsigned char *face,
-                          bool turn, uint32_t e, uint32_t *facet, tm_error *error)
+static tm_status add_face(finder *find, const uint32_t *v, const uint8_t *face, bool turn,
+                          uint32_t e, uint32_t *facet, tm_error *error)
 {
     tm_cell_faces *faces = find->faces;
-    size_t k = face_nodes(face), f = faces->facets, begin = faces->start[f];
+    size_t k = tm_mixed_face_nodes(face), f = faces->facets, begin = faces->start[f];
     tm_status status = make_room(find, f + 1, begin + k, error);
     if (status != TM_OK)
         return status;
@@ -199,7 +174,7 @@ static tm_status add_element(finder *find, size_t e, tm_error *error)
 {
     size_t k;
     const uint32_t *v = nodes_of(find, e, &k);
-    const element_shape *shape = &shapes[k];
+    const tm_mixed_shape *shape = &tm_mixed_shapes[k];
     tm_cell_faces *faces = find->faces;
     if (has_node_twice(v, k))
         return FAIL(find->element->name, "element %zu has a node twice", e + find->base);
@@ -207,26 +182,32 @@ static tm_status add_element(finder *find, size_t e, tm_error *error)
     size_t begin = faces->cell_start[e];
     tm_status status = TM_OK;
     for (size_t i = 0; i < shape->faces && status == TM_OK; i++)
-        status = add_face(find, v, shape->node[i], turn, (uint32_t)e,
+        status = add_face(find, v, shape->face[i], turn, (uint32_t)e,
                           &faces->cell_facet[begin + i], error);
     faces->cell_start[e + 1] = begin + shape->faces;
     return status;
 }
 
-/* The markers that .face gives; its rows that are no facet are passed over. */
-static tm_status mark(const finder *find, const tm_block *face, tm_error *error)
+/* The markers that the rows of .face or .facet give; those that are no facet are passed
+ * over. */
+static tm_status mark(const finder *find, const tm_block *rows, tm_error *error)
 {
     tm_cell_faces *faces = find->faces;
-    if (!face || !face->marker)
+    if (!rows || !rows->marker)
         return TM_OK;
-    faces->marker = calloc(faces->facets, sizeof *faces->marker);
+    if (!faces->marker)
+        faces->marker = calloc(faces->facets, sizeof *faces->marker);
     if (!faces->marker)
         return tm_fail_memory(error);
-    for (size_t i = 0; i < face->count; i++) {
-        uint32_t f = tm_polygon_table_find(&find->table, faces->start, faces->node,
-                                           face->integer + TRIANGLE * i, TRIANGLE);
+    for (size_t i = 0; i < rows->count; i++) {
+        const bool is_list = rows->start;
+        const uint32_t *node =
+            is_list ? rows->item + rows->start[i] : rows->integer + TRIANGLE * i;
+        size_t k = is_list ? rows->start[i + 1] - rows->start[i] : TRIANGLE;
+        uint32_t f =
+            tm_polygon_table_find(&find->table, faces->start, faces->node, node, k);
         if (f != TM_NONE)
-            faces->marker[f] = face->marker[i];
+            faces->marker[f] = rows->marker[i];
     }
     return TM_OK;
 }
@@ -234,10 +215,10 @@ static tm_status mark(const finder *find, const tm_block *face, tm_error *error)
 static size_t count_faces(const tm_block *element)
 {
     if (!element->start)
-        return shapes[4].faces * element->count;
+        return tm_mixed_shapes[4].faces * element->count;
     size_t faces = 0;
     for (size_t e = 0; e < element->count; e++)
-        faces += shapes[element->start[e + 1] - element->start[e]].faces;
+        faces += tm_mixed_shapes[element->start[e + 1] - element->start[e]].faces;
     return faces;
 }
 
@@ -263,6 +244,8 @@ static tm_status find_of_elements(tm_cell_faces *faces, const tm_stream *stream,
         status = add_element(&find, e, error);
     if (status == TM_OK)
         status = mark(&find, tm_stream_find(stream, ".face"), error);
+    if (status == TM_OK && element->kind == TM_MIX)
+        status = mark(&find, tm_stream_find(stream, ".facet"), error);
     tm_polygon_table_free(&find.table);
     return status;
 }

@@ -10,7 +10,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* What a stream's main mesh is: the last of these of which it has a row. */
+/* What a stream's main mesh is: the last of these of which it has a row. Rows of .facet
+ * without .cell do not make polyhedra: they are facets of .mix. */
 typedef enum tm_content {
     TM_CONTENT_NOTHING,
     TM_CONTENT_POINTS,     /* .node alone */
@@ -46,11 +47,11 @@ typedef struct tm_cell_faces {
  * have none. Facets are numbered, and turn, as .facet says; those of elements are
  * numbered in the order in which the elements come, and the first of its elements is side
  * 0. An element that is left-handed is taken as it would be turned. Rows of .face give
- * facets their markers. TM_ERROR_INPUT where three elements meet at a face, or two of
- * which none is flat are on the same side of one, an element has a node twice, or .facet
- * and .cell contradict each other; TM_ERROR_SYSTEM where memory is out or there are 2^32
- * facets. *faces is to be freed, after an error too. For polyhedra the stream must
- * outlive it. Expected O(n). */
+ * facets their markers, and after them those of .facet beside .mix. TM_ERROR_INPUT where
+ * three elements meet at a face, or two of which none is flat are on the same side of
+ * one, an element has a node twice, or .facet and .cell contradict each other;
+ * TM_ERROR_SYSTEM where memory is out or there are 2^32 facets. *faces is to be freed,
+ * after an error too. For polyhedra the stream must outlive it. Expected O(n). */
 tm_status tm_cell_faces_find(tm_cell_faces *faces, const tm_stream *stream,
                              tm_error *error);
 void tm_cell_faces_free(tm_cell_faces *faces);

@@ -32,11 +32,11 @@ static bool same(const double a[3], const double b[3])
     return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
-/* The slot of the point that is as xyz[id], or the free one where it belongs. */
-static size_t find(const tm_point_table *table, double (*xyz)[3], uint32_t id)
+/* The slot of the point at a place, or the free one where it belongs. */
+static size_t find(const tm_point_table *table, double (*xyz)[3], const double place[3])
 {
-    size_t mask = table->slots - 1, s = hash(xyz[id]) & mask;
-    while (table->slot[s] != UINT32_MAX && !same(xyz[table->slot[s]], xyz[id]))
+    size_t mask = table->slots - 1, s = hash(place) & mask;
+    while (table->slot[s] != UINT32_MAX && !same(xyz[table->slot[s]], place))
         s = (s + 1) & mask;
     return s;
 }
@@ -54,7 +54,7 @@ static bool make_room(tm_point_table *table, double (*xyz)[3])
     memset(wider.slot, UINT8_MAX, wider.slots * sizeof *wider.slot);
     for (size_t s = 0; s < table->slots; s++)
         if (table->slot[s] != UINT32_MAX)
-            wider.slot[find(&wider, xyz, table->slot[s])] = table->slot[s];
+            wider.slot[find(&wider, xyz, xyz[table->slot[s]])] = table->slot[s];
     free(table->slot);
     *table = wider;
     return true;
@@ -65,13 +65,19 @@ bool tm_point_table_join(tm_point_table *table, double (*xyz)[3], uint32_t id,
 {
     if (!make_room(table, xyz))
         return false;
-    size_t s = find(table, xyz, id);
+    size_t s = find(table, xyz, xyz[id]);
     if (table->slot[s] == UINT32_MAX) {
         table->slot[s] = id;
         table->points++;
     }
     *first = table->slot[s];
     return true;
+}
+
+uint32_t tm_point_table_find(const tm_point_table *table, double (*xyz)[3],
+                             const double place[3])
+{
+    return table->slots > 0 ? table->slot[find(table, xyz, place)] : UINT32_MAX;
 }
 
 void tm_point_table_free(tm_point_table *table)

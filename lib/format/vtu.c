@@ -6,22 +6,12 @@
 #include "../quality/tet_quality.h"
 #include "binary.h"
 #include "cell_faces.h"
+#include "vtk_cell_type.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
-
-/* VTK's numbers of cell types (vtkCellType.h). */
-enum {
-    VTK_VERTEX = 1,
-    VTK_TRIANGLE = 5,
-    VTK_TETRA = 10,
-    VTK_HEXAHEDRON = 12,
-    VTK_WEDGE = 13,
-    VTK_PYRAMID = 14,
-    VTK_POLYHEDRON = 42
-};
 
 enum { BLOCK_BYTES = 1 << 17, HEADER_BYTES = 8, TRIANGLE = 3, TETRAHEDRON = 4 };
 

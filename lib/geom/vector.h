@@ -63,6 +63,31 @@ static inline double tm_triangle_area(const double a[3], const double b[3],
     return tm_norm(normal) / 2;
 }
 
+/* The area of the bilinear surface with the corners a b c d in cyclic order: the length
+ * of its normal, which is linear along its lines, by 2 × 2 Gauss points. Exact where the
+ * quadrilateral is plane and convex; where d is by h times the side of a square off the
+ * plane of the others, the error is below 2e-3 h^4 of the area (h <= 1/2). */
+static inline double tm_bilinear_area(const double a[3], const double b[3],
+                                      const double c[3], const double d[3])
+{
+    const double weight = 0.25;
+    const double gauss = 0.211324865405187117745; /* (1 - 1/sqrt(3)) / 2 */
+    double area = 0;
+    for (int i = 0; i < 4; i++) {
+        const double u = i & 1 ? gauss : 1 - gauss, v = i & 2 ? gauss : 1 - gauss;
+        double along_u[3];
+        double along_v[3];
+        double normal[3];
+        for (int j = 0; j < 3; j++) {
+            along_u[j] = (1 - v) * (b[j] - a[j]) + v * (c[j] - d[j]);
+            along_v[j] = (1 - u) * (d[j] - a[j]) + u * (c[j] - b[j]);
+        }
+        tm_cross(normal, along_u, along_v);
+        area += tm_norm(normal);
+    }
+    return weight * area;
+}
+
 /* The volume, positive where d lies on the side that (b-a) × (c-a) points to. */
 static inline double tm_tet_volume(const double a[3], const double b[3],
                                    const double c[3], const double d[3])

@@ -57,6 +57,8 @@ typedef struct tm_optimise_options {
                                  0: none may */
     unsigned effort; /* how often what remains is tried again, from other places; 1 is
                         usual, 0 half as slow where much remains */
+    size_t most_measured; /* no more is begun once so many elements were measured in all;
+                             0: no limit */
 } tm_optimise_options;
 
 typedef struct tm_optimise_report {
@@ -68,6 +70,7 @@ typedef struct tm_optimise_report {
     size_t released;    /* of these: that had to leave their corner, curve or patch */
     size_t clusters;    /* of bad elements that were worked on, each time counted */
     size_t evaluations; /* of the objective */
+    size_t measured;    /* elements, in all of these */
 } tm_optimise_report;
 
 /* Raises J_ENS of bad elements by moving nodes up to three elements away from them, and

@@ -119,6 +119,7 @@ static void measure_jens(tm_cluster *cluster)
 double tm_cluster_value(tm_cluster *cluster, tm_objective objective)
 {
     cluster->evaluations++;
+    cluster->measured += cluster->elements;
     if (!objective.untangle)
         return value_of_missing(cluster, objective.number);
     measure_jens(cluster);

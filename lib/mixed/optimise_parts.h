@@ -71,6 +71,7 @@ typedef struct tm_cluster {
 
     tm_score first, best_score;
     size_t evaluations;
+    size_t measured; /* elements, in all of them */
 } tm_cluster;
 
 /* Pairs of steps and differences that L-BFGS remembers, and its other vectors. */

@@ -16,7 +16,6 @@ typedef struct {
     const tm_solid *solid;
     const tm_skin *skin;
     tm_assembly *assembly;
-    uint32_t *core_node; /* [nodes of the octree]: of the mesh */
     bool counting;       /* nothing is written yet */
     size_t face, middles, elements, items; /* so far */
 } assembler;
@@ -24,20 +23,20 @@ typedef struct {
 static tm_status number_core(assembler *a, tm_error *error)
 {
     tm_assembly *to = a->assembly;
-    a->core_node = tm_new(a->octree->nodes, sizeof *a->core_node);
+    a->assembly->core_node = tm_new(a->octree->nodes, sizeof *a->assembly->core_node);
     to->inner = tm_new(a->skin->nodes, sizeof *to->inner);
-    if (!a->core_node || !to->inner)
+    if (!a->assembly->core_node || !to->inner)
         return tm_fail_memory(error);
     for (size_t n = 0; n < a->octree->nodes; n++)
-        a->core_node[n] = a->solid->used[n] ? (uint32_t)to->core++ : TM_NONE;
+        a->assembly->core_node[n] = a->solid->used[n] ? (uint32_t)to->core++ : TM_NONE;
     to->grid_node = tm_new(to->core, sizeof *to->grid_node);
     if (!to->grid_node)
         return tm_fail_memory(error);
     for (size_t n = 0; n < a->octree->nodes; n++)
-        if (a->core_node[n] != TM_NONE)
-            to->grid_node[a->core_node[n]] = (uint32_t)n;
+        if (a->assembly->core_node[n] != TM_NONE)
+            to->grid_node[a->assembly->core_node[n]] = (uint32_t)n;
     for (size_t s = 0; s < a->skin->nodes; s++)
-        to->inner[s] = a->core_node[a->skin->grid_node[s]];
+        to->inner[s] = a->assembly->core_node[a->skin->grid_node[s]];
     to->outer = (uint32_t)to->core;
     return TM_OK;
 }
@@ -56,12 +55,11 @@ static tm_status allocate(const assembler *a, tm_error *error)
     mesh->xyz = tm_new(mesh->nodes, sizeof *mesh->xyz);
     mesh->start = tm_new(mesh->elements + 1, sizeof *mesh->start);
     mesh->item = tm_new(a->items, sizeof *mesh->item);
-    to->base = tm_new(mesh->nodes, sizeof *to->base);
     to->first = tm_new(a->octree->leaves + 1, sizeof *to->first);
     to->middles = a->middles;
     to->middle_leaf = tm_new(a->middles, sizeof *to->middle_leaf);
     to->layer = tm_new(a->skin->faces, sizeof *to->layer);
-    if (!mesh->xyz || !mesh->start || !mesh->item || !to->base || !to->first ||
+    if (!mesh->xyz || !mesh->start || !mesh->item || !to->first ||
         !to->layer || !to->middle_leaf)
         return tm_fail_memory(error);
     return TM_OK;
@@ -78,21 +76,12 @@ static void add_element(assembler *a, unsigned k, const uint32_t *node)
     a->items += k;
 }
 
-/* A node at the mean of a leaf's corners. */
-static uint32_t new_middle(assembler *a, size_t l, const uint32_t corner[LEAF_CORNERS])
+/* A node in the middle of leaf l. */
+static uint32_t new_middle(assembler *a, size_t l)
 {
-    const size_t node = a->assembly->core + a->skin->nodes + a->middles;
     if (!a->counting)
         a->assembly->middle_leaf[a->middles] = (uint32_t)l;
-    a->middles++;
-    double(*xyz)[3] = a->assembly->mesh.xyz;
-    for (int i = 0; !a->counting && i < 3; i++) {
-        double sum = 0;
-        for (unsigned c = 0; c < LEAF_CORNERS; c++)
-            sum += xyz[corner[c]][i];
-        xyz[node][i] = sum / LEAF_CORNERS;
-    }
-    return (uint32_t)node;
+    return (uint32_t)(a->assembly->core + a->skin->nodes + a->middles++);
 }
 
 /* The element between a face of a leaf, whose k nodes turn counter-clockwise seen from
@@ -117,7 +106,7 @@ static bool is_next(const assembler *a, size_t face, size_t l, unsigned piece)
 static void add_star(assembler *a, size_t l, const uint32_t at[TM_LEAF_NODES])
 {
     const tm_leaf_state state = tm_solid_leaf_state(a->solid, a->octree, l);
-    const uint32_t middle = new_middle(a, l, at);
+    const uint32_t middle = new_middle(a, l);
     size_t next = a->face;
     for (unsigned f = 0; f < LEAF_FACES; f++) {
         tm_piece piece[TM_FACE_PIECES];
@@ -155,14 +144,14 @@ static void add_leaf(assembler *a, size_t l)
     uint32_t at[TM_LEAF_CENTRE + 1];
     for (int p = 0; p < TM_LEAF_NODES; p++) {
         const uint32_t node = a->octree->node[l][p];
-        at[p] = node == TM_NONE ? TM_NONE : a->core_node[node];
+        at[p] = node == TM_NONE ? TM_NONE : a->assembly->core_node[node];
     }
     if (has_cut(a, l)) {
         add_star(a, l, at);
         return;
     }
     const tm_transition t = tm_transition_of(tm_solid_leaf_state(a->solid, a->octree, l));
-    at[TM_LEAF_CENTRE] = t.centre ? new_middle(a, l, at) : TM_NONE;
+    at[TM_LEAF_CENTRE] = t.centre ? new_middle(a, l) : TM_NONE;
     for (unsigned i = 0; i < t.pieces; i++) {
         uint32_t node[MOST_NODES];
         for (unsigned c = 0; c < t.piece[i].k; c++)
@@ -221,35 +210,18 @@ static void add_all(assembler *a, bool counting)
     }
 }
 
-/* Puts all nodes but the middles where they are to begin. */
-static tm_status place_nodes(assembler *a, tm_error *error)
+/* All nodes on the lattice. */
+static void place_nodes(const assembler *a)
 {
-    tm_assembly *to = a->assembly;
+    const tm_assembly *to = a->assembly;
     double(*xyz)[3] = to->mesh.xyz;
     for (size_t n = 0; n < to->core; n++)
         tm_octree_point(a->octree, a->octree->grid[to->grid_node[n]], xyz[n]);
     for (size_t s = 0; s < a->skin->nodes; s++)
         memcpy(xyz[to->outer + s], xyz[to->inner[s]], sizeof *xyz);
-    /* The finest leaf at each node of the skin. */
-    uint8_t *level = calloc(a->skin->nodes + 1, 1);
-    if (!level)
-        return tm_fail_memory(error);
-    for (size_t f = 0; f < a->skin->faces; f++)
-        for (unsigned i = 0; i < tm_skin_corners(a->skin, f); i++) {
-            const uint32_t s = a->skin->face[f][i];
-            const uint8_t here = a->octree->leaf[a->skin->leaf[f]].level;
-            level[s] = here > level[s] ? here : level[s];
-        }
-    const double share = 0.3;
-    for (size_t s = 0; s < a->skin->nodes; s++) {
-        int outward[3];
-        tm_octant_mask_outward(a->solid->mask[a->skin->grid_node[s]], outward);
-        const double step = share * a->octree->side / (double)((uint32_t)1 << level[s]);
-        for (int i = 0; i < 3; i++)
-            xyz[to->inner[s]][i] -= step * outward[i];
-    }
-    free(level);
-    return TM_OK;
+    for (size_t m = 0; m < to->middles; m++)
+        tm_leaf_centre(a->octree, &a->octree->leaf[to->middle_leaf[m]],
+                       xyz[to->core + a->skin->nodes + m]);
 }
 
 tm_status tm_assemble(tm_assembly *assembly, const tm_octree *octree,
@@ -262,16 +234,12 @@ tm_status tm_assemble(tm_assembly *assembly, const tm_octree *octree,
         add_all(&a, true);
         status = allocate(&a, error);
     }
-    if (status == TM_OK)
-        status = place_nodes(&a, error);
     if (status == TM_OK) {
         add_all(&a, false);
         assembly->first[octree->leaves] = (uint32_t)a.elements;
         assembly->mesh.start[a.elements] = a.items;
-        memcpy(assembly->base, assembly->mesh.xyz,
-               assembly->mesh.nodes * sizeof *assembly->base);
+        place_nodes(&a);
     }
-    free(a.core_node);
     return status;
 }
 
@@ -280,11 +248,11 @@ void tm_assembly_free(tm_assembly *assembly)
     free(assembly->mesh.xyz);
     free(assembly->mesh.start);
     free(assembly->mesh.item);
-    free(assembly->base);
     free(assembly->middle_leaf);
     free(assembly->first);
     free(assembly->layer);
     free(assembly->inner);
+    free(assembly->core_node);
     free(assembly->grid_node);
     *assembly = (tm_assembly){0};
 }

@@ -2,6 +2,7 @@
 #include "brick.h"
 
 #include "../base/array.h"
+#include "p4est_call.h"
 
 #include <math.h>
 #include <p8est_connectivity.h>
@@ -45,6 +46,13 @@ tm_status tm_brick_over(tm_brick *brick, const double low[3], const double high[
     return tm_brick_fill(brick, error);
 }
 
+static void make_trees(void *user)
+{
+    tm_brick *brick = user;
+    brick->trees = p8est_connectivity_new_brick(
+        (int)brick->roots[0], (int)brick->roots[1], (int)brick->roots[2], 0, 0, 0);
+}
+
 tm_status tm_brick_fill(tm_brick *brick, tm_error *error)
 {
     brick->count = (size_t)brick->roots[0] * brick->roots[1] * brick->roots[2];
@@ -52,17 +60,15 @@ tm_status tm_brick_fill(tm_brick *brick, tm_error *error)
         return tm_fail(error, TM_ERROR_INPUT, "%zu root cubes are too many (%zu)",
                        brick->count, roots_max);
     brick->root = tm_new(brick->count, sizeof *brick->root);
-    if (!brick->root)
-        return tm_fail_memory(error);
-    brick->trees = p8est_connectivity_new_brick(
-        (int)brick->roots[0], (int)brick->roots[1], (int)brick->roots[2], 0, 0, 0);
+    const tm_status status =
+        brick->root ? tm_p4est_call(make_trees, brick, error) : tm_fail_memory(error);
     /* The first vertex of a tree is its low corner. */
-    for (size_t r = 0; r < brick->count; r++) {
+    for (size_t r = 0; r < brick->count && status == TM_OK; r++) {
         const size_t v = (size_t)brick->trees->tree_to_vertex[P8EST_CHILDREN * r];
         for (size_t i = 0; i < 3; i++)
             brick->root[r][i] = (uint32_t)brick->trees->vertices[3 * v + i];
     }
-    return TM_OK;
+    return status;
 }
 
 tm_status tm_brick_of(tm_brick *brick, const tm_octree *octree, tm_error *error)

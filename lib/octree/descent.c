@@ -173,10 +173,7 @@ static tm_status visit(descent *d, octant *o)
  */
 static tm_status visit_brick(descent *d)
 {
-    octant o = {.shift = TM_OCTREE_FINEST, .part = d->part};
-    for (int i = 0; i < 3; i++)
-        while (d->octree->roots[i] << TM_OCTREE_FINEST > (uint32_t)1 << o.shift)
-            o.shift++;
+    octant o = {.shift = tm_octree_shift(d->octree), .part = d->part};
     tm_octree_box(d->octree, o.anchor, o.shift, o.low, o.high);
     for (size_t s = 0; s < d->sources; s++)
         o.part[s] = (part){.count = d->source[s].surface->triangles};

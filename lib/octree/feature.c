@@ -4,9 +4,12 @@
 #include "../base/array.h"
 #include "../base/disjoint_sets.h"
 #include "../geom/vector.h"
+#include "feature_cut.h"
 #include "feature_path.h"
 #include "feature_region.h"
+#include "feature_select.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,6 +22,7 @@ typedef struct {
 typedef struct {
     tm_path_finder path;
     double *size;
+    tm_feature_choice choice;
     uint32_t *node_of; /* [corners]: the skin node, or TM_NONE */
     size_t candidates, room;
     candidate *candidate;
@@ -39,7 +43,7 @@ static int compare_candidates(const void *a, const void *b)
 
 static void consider(void *context, uint32_t s)
 {
-    const double reach = 1.75; /* sides of a leaf */
+    const double reach = 3.5; /* sides of a leaf */
     finder *find = context;
     const tm_octree *octree = find->path.octree;
     const tm_surface *surface = find->path.surface;
@@ -71,8 +75,9 @@ static tm_status find_corners(finder *find, tm_error *error)
     for (size_t c = 0; c < surface->corners; c++) {
         find->node_of[c] = TM_NONE;
         find->corner = (uint32_t)c;
-        tm_skin_cells_near(find->path.cells, surface->xyz[surface->corner[c]], consider,
-                           find);
+        if (find->choice.corner[c])
+            tm_skin_cells_near(find->path.cells, surface->xyz[surface->corner[c]],
+                               consider, find);
     }
     if (find->no_memory)
         return tm_fail_memory(error);
@@ -89,22 +94,11 @@ static tm_status find_corners(finder *find, tm_error *error)
         feature->of[c->node] = c->corner;
     }
     for (size_t c = 0; c < surface->corners; c++)
-        if (find->node_of[c] == TM_NONE) {
+        if (find->node_of[c] == TM_NONE && find->choice.corner[c]) {
             feature->corners_lost++;
             feature->lost = surface->corner[c];
         }
     return TM_OK;
-}
-
-/* Surface node -> corner, TM_NONE for those that are none. */
-static uint32_t *corner_table(const tm_surface *surface)
-{
-    uint32_t *table = tm_new(surface->nodes, sizeof *table);
-    for (size_t n = 0; table && n < surface->nodes; n++)
-        table[n] = TM_NONE;
-    for (size_t c = 0; table && c < surface->corners; c++)
-        table[surface->corner[c]] = (uint32_t)c;
-    return table;
 }
 
 /* Joins the patches on the two sides of a curve. */
@@ -119,9 +113,9 @@ static void join_patches(const tm_surface *surface, uint32_t *parent, uint32_t c
 static tm_status find_curves(finder *find, tm_surface *surface, tm_error *error)
 {
     tm_feature *feature = find->path.feature;
-    uint32_t *corner_of = corner_table(surface);
+    const uint32_t *corner_of = find->choice.corner_of;
     uint32_t *parent = tm_new(surface->patches, sizeof *parent);
-    tm_status status = corner_of && parent ? TM_OK : tm_fail_memory(error);
+    tm_status status = parent ? TM_OK : tm_fail_memory(error);
     for (size_t p = 0; parent && p < surface->patches; p++)
         parent[p] = (uint32_t)p;
     for (uint32_t c = 0; status == TM_OK && c < surface->curves; c++) {
@@ -129,6 +123,10 @@ static tm_status find_curves(finder *find, tm_surface *surface, tm_error *error)
         const size_t last = surface->curve_start[c + 1] - surface->curve_start[c] - 1;
         const uint32_t from = corner_of[node[0]], to = corner_of[node[last]];
         bool found = false;
+        if (!find->choice.curve[c]) {
+            join_patches(surface, parent, c);
+            continue;
+        }
         const bool has_ends = (from == TM_NONE || find->node_of[from] != TM_NONE) &&
                               (to == TM_NONE || find->node_of[to] != TM_NONE);
         if (has_ends)
@@ -143,7 +141,6 @@ static tm_status find_curves(finder *find, tm_surface *surface, tm_error *error)
     }
     for (size_t t = 0; status == TM_OK && t < surface->triangles; t++)
         surface->patch[t] = tm_set_root(parent, surface->patch[t]);
-    free(corner_of);
     free(parent);
     return status;
 }
@@ -164,6 +161,46 @@ static double *find_sizes(const tm_skin *skin, const tm_octree *octree)
     return size;
 }
 
+/* The skin node closest to a point. */
+typedef struct {
+    const finder *find;
+    const double *point;
+    double distance2;
+    uint32_t node;
+} nearest;
+
+static void compare_nearest(void *context, uint32_t s)
+{
+    nearest *n = context;
+    const tm_octree *octree = n->find->path.octree;
+    double xyz[3];
+    tm_octree_point(octree, octree->grid[n->find->path.skin->grid_node[s]], xyz);
+    const double distance2 = tm_distance2(xyz, n->point);
+    if (distance2 < n->distance2 || (distance2 == n->distance2 && s < n->node)) {
+        n->distance2 = distance2;
+        n->node = s;
+    }
+}
+
+/* Chooses curves by the size of the leaves near the middle of each. */
+static tm_status choose(finder *find, tm_error *error)
+{
+    const tm_surface *surface = find->path.surface;
+    double *size = tm_new(surface->curves, sizeof *size);
+    if (!size)
+        return tm_fail_memory(error);
+    for (size_t c = 0; c < surface->curves; c++) {
+        const size_t begin = surface->curve_start[c], end = surface->curve_start[c + 1];
+        nearest n = {find, surface->xyz[surface->curve_node[(begin + end) / 2]], INFINITY,
+                     TM_NONE};
+        tm_skin_cells_near(find->path.cells, n.point, compare_nearest, &n);
+        size[c] = n.node == TM_NONE ? find->path.octree->side : find->size[n.node];
+    }
+    const tm_status status = tm_feature_choose(&find->choice, surface, size, error);
+    free(size);
+    return status;
+}
+
 static tm_status allocate(tm_feature *feature, size_t nodes, tm_error *error)
 {
     feature->kind = calloc(nodes + 1, sizeof *feature->kind);
@@ -180,6 +217,7 @@ static void free_finder(finder *find)
 {
     free(find->size);
     free(find->node_of);
+    tm_feature_choice_free(&find->choice);
     free(find->candidate);
     free(find->path.on_path);
     free(find->path.visit);
@@ -210,11 +248,15 @@ tm_status tm_feature_find(tm_feature *feature, tm_skin *skin, const tm_octree *o
     if (status == TM_OK && !(find.size && find.path.on_path && find.path.visit))
         status = tm_fail_memory(error);
     if (status == TM_OK)
+        status = choose(&find, error);
+    if (status == TM_OK)
         status = find_corners(&find, error);
     if (status == TM_OK)
         status = find_curves(&find, surface, error);
     if (status == TM_OK)
         status = tm_feature_regions(feature, skin, surface, find.path.on_path, at, error);
+    if (status == TM_OK)
+        tm_feature_cut_wide(feature, skin, octree, surface, find.path.on_path, at);
     free_finder(&find);
     tm_skin_cells_free(&cells);
     return status;

@@ -11,8 +11,7 @@
  * nodes and those next to them are averaged. at[s] is where outer node s is on the surface,
  * before and after. Elements may be inverted by this. TM_ERROR_SYSTEM where memory is out.
  * O(nodes of the skin) queries of the surface, O(elements). */
-tm_status tm_fit(tm_assembly *assembly, const tm_octree *octree, const tm_skin *skin,
-                 const tm_feature *feature, const tm_surface *surface,
-                 tm_surface_point *at, tm_error *error);
+tm_status tm_fit(tm_assembly *assembly, const tm_skin *skin, const tm_feature *feature,
+                 const tm_surface *surface, tm_surface_point *at, tm_error *error);
 
 #endif

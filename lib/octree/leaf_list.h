@@ -20,6 +20,16 @@ static inline unsigned tm_leaf_shift(const tm_leaf *leaf)
     return TM_OCTREE_FINEST - (unsigned)leaf->level;
 }
 
+/* The same of the smallest octant that has all roots. */
+static inline unsigned tm_octree_shift(const tm_octree *octree)
+{
+    unsigned shift = TM_OCTREE_FINEST;
+    for (int i = 0; i < 3; i++)
+        while (octree->roots[i] << TM_OCTREE_FINEST > (uint32_t)1 << shift)
+            shift++;
+    return shift;
+}
+
 /* The corners of the cube of 2^shift units at anchor, as all of lib/octree computes them.
  */
 static inline void tm_octree_box(const tm_octree *octree, const uint32_t anchor[3],
@@ -40,7 +50,8 @@ static inline void tm_octree_child(const uint32_t anchor[3], unsigned shift, uns
         child[i] = anchor[i] + ((c >> i & 1) ? half : 0);
 }
 
-/* Appends a leaf. TM_ERROR_SYSTEM: memory; TM_ERROR_INPUT: there are too many. */
+/* Appends a leaf. TM_ERROR_SYSTEM: memory, also that of an octree of so many leaves;
+ * TM_ERROR_INPUT: there are more than TM_LEAVES_MAX. */
 tm_status tm_leaf_list_add(tm_leaf_list *list, const uint32_t anchor[3], unsigned level,
                            bool crossed, tm_error *error);
 

@@ -4,22 +4,12 @@
 #include "../base/array.h"
 #include "brick.h"
 #include "descent.h"
-#include "forest.h"
+#include "balance.h"
 #include "mpi_start.h"
+#include "octree_nodes.h"
 
-#include <p8est.h>
 #include <stdlib.h>
-
-/* clang-format off */
-const unsigned char tm_leaf_place[27][3] = {
-    {0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {2, 2, 0},
-    {0, 0, 2}, {2, 0, 2}, {0, 2, 2}, {2, 2, 2},
-    {1, 0, 0}, {1, 2, 0}, {1, 0, 2}, {1, 2, 2},
-    {0, 1, 0}, {2, 1, 0}, {0, 1, 2}, {2, 1, 2},
-    {0, 0, 1}, {2, 0, 1}, {0, 2, 1}, {2, 2, 1},
-    {0, 1, 1}, {2, 1, 1}, {1, 0, 1}, {1, 2, 1}, {1, 1, 0}, {1, 1, 2},
-    {1, 1, 1}};
-/* clang-format on */
+#include <string.h>
 
 void tm_octree_free(tm_octree *octree)
 {
@@ -27,6 +17,20 @@ void tm_octree_free(tm_octree *octree)
     free(octree->grid);
     free(octree->node);
     *octree = (tm_octree){.leaves = 0};
+}
+
+tm_status tm_octree_copy(tm_octree *copy, const tm_octree *octree, tm_error *error)
+{
+    *copy = *octree;
+    copy->leaf = tm_new(octree->leaves, sizeof *copy->leaf);
+    copy->grid = tm_new(octree->nodes, sizeof *copy->grid);
+    copy->node = tm_new(octree->leaves, sizeof *copy->node);
+    if (!copy->leaf || !copy->grid || !copy->node)
+        return tm_fail_memory(error);
+    memcpy(copy->leaf, octree->leaf, octree->leaves * sizeof *copy->leaf);
+    memcpy(copy->grid, octree->grid, octree->nodes * sizeof *copy->grid);
+    memcpy(copy->node, octree->node, octree->leaves * sizeof *copy->node);
+    return TM_OK;
 }
 
 /* An octree without leaves. */
@@ -73,15 +77,14 @@ static tm_status split_leaves(tm_leaf_list *out, const tm_octree *octree,
     return status;
 }
 
-/* Balances the leaves and makes the octree of them, in which only the brick is set yet.
- * The list is emptied. */
-static tm_status finish(tm_octree *octree, tm_leaf_list *leaves, p8est_t *forest,
-                        tm_error *error)
+/* Makes the octree of balanced leaves, in which only the brick is set yet. The list is
+ * emptied. */
+static tm_status finish(tm_octree *octree, tm_leaf_list *leaves, tm_error *error)
 {
     octree->leaf = leaves->leaf;
     octree->leaves = leaves->count;
     *leaves = (tm_leaf_list){.count = 0};
-    return tm_forest_nodes(octree, forest, error);
+    return tm_octree_number_nodes(octree, error);
 }
 
 /* Marks the listed leaves; says whether there are any. */
@@ -133,20 +136,15 @@ static tm_status build(tm_octree *octree, tm_leaf_list *leaves, const tm_brick *
                        size_t rules, tm_error *error)
 {
     tm_status status = tm_octree_descend(leaves, octree, surface, rule, rules, error);
-    p8est_t *forest = NULL;
     if (status == TM_OK)
-        status = tm_forest_balance(&forest, leaves, octree, brick, surface, error);
+        status = tm_balance(leaves, octree, brick, surface, error);
     if (status == TM_OK && has_list(rule, rules)) {
-        p8est_destroy(forest);
-        forest = NULL;
         status = split_listed(leaves, octree, surface, rule, rules, error);
         if (status == TM_OK)
-            status = tm_forest_balance(&forest, leaves, octree, brick, surface, error);
+            status = tm_balance(leaves, octree, brick, surface, error);
     }
     if (status == TM_OK)
-        status = finish(octree, leaves, forest, error);
-    if (forest)
-        p8est_destroy(forest);
+        status = finish(octree, leaves, error);
     return status;
 }
 
@@ -178,16 +176,13 @@ tm_status tm_octree_refine(tm_octree *octree, const tm_surface *surface,
     tm_status status = tm_brick_of(&brick, octree, error);
     tm_octree now = on_brick(&brick);
     tm_leaf_list leaves = {.count = 0};
-    p8est_t *forest = NULL;
     if (status == TM_OK)
         status = split_leaves(&leaves, octree, surface, octree->leaf, octree->leaves,
                               split, error);
     if (status == TM_OK)
-        status = tm_forest_balance(&forest, &leaves, octree, &brick, surface, error);
+        status = tm_balance(&leaves, octree, &brick, surface, error);
     if (status == TM_OK)
-        status = finish(&now, &leaves, forest, error);
-    if (forest)
-        p8est_destroy(forest);
+        status = finish(&now, &leaves, error);
     tm_brick_free(&brick);
     free(leaves.leaf);
     if (status != TM_OK) {

@@ -121,6 +121,10 @@ tm_status tm_octree_from_leaves(tm_octree *octree, const tm_leaf *leaf, size_t l
                                 const tm_surface *surface, uint32_t *order,
                                 tm_error *error);
 
+/* The same octree again, with arrays of its own. TM_ERROR_SYSTEM where memory is out; the
+ * copy is then to be freed all the same. */
+tm_status tm_octree_copy(tm_octree *copy, const tm_octree *octree, tm_error *error);
+
 /* Frees the arrays; an octree of zeros is an empty one. */
 void tm_octree_free(tm_octree *octree);
 

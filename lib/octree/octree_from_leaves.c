@@ -4,11 +4,11 @@
 #include "../base/array.h"
 #include "brick.h"
 #include "descent.h"
-#include "forest.h"
+#include "balance.h"
 #include "mpi_start.h"
+#include "octree_nodes.h"
 #include "z_order.h"
 
-#include <p8est.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -123,18 +123,15 @@ static tm_status sort(tm_leaf_list *list, const tm_octree *octree, const tm_leaf
 static tm_status number(tm_octree *octree, tm_leaf_list *list, tm_error *error)
 {
     tm_brick brick;
-    p8est_t *forest = NULL;
     tm_status status = tm_brick_of(&brick, octree, error);
     if (status == TM_OK)
-        status = tm_forest_balance(&forest, list, octree, &brick, NULL, error);
+        status = tm_balance(list, octree, &brick, NULL, error);
     if (status == TM_OK) {
         octree->leaf = list->leaf;
         octree->leaves = list->count;
         *list = (tm_leaf_list){.count = 0};
-        status = tm_forest_nodes(octree, forest, error);
+        status = tm_octree_number_nodes(octree, error);
     }
-    if (forest)
-        p8est_destroy(forest);
     tm_brick_free(&brick);
     return status;
 }

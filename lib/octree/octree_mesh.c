@@ -4,6 +4,7 @@
 #include "../base/array.h"
 #include "../base/disjoint_sets.h"
 #include "fit.h"
+#include "islands.h"
 #include "settle.h"
 
 #include <stdlib.h>
@@ -70,28 +71,55 @@ static tm_status count_lost(tm_octree_mesh *m, const tm_octree *octree, tm_error
     return TM_OK;
 }
 
-static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *surface,
-                      tm_error *error)
+static tm_status find_skin_once(tm_octree_mesh *m, const tm_octree *octree,
+                                const tm_surface *surface, tm_error *error)
 {
-    tm_octree_mesh_report *r = &m->report;
-    tm_status status = tm_solid_choose(&m->solid, octree, surface, error);
-    if (status == TM_OK && m->solid.count == 0)
-        status = tm_fail(error, TM_ERROR_INPUT,
-                         "no leaf is inside the surface: it needs a finer level");
-    if (status == TM_OK)
-        status = count_lost(m, octree, error);
-    if (status == TM_OK)
-        status = tm_skin_find(&m->skin, octree, &m->solid, error);
+    tm_skin_free(&m->skin);
+    free(m->at);
+    free(m->held);
+    m->at = NULL;
+    m->held = NULL;
+    m->report.components = 0;
+    tm_status status = tm_skin_find(&m->skin, octree, &m->solid, error);
     if (status == TM_OK)
         status = measure_boundary(m, error);
     if (status == TM_OK)
         status = find_closest(m, octree, surface, error);
+    return status;
+}
+
+/* The skin, without pieces that the surface does not have. */
+static tm_status find_skin(tm_octree_mesh *m, const tm_octree *octree,
+                           const tm_surface *surface, tm_error *error)
+{
+    bool changed = false;
+    tm_status status = find_skin_once(m, octree, surface, error);
+    if (status == TM_OK && m->report.components > surface->components)
+        status = tm_islands_remove(&m->solid, octree, &m->skin, surface, m->at, &changed,
+                                   error);
+    if (status == TM_OK && changed)
+        status = find_skin_once(m, octree, surface, error);
+    return status;
+}
+
+static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *surface,
+                      tm_error *error)
+{
+    tm_octree_mesh_report *r = &m->report;
+    tm_status status = TM_OK;
+    if (m->solid.count == 0)
+        status = tm_fail(error, TM_ERROR_INPUT,
+                         "no leaf is inside the surface: it needs a finer level");
+    if (status == TM_OK)
+        status = find_skin(m, octree, surface, error);
+    if (status == TM_OK)
+        status = count_lost(m, octree, error);
     if (status == TM_OK)
         status = tm_feature_find(&m->feature, &m->skin, octree, surface, m->at, error);
     if (status == TM_OK)
         status = tm_assemble(&m->assembly, octree, &m->solid, &m->skin, error);
     if (status == TM_OK)
-        status = tm_fit(&m->assembly, octree, &m->skin, &m->feature, surface, m->at, error);
+        status = tm_fit(&m->assembly, &m->skin, &m->feature, surface, m->at, error);
     if (status == TM_OK)
         status = tm_settle(m, octree, surface, error);
     if (status != TM_OK)
@@ -109,7 +137,19 @@ static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *su
 tm_status tm_octree_mesh_make(tm_octree_mesh *mesh, const tm_octree *octree,
                               tm_surface *surface, tm_error *error)
 {
-    *mesh = (tm_octree_mesh){0};
+    tm_solid solid;
+    tm_status status = tm_solid_choose(&solid, octree, surface, error);
+    *mesh = (tm_octree_mesh){.solid = solid};
+    if (status == TM_OK)
+        status = tm_octree_mesh_make_of(mesh, octree, &solid, surface, error);
+    return status;
+}
+
+tm_status tm_octree_mesh_make_of(tm_octree_mesh *mesh, const tm_octree *octree,
+                                 tm_solid *solid, tm_surface *surface, tm_error *error)
+{
+    *mesh = (tm_octree_mesh){.solid = *solid};
+    *solid = (tm_solid){0};
     const size_t bytes = surface->triangles * sizeof *surface->patch;
     uint32_t *patch = tm_new(surface->triangles, sizeof *patch);
     if (!patch)
@@ -130,43 +170,4 @@ void tm_octree_mesh_free(tm_octree_mesh *mesh)
     free(mesh->at);
     free(mesh->held);
     *mesh = (tm_octree_mesh){0};
-}
-
-/* Unmarks leaves that are as deep as they may be; returns how many are left. */
-static size_t keep_shallow(const tm_octree *octree, unsigned deepest, uint8_t *lost)
-{
-    size_t count = 0;
-    for (size_t l = 0; l < octree->leaves; l++) {
-        lost[l] = lost[l] && octree->leaf[l].level < deepest;
-        count += lost[l];
-    }
-    return count;
-}
-
-tm_status tm_octree_resolve(tm_octree *octree, const tm_surface *surface, unsigned levels,
-                            tm_error *error)
-{
-    unsigned deepest = levels;
-    for (size_t l = 0; l < octree->leaves; l++)
-        if (octree->leaf[l].level + levels > deepest)
-            deepest = octree->leaf[l].level + levels;
-    if (deepest > TM_OCTREE_LEVEL_MAX)
-        deepest = TM_OCTREE_LEVEL_MAX;
-    tm_status status = TM_OK;
-    for (bool more = levels > 0; status == TM_OK && more;) {
-        tm_solid solid;
-        uint8_t *lost = tm_new(octree->leaves, sizeof *lost);
-        status = lost ? tm_solid_choose(&solid, octree, surface, error)
-                      : tm_fail_memory(error);
-        if (status == TM_OK) {
-            tm_solid_find_lost(&solid, octree, lost);
-            more = keep_shallow(octree, deepest, lost) > 0;
-        }
-        if (lost)
-            tm_solid_free(&solid);
-        if (status == TM_OK && more)
-            status = tm_octree_refine(octree, surface, lost, error);
-        free(lost);
-    }
-    return status;
 }

@@ -37,11 +37,10 @@ typedef struct tm_octree_mesh {
  * error too. */
 tm_status tm_octree_mesh_make(tm_octree_mesh *mesh, const tm_octree *octree,
                               tm_surface *surface, tm_error *error);
+/* The same where the leaves are chosen already: tm_solid_choose() filled *solid, which
+ * becomes the mesh's and is empty then. */
+tm_status tm_octree_mesh_make_of(tm_octree_mesh *mesh, const tm_octree *octree,
+                                 tm_solid *solid, tm_surface *surface, tm_error *error);
 void tm_octree_mesh_free(tm_octree_mesh *mesh);
-
-/* Refines the leaves where a part of the surface is lost (tm_solid_find_lost()), again and
- * again while there are some, by at most `levels` more than the deepest leaf now. */
-tm_status tm_octree_resolve(tm_octree *octree, const tm_surface *surface, unsigned levels,
-                            tm_error *error);
 
 #endif

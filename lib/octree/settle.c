@@ -2,7 +2,9 @@
 #include "settle.h"
 
 #include "../base/array.h"
+#include "../mixed/optimise_surface.h"
 #include "../quality/jens.h"
+#include "base_places.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -77,38 +79,78 @@ static bool take_back(retreat *r)
     return any;
 }
 
-static tm_status hold_back(tm_octree_mesh *m, tm_error *error)
+static void retreat_all(tm_octree_mesh *m, retreat *r)
 {
-    tm_mixed_mesh *mesh = &m->assembly.mesh;
-    retreat r = {.mesh = mesh,
-                 .base = (const double(*)[3])m->assembly.base,
-                 .steps = calloc(mesh->nodes + 1, 1),
-                 .changed = malloc(mesh->nodes + 1),
-                 .to_change = calloc(mesh->nodes + 1, 1)};
-    if (!r.steps || !r.changed || !r.to_change) {
-        free(r.steps);
-        free(r.changed);
-        free(r.to_change);
-        return tm_fail_memory(error);
-    }
-    memset(r.changed, true, mesh->nodes);
-    while (take_back(&r))
+    memset(r->changed, true, r->mesh->nodes);
+    while (take_back(r))
         ;
-    m->report.invalid = r.invalid;
+    m->report.invalid = r->invalid;
     for (size_t s = 0; s < m->skin.nodes; s++) {
-        m->held[s] = r.steps[m->assembly.outer + s] > 0;
+        m->held[s] = r->steps[m->assembly.outer + s] > 0;
         m->report.held_back += m->held[s];
     }
+}
+
+static tm_status hold_back(tm_octree_mesh *m, const tm_octree *octree, tm_error *error)
+{
+    const size_t nodes = m->assembly.mesh.nodes;
+    double(*base)[3] = tm_new(nodes, sizeof *base);
+    retreat r = {.mesh = &m->assembly.mesh,
+                 .base = (const double(*)[3])base,
+                 .steps = calloc(nodes + 1, 1),
+                 .changed = malloc(nodes + 1),
+                 .to_change = calloc(nodes + 1, 1)};
+    tm_status status = base && r.steps && r.changed && r.to_change
+                           ? TM_OK
+                           : tm_fail_memory(error);
+    if (status == TM_OK)
+        status = tm_base_places(&m->assembly, octree, &m->solid, &m->skin, base, error);
+    if (status == TM_OK)
+        retreat_all(m, &r);
+    free(base);
     free(r.steps);
     free(r.changed);
     free(r.to_change);
-    return TM_OK;
+    return status;
+}
+
+/* What each node may do while elements are improved. */
+static tm_node_rule *find_rules(const tm_octree_mesh *m)
+{
+    static const uint8_t freedom[] = {[TM_ON_PATCH] = TM_MOVES_ON_SURFACE,
+                                      [TM_ON_CURVE] = TM_MOVES_ON_CURVE,
+                                      [TM_ON_CORNER] = TM_MOVES_NOT};
+    const tm_assembly *a = &m->assembly;
+    tm_node_rule *rule = tm_new(a->mesh.nodes, sizeof *rule);
+    for (size_t n = 0; rule && n < a->mesh.nodes; n++)
+        rule[n] = (tm_node_rule){.where = TM_NONE, .freedom = TM_MOVES_FREELY};
+    for (size_t s = 0; rule && s < m->skin.nodes; s++)
+        rule[a->outer + s] = (tm_node_rule){.where = m->feature.of[s],
+                                            .freedom = freedom[m->feature.kind[s]]};
+    return rule;
 }
 
 tm_status tm_settle(tm_octree_mesh *mesh, const tm_octree *octree,
                     const tm_surface *surface, tm_error *error)
 {
-    (void)octree;
-    (void)surface;
-    return hold_back(mesh, error);
+    const double threshold = 0.2;
+    const tm_boundary boundary = tm_boundary_of_surface(surface);
+    /* What can be mended takes few measurements of elements; where the surface is
+     * too fine for the leaves there would be no end. */
+    const size_t few = 1, at_least = 1500000;
+    const tm_optimise_options options = {
+        .threshold = threshold,
+        .held_threshold = threshold,
+        .effort = 1,
+        .most_measured = at_least + few * mesh->assembly.mesh.elements};
+    tm_optimise_report report;
+    tm_node_rule *rule = find_rules(mesh);
+    if (!rule)
+        return tm_fail_memory(error);
+    tm_status status = tm_mixed_optimise(&mesh->assembly.mesh, rule, &boundary, &options,
+                                         &report, error);
+    free(rule);
+    if (status == TM_OK && report.worst_after < least_valid)
+        status = hold_back(mesh, octree, error);
+    return status;
 }

@@ -52,6 +52,16 @@ static void put_in_masks(tm_solid *solid, const tm_octree *octree, size_t l)
     }
 }
 
+void tm_solid_flip(tm_solid *solid, const tm_octree *octree, size_t leaf)
+{
+    solid->chosen[leaf] = !solid->chosen[leaf];
+    if (solid->chosen[leaf])
+        solid->filled++;
+    else
+        solid->removed++;
+    put_in_masks(solid, octree, leaf);
+}
+
 /* A leaf at a node whose mask is bad. */
 typedef struct {
     uint32_t node;
@@ -133,17 +143,6 @@ static int harm(const cleaner *c, size_t l)
     return more;
 }
 
-static void flip(cleaner *c, size_t l)
-{
-    tm_solid *solid = c->solid;
-    solid->chosen[l] = !solid->chosen[l];
-    if (solid->chosen[l])
-        solid->filled++;
-    else
-        solid->removed++;
-    put_in_masks(solid, c->octree, l);
-}
-
 /* Changes one of the leaves contact[0 … count) around a node that is still bad: the one
  * that does most good, of these the one closest to the surface. */
 static void mend(cleaner *c, const contact *around, size_t count, bool only_remove)
@@ -162,7 +161,7 @@ static void mend(cleaner *c, const contact *around, size_t count, bool only_remo
         }
     }
     if (best < count)
-        flip(c, around[best].leaf);
+        tm_solid_flip(c->solid, c->octree, around[best].leaf);
 }
 
 static tm_status clean(cleaner *c, tm_error *error)
@@ -183,9 +182,10 @@ static tm_status clean(cleaner *c, tm_error *error)
 
 /* The nodes that the mesh has. A face of which a part is shared with a smaller chosen leaf
  * has its centre, and is then divided in four. */
-static void find_used(tm_solid *solid, const tm_octree *octree)
+void tm_solid_find_used(tm_solid *solid, const tm_octree *octree)
 {
     solid->count = 0;
+    memset(solid->used, false, octree->nodes);
     for (size_t l = 0; l < octree->leaves; l++) {
         solid->count += solid->chosen[l];
         for (int p = 0; solid->chosen[l] && p < TM_LEAF_EDGE; p++)
@@ -224,7 +224,7 @@ tm_status tm_solid_choose(tm_solid *solid, const tm_octree *octree,
     free(c.bad);
     free(c.contact);
     if (status == TM_OK)
-        find_used(solid, octree);
+        tm_solid_find_used(solid, octree);
     return status;
 }
 

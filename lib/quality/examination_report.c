@@ -28,6 +28,13 @@ static const defect_name name[TM_DEFECTS] = {
     [TM_UNORIENTED_EDGE] = {"unoriented_edges", "unoriented edges"},
 };
 
+static const char *const kind_name[TM_ELEMENT_KINDS] = {
+    [TM_TETRAHEDRON] = "tetrahedra",
+    [TM_PYRAMID] = "pyramids",
+    [TM_WEDGE] = "wedges",
+    [TM_HEXAHEDRON] = "hexahedra",
+};
+
 static void defect_json(tm_json *json, const tm_examination *found, tm_defect d)
 {
     tm_json_integer(json, name[d].key, (int64_t)found->defect[d].count);
@@ -59,6 +66,8 @@ void tm_examination_json(tm_json *json, const tm_examination *found)
         defect_json(json, found, TM_UNCLOSED_EDGE);
         defect_json(json, found, TM_UNORIENTED_EDGE);
     }
+    for (size_t k = 0; found->mixed && k < TM_ELEMENT_KINDS; k++)
+        tm_json_integer(json, kind_name[k], (int64_t)found->kind[k]);
 }
 
 static void integer_row(tm_text *text, const char *label, int64_t value)
@@ -75,12 +84,47 @@ static void sizes(tm_text *text, const tm_examination *found)
 {
     integer_row(text, "nodes", (int64_t)found->nodes);
     integer_row(text, found->elements, (int64_t)found->element_count);
+    for (size_t k = 0; found->mixed && k < TM_ELEMENT_KINDS; k++)
+        integer_row(text, kind_name[k], (int64_t)found->kind[k]);
     integer_row(text, "components", (int64_t)found->components);
     integer_row(text, "Euler number", found->euler);
     real_row(text, "volume", found->volume);
     integer_row(text, "boundary faces", (int64_t)found->boundary_faces);
     real_row(text, "boundary area", found->area);
     integer_row(text, "unused nodes", (int64_t)found->unused_nodes);
+}
+
+static void unmatched_text(tm_text *text, const tm_examination *found,
+                           const uint32_t place[TM_PLACE_NUMBERS], unsigned base)
+{
+    const uint32_t a = place[0] + base, b = place[1] + base, c = place[2] + base;
+    if (found->polyhedra)
+        tm_text_format(text, "facet %u does not belong to the %s that it names", a,
+                       found->elements);
+    else if (place[3] == TM_FACE_HALVED)
+        tm_text_format(text, "triangle %u %u %u is half of a quadrilateral", a, b, c);
+    else if (place[3] == TM_FACE_IN_ANOTHER_ORDER)
+        tm_text_format(text, "quadrilateral %u %u %u is there in another order too", a, b,
+                       c);
+    else
+        tm_text_format(text, "face %u %u %u belongs to %u %s", a, b, c, place[3],
+                       found->elements);
+}
+
+/* Rows of .face, or of .facet. */
+static void row_text(tm_text *text, const tm_examination *found, tm_defect d,
+                     const uint32_t place[TM_PLACE_NUMBERS], unsigned base)
+{
+    const uint32_t a = place[0] + base, b = place[1] + base;
+    const bool is_facet = found->polyhedra || place[2] == 1;
+    if (d == TM_REPEATED_FACE)
+        tm_text_format(text, "row %u of %s repeats row %u", a,
+                       is_facet ? ".facet" : ".face", b);
+    else if (is_facet)
+        tm_text_format(text, "row %u of .facet is no face of the %s that it names", a,
+                       found->elements);
+    else
+        tm_text_format(text, "row %u of .face is no face of any %s", a, found->element);
 }
 
 /* One defect in a sentence. */
@@ -102,12 +146,7 @@ static void place_text(tm_text *text, const tm_examination *found, tm_defect d,
             tm_text_format(text, "%s %u names node %u twice", one, a, b);
         break;
     case TM_UNMATCHED_FACE:
-        if (found->polyhedra)
-            tm_text_format(text, "facet %u does not belong to the %s that it names", a,
-                           many);
-        else
-            tm_text_format(text, "face %u %u %u belongs to %u %s", a, b, c, place[3],
-                           many);
+        unmatched_text(text, found, place, base);
         break;
     case TM_OVERLAPPING_FACE:
         tm_text_format(text, "%s %u and %u are on the same side of their common face",
@@ -125,14 +164,11 @@ static void place_text(tm_text *text, const tm_examination *found, tm_defect d,
         tm_text_format(text, "node %u is at the place of node %u", a, b);
         break;
     case TM_DANGLING_FACE:
-        tm_text_format(text, "row %u of .face is no face of a %s", a, one);
-        break;
     case TM_REPEATED_FACE:
-        tm_text_format(text, "row %u of %s repeats row %u", a,
-                       found->polyhedra ? ".facet" : ".face", b);
+        row_text(text, found, d, place, base);
         break;
     case TM_DANGLING_EDGE:
-        tm_text_format(text, "row %u of .edge is no edge of a %s", a, one);
+        tm_text_format(text, "row %u of .edge is no edge of any %s", a, one);
         break;
     case TM_REPEATED_EDGE:
         tm_text_format(text, "row %u of .edge repeats row %u", a, b);

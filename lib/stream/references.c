@@ -32,17 +32,21 @@ static tm_status check_octants(const tm_stream *stream, const tm_block *block,
     return TM_OK;
 }
 
+/* The sides of facets are cells, or without .cell elements of .mix. */
 static tm_status check_facets(const tm_stream *stream, const tm_block *block,
                               const char *name, tm_error *error)
 {
     const tm_block *cell = sibling(stream, block, ".cell");
+    const char *what = cell ? "cell" : "element";
+    if (!cell)
+        cell = sibling(stream, block, ".mix");
     for (size_t f = 0; cell && f < block->count; f++)
         for (size_t side = 0; side < 2; side++) {
             uint32_t c = block->integer[2 * f + side];
             if (c != TM_NONE && c >= cell->count)
                 return tm_fail_at(error, TM_ERROR_INPUT, name, 0, block->name,
-                                  "row %zu: cell %u is out of range (there are %zu)",
-                                  f + stream->base, c + stream->base, cell->count);
+                                  "row %zu: %s %u is out of range (there are %zu)",
+                                  f + stream->base, what, c + stream->base, cell->count);
         }
     return TM_OK;
 }

@@ -53,7 +53,7 @@ static tm_status shape(tm_surface *surface, const tm_surface_options *options,
     if (status == TM_OK)
         status = tm_surface_orient(surface, options->lenient, base, error);
     if (status == TM_OK)
-        tm_surface_mend(surface);
+        status = tm_surface_mend(surface, error);
     if (status == TM_OK)
         status = count_euler(surface, error);
     return status;
@@ -69,7 +69,8 @@ static tm_status prepare(tm_surface *surface, const tm_surface_options *options,
     if (status == TM_OK)
         status = tm_surface_turn(surface, error);
     if (status == TM_OK)
-        status = tm_surface_find_features(surface, options->feature_angle, error);
+        status = tm_surface_find_features(surface, options->feature_angle,
+                                          options->unless_rough, error);
     if (status == TM_OK) {
         tm_surface_tree_refresh(surface);
         status = tm_surface_curve_build(surface, error);
@@ -104,6 +105,7 @@ void tm_surface_free(tm_surface *surface)
     free(surface->curve_start);
     free(surface->curve_node);
     free(surface->curve_patch);
+    free(surface->curve_length);
     free(surface->corner);
     tm_surface_tree_free(surface->tree);
     *surface = (tm_surface){0};

@@ -4,6 +4,7 @@
 #include "surface_parts.h"
 
 #include "../base/array.h"
+#include "../base/disjoint_sets.h"
 #include "../geom/vector.h"
 
 #include <math.h>
@@ -59,6 +60,7 @@ static void edge_table_free(edge_table *table)
 {
     free(table->start);
     free(table->edge);
+    *table = (edge_table){0};
 }
 
 static bool edge_table_make(edge_table *table, const tm_surface *surface)
@@ -98,17 +100,34 @@ static bool is_flat(const tm_surface *surface, uint32_t t)
     return tm_is_flat(surface->xyz[v[0]], surface->xyz[v[1]], surface->xyz[v[2]]);
 }
 
-/* closed[t] counts the edges of the flat triangle t that are closed without flat ones. */
-static void count_closed(const half_edge *edge, size_t count, const bool *flat,
-                         unsigned char *closed)
+/* Flat triangles in groups that are joined by edges which only flat ones have; needed[g]
+ * where an edge of group g is not closed without it. */
+typedef struct flat_groups {
+    bool *flat;
+    uint32_t *parent;
+    bool *needed;
+} flat_groups;
+
+static void examine_edge(const half_edge *edge, size_t count, flat_groups *groups)
 {
     size_t others = 0;
+    uint32_t first = TM_NONE;
     for (size_t i = 0; i < count; i++)
-        others += !flat[edge[i].half / 3];
-    if (others != CLOSED)
-        return;
-    for (size_t i = 0; i < count; i++)
-        closed[edge[i].half / 3]++;
+        others += !groups->flat[edge[i].half / 3];
+    for (size_t i = 0; i < count; i++) {
+        uint32_t t = edge[i].half / 3;
+        if (!groups->flat[t])
+            continue;
+        uint32_t root = tm_set_root(groups->parent, t);
+        if (others == 0 && first != TM_NONE) {
+            uint32_t to = tm_set_root(groups->parent, first);
+            groups->parent[root] = to;
+            groups->needed[to] |= groups->needed[root];
+            root = to;
+        }
+        groups->needed[root] |= others != 0 && others != CLOSED;
+        first = t;
+    }
 }
 
 static void drop(tm_surface *surface, const bool *gone)
@@ -127,33 +146,38 @@ static void drop(tm_surface *surface, const bool *gone)
     surface->triangles = kept;
 }
 
-/* Drops the flat triangles whose three edges are closed without them. */
-static tm_status drop_needless(tm_surface *surface, const edge_table *table,
-                               bool *dropped, tm_error *error)
+static void drop_groups(tm_surface *surface, const edge_table *table, flat_groups *groups)
 {
-    bool *flat = tm_new(surface->triangles, sizeof *flat);
-    unsigned char *closed = calloc(surface->triangles, sizeof *closed);
-    size_t flats = 0;
-    *dropped = false;
-    if (flat && closed)
-        for (size_t t = 0; t < surface->triangles; t++)
-            flats += flat[t] = is_flat(surface, (uint32_t)t);
-    if (flat && closed && flats > 0) {
-        for (size_t v = 0; v < surface->nodes; v++)
-            for (size_t i = table->start[v], next; i < table->start[v + 1]; i = next) {
-                next = end_of_edge(table->edge, i, table->start[v + 1]);
-                count_closed(table->edge + i, next - i, flat, closed);
-            }
-        for (size_t t = 0; t < surface->triangles; t++) {
-            flat[t] = flat[t] && closed[t] == 3;
-            *dropped |= flat[t];
+    for (size_t v = 0; v < surface->nodes; v++)
+        for (size_t i = table->start[v], next; i < table->start[v + 1]; i = next) {
+            next = end_of_edge(table->edge, i, table->start[v + 1]);
+            examine_edge(table->edge + i, next - i, groups);
         }
-        drop(surface, flat);
+    for (uint32_t t = 0; t < surface->triangles; t++)
+        groups->flat[t] &= !groups->needed[tm_set_root(groups->parent, t)];
+    drop(surface, groups->flat);
+}
+
+/* Drops the groups that are not needed. */
+static tm_status drop_needless(tm_surface *surface, const edge_table *table,
+                               tm_error *error)
+{
+    size_t n = surface->triangles;
+    flat_groups groups = {tm_new(n, sizeof *groups.flat),
+                          tm_new(n, sizeof *groups.parent),
+                          calloc(n + 1, sizeof *groups.needed)};
+    const bool done = groups.flat && groups.parent && groups.needed;
+    size_t flats = 0;
+    for (uint32_t t = 0; t < n && done; t++) {
+        groups.parent[t] = t;
+        flats += groups.flat[t] = is_flat(surface, t);
     }
-    tm_status status = flat && closed ? TM_OK : tm_fail_memory(error);
-    free(flat);
-    free(closed);
-    return status;
+    if (flats > 0)
+        drop_groups(surface, table, &groups);
+    free(groups.flat);
+    free(groups.parent);
+    free(groups.needed);
+    return done ? TM_OK : tm_fail_memory(error);
 }
 
 static void join(tm_surface *surface, uint32_t h, uint32_t g)
@@ -279,13 +303,21 @@ tm_status tm_surface_connect(tm_surface *surface, bool lenient, unsigned base,
                              tm_error *error)
 {
     edge_table table = {0};
-    bool dropped = true;
-    tm_status status = TM_OK;
-    while (status == TM_OK && dropped) {
+    size_t before = surface->flat;
+    tm_status status = edge_table_make(&table, surface) ? TM_OK : tm_fail_memory(error);
+    if (status == TM_OK)
+        status = drop_needless(surface, &table, error);
+    if (status == TM_OK && surface->triangles == 0)
+        status = tm_fail(error, TM_ERROR_INPUT,
+                         "no triangle is left: none has an area (without one: %zu, "
+                         "duplicates: %zu)",
+                         surface->flat, surface->duplicates);
+    if (status == TM_OK && surface->flat > before)
+        status = tm_surface_drop_nodes(surface, error);
+    if (status == TM_OK && surface->flat > before) {
         edge_table_free(&table);
-        status = edge_table_make(&table, surface) ? TM_OK : tm_fail_memory(error);
-        if (status == TM_OK)
-            status = drop_needless(surface, &table, &dropped, error);
+        if (!edge_table_make(&table, surface))
+            status = tm_fail_memory(error);
     }
     if (status == TM_OK)
         status = join_edges(surface, &table, lenient, base, error);

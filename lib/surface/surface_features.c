@@ -13,12 +13,11 @@
 static const double pi = 3.14159265358979323846;
 
 /* The angles of the triangles around the tip of a cone make less than this: that of one
- * that opens by 60°. */
-static const double tip_angle = 180;
+ * that opens by 39°. */
+static const double tip_angle = 120;
 
-/* A triangle whose height is less than this part of its longest edge, and also of the
- * surface, has no normal of its own: the coordinates of a file with six digits do not say
- * which it is. */
+/* A triangle whose height is less than this part of the surface has no normal of its own:
+ * coordinates of six digits, or of 32 bits, do not say which it is. */
 static const double least_height = 1e-6;
 
 typedef struct sharp_edge {
@@ -49,7 +48,7 @@ static bool own_normal(const tm_surface *surface, uint32_t t, double normal[3])
         longest2 = fmax(longest2, tm_distance2(p[i], p[(i + 1) % 3]));
     tm_triangle_normal(normal, p[0], p[1], p[2]);
     double length = tm_norm(normal);
-    double size = fmin(sqrt(longest2), tm_distance2(surface->low, surface->high));
+    double size = sqrt(tm_distance2(surface->low, surface->high));
     if (!(length > least_height * size * sqrt(longest2)))
         return false;
     for (int i = 0; i < 3; i++)
@@ -138,6 +137,8 @@ static size_t list_edges(const feature_finder *f, sharp_edge *edge, uint32_t *pa
 static void unite_edges(feature_finder *f)
 {
     size_t kept = 0;
+    if (f->edges == 0)
+        return;
     qsort(f->edge, f->edges, sizeof *f->edge, compare_edges);
     for (size_t e = 0; e < f->edges; e++)
         if (kept == 0 ||
@@ -168,13 +169,13 @@ static tm_status find_edges(feature_finder *f, tm_error *error)
         f->edges = list_edges(f, NULL, parent);
         number_patches(surface, parent);
         f->edge = tm_new(f->edges, sizeof *f->edge);
-        if (f->edge)
+        if (f->edge) {
             list_edges(f, f->edge, parent);
-        else
+            unite_edges(f);
+        } else {
             status = tm_fail_memory(error);
+        }
     }
-    if (status == TM_OK)
-        unite_edges(f);
     free(parent);
     return status;
 }
@@ -262,10 +263,11 @@ static bool is_corner(const feature_finder *f, uint32_t v)
            !is_taken_back(f, v, ends[1], ends[0]);
 }
 
-/* Adds the angle of every triangle to its corners' sums: degrees. */
+/* Adds the angle of every triangle to its corners' sums: degrees; and a full angle to the
+ * ends of open edges, which have less anyway. */
 static void add_angles(const tm_surface *surface, double *sum)
 {
-    const double degrees = 180 / pi;
+    const double degrees = 180 / pi, full = 360;
     for (size_t t = 0; t < surface->triangles; t++)
         for (int i = 0; i < 3; i++) {
             const uint32_t *v = surface->triangle[t];
@@ -274,6 +276,10 @@ static void add_angles(const tm_surface *surface, double *sum)
             tm_subtract(b, surface->xyz[v[(i + 2) % 3]], surface->xyz[v[i]]);
             tm_cross(cross, a, b);
             sum[v[i]] += atan2(tm_norm(cross), tm_dot(a, b)) * degrees;
+            if (surface->across[t][i] == TM_NONE) {
+                sum[v[i]] += full;
+                sum[v[(i + 1) % 3]] += full;
+            }
         }
 }
 
@@ -318,6 +324,8 @@ static void follow(feature_finder *f, uint32_t v, uint32_t e, size_t *used)
         f->done[e] = true;
         v = other_end(f, e, v);
         surface->curve_node[(*used)++] = v;
+        surface->curve_length[c] += sqrt(tm_distance2(surface->xyz[f->edge[e].node[0]],
+                                                      surface->xyz[f->edge[e].node[1]]));
         if (f->corner[v] || v == first)
             return;
         e = f->at[f->start[v] + (f->at[f->start[v]] == e)];
@@ -331,7 +339,9 @@ static tm_status find_curves(feature_finder *f, tm_error *error)
     surface->curve_start = tm_new(f->edges + 1, sizeof *surface->curve_start);
     surface->curve_node = tm_new(2 * f->edges, sizeof *surface->curve_node);
     surface->curve_patch = tm_new(f->edges, sizeof *surface->curve_patch);
-    if (!surface->curve_start || !surface->curve_node || !surface->curve_patch)
+    surface->curve_length = calloc(f->edges + 1, sizeof *surface->curve_length);
+    if (!surface->curve_length || !surface->curve_start || !surface->curve_node ||
+        !surface->curve_patch)
         return tm_fail_memory(error);
     /* From corners; what is left has none. */
     for (int closed = 0; closed < 2; closed++)
@@ -343,8 +353,40 @@ static tm_status find_curves(feature_finder *f, tm_error *error)
     return TM_OK;
 }
 
+/* On what is made, sharp edges follow each other. A surface that has many which end freely
+ * is rough all over, as a scanned bone is, and has no edges. */
+static tm_status smooth_if_rough(feature_finder *f, tm_error *error)
+{
+    const tm_surface *surface = f->surface;
+    const double below_all_cosines = -2;
+    const size_t many = 10; /* one for so many edges */
+    size_t sharp = 0, ends = 0;
+    uint8_t *at = calloc(surface->nodes + 1, sizeof *at); /* sharp edges; 2: or more */
+    if (!at)
+        return tm_fail_memory(error);
+    for (uint32_t t = 0; t < surface->triangles; t++)
+        for (unsigned i = 0; i < 3; i++) {
+            const uint32_t n = surface->across[t][i];
+            if ((n != TM_NONE && n < t) || !is_sharp(f, t, n))
+                continue;
+            uint8_t *p = &at[surface->triangle[t][i]];
+            uint8_t *q = &at[surface->triangle[t][(i + 1) % 3]];
+            *p = *p == 0 ? 1 : 2;
+            *q = *q == 0 ? 1 : 2;
+            sharp++;
+        }
+    for (size_t v = 0; v < surface->nodes; v++)
+        ends += at[v] == 1;
+    free(at);
+    if (ends > sharp / many) {
+        f->most_cosine = below_all_cosines;
+        f->surface->rough = true;
+    }
+    return TM_OK;
+}
+
 tm_status tm_surface_find_features(tm_surface *surface, double feature_angle,
-                                   tm_error *error)
+                                   bool unless_rough, tm_error *error)
 {
     feature_finder f = {.surface = surface,
                         .most_cosine = cos(feature_angle * pi / 180),
@@ -352,8 +394,11 @@ tm_status tm_surface_find_features(tm_surface *surface, double feature_angle,
     tm_status status = f.normal ? TM_OK : tm_fail_memory(error);
     if (status == TM_OK) {
         find_normals(&f);
-        status = find_edges(&f, error);
+        if (unless_rough)
+            status = smooth_if_rough(&f, error);
     }
+    if (status == TM_OK)
+        status = find_edges(&f, error);
     if (status == TM_OK)
         status = attach_edges(&f, error);
     if (status == TM_OK)

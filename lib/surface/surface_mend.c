@@ -4,8 +4,10 @@
  * area, where d is not on the line. */
 #include "surface_parts.h"
 
+#include "../base/array.h"
 #include "../geom/vector.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 enum { FAN_MOST = 1000 };
@@ -81,16 +83,32 @@ static bool flip(tm_surface *surface, uint32_t t)
     return true;
 }
 
-/* One flat triangle may have to wait for the one beyond its longest edge. */
-void tm_surface_mend(tm_surface *surface)
+/* A flat triangle may have to wait for the one beyond its longest edge: as long as one of
+ * those that are left could be flipped, they are tried again. */
+static void flip_listed(tm_surface *surface, uint32_t *list, size_t count)
 {
-    bool changed = true;
-    while (changed) {
-        changed = false;
-        for (size_t t = 0; t < surface->triangles; t++) {
-            const uint32_t *v = surface->triangle[t];
-            if (tm_is_flat(surface->xyz[v[0]], surface->xyz[v[1]], surface->xyz[v[2]]))
-                changed |= flip(surface, (uint32_t)t);
-        }
+    size_t before = count + 1;
+    while (count < before) {
+        before = count;
+        count = 0;
+        for (size_t i = 0; i < before; i++)
+            if (!flip(surface, list[i]))
+                list[count++] = list[i];
     }
+}
+
+tm_status tm_surface_mend(tm_surface *surface, tm_error *error)
+{
+    uint32_t *list = tm_new(surface->triangles, sizeof *list);
+    size_t count = 0;
+    if (!list)
+        return tm_fail_memory(error);
+    for (uint32_t t = 0; t < surface->triangles; t++) {
+        const uint32_t *v = surface->triangle[t];
+        if (tm_is_flat(surface->xyz[v[0]], surface->xyz[v[1]], surface->xyz[v[2]]))
+            list[count++] = t;
+    }
+    flip_listed(surface, list, count);
+    free(list);
+    return TM_OK;
 }

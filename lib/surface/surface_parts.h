@@ -6,9 +6,13 @@
 
 #include "surface.h"
 
-/* Nodes, triangles with marker and facet, welded, duplicates, low and high. */
+/* Nodes, triangles with marker and facet, welded, duplicates, low and high. Flat are
+ * those with a node twice. */
 tm_status tm_surface_triangulate(tm_surface *surface, const tm_polygon_surface *polygons,
                                  tm_error *error);
+
+/* Drops the nodes that no triangle has; low and high. */
+tm_status tm_surface_drop_nodes(tm_surface *surface, tm_error *error);
 
 /* Cuts the polygon through k nodes of xyz into at most k - 2 triangles, which turn as it
  * does; returns how many. aside: room for k items. A flat triangle is made only where
@@ -19,8 +23,9 @@ size_t tm_polygon_triangulate(const double (*xyz)[3], const uint32_t *node, size
 /* Whether the three points are on a line, exactly. */
 bool tm_is_flat(const double a[3], const double b[3], const double c[3]);
 
-/* Drops flat triangles that only touch edges which are closed without them; then across
- * and open_edges. base is the number of the first node and facet in messages. */
+/* Drops flat triangles where the edges that they have with others are closed without
+ * them, and nodes that none has then; then across and open_edges. base is the number of
+ * the first node and facet in messages. */
 tm_status tm_surface_connect(tm_surface *surface, bool lenient, unsigned base,
                              tm_error *error);
 
@@ -29,7 +34,7 @@ tm_status tm_surface_orient(tm_surface *surface, bool lenient, unsigned base,
                             tm_error *error);
 
 /* Flips the longest edges of flat triangles; counts them in flat. */
-void tm_surface_mend(tm_surface *surface);
+tm_status tm_surface_mend(tm_surface *surface, tm_error *error);
 
 /* crossings, by the tree. */
 tm_status tm_surface_find_crossings(tm_surface *surface, bool lenient, unsigned base,
@@ -40,7 +45,7 @@ tm_status tm_surface_turn(tm_surface *surface, tm_error *error);
 
 /* Curves, corners and patches. */
 tm_status tm_surface_find_features(tm_surface *surface, double feature_angle,
-                                   tm_error *error);
+                                   bool unless_rough, tm_error *error);
 
 /* The corner i of t for which across[t][i] is n; 3: none. */
 static inline unsigned tm_surface_side(const tm_surface *surface, uint32_t t, uint32_t n)

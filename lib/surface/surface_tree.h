@@ -26,11 +26,13 @@ typedef struct tm_tree_triangle {
     uint32_t thin : 1; /* so thin that its plane is rounding: a measure is its edges' */
 } tm_tree_triangle;
 
-/* What a box of triangles is from afar. */
+/* What the triangles of a box are from afar: the first two terms of Barill 2018,
+ * equation 8. */
 typedef struct tm_tree_dipole {
-    double centre[3]; /* of area */
-    double normal[3]; /* the sum of the triangles', as long as their areas */
-    double radius2;   /* squared, of a ball around centre with all of them */
+    double centre[3];    /* of area */
+    double normal[3];    /* the sum of the triangles', as long as their areas */
+    double moment[3][3]; /* the sum of the products of places from the centre, normals */
+    double radius2;      /* squared, of a ball around centre with all of them */
 } tm_tree_dipole;
 
 typedef struct tm_surface_tree {

@@ -25,6 +25,9 @@ static tm_status check_nodes(const tm_polygon_surface *from, tm_error *error)
     return TM_OK;
 }
 
+/* Half edges have 32-bit numbers. */
+static const size_t corners_most = (size_t)1 << 30;
+
 static tm_status check_facets(const tm_polygon_surface *from, tm_error *error)
 {
     if (from->nodes == 0 || from->facets == 0)
@@ -32,6 +35,10 @@ static tm_status check_facets(const tm_polygon_surface *from, tm_error *error)
                        "the surface is empty: it has %zu nodes and %zu faces (a closed "
                        "surface would have at least four of each)",
                        from->nodes, from->facets);
+    if (from->corners > corners_most)
+        return tm_fail(error, TM_ERROR_INPUT,
+                       "the faces have %zu corners in all (at most %zu are possible)",
+                       from->corners, corners_most);
     for (size_t f = 0; f < from->facets; f++)
         if (from->facet_start[f + 1] - from->facet_start[f] > 1 ||
             from->facet_hole_start[f + 1] != from->facet_hole_start[f])
@@ -67,8 +74,10 @@ static void cut_facets(tm_surface *surface, const tm_polygon_surface *from,
         for (size_t i = 0; i < k; i++)
             room[i] = place[from->item[from->start[p] + i]];
         size_t t = surface->triangles;
-        surface->triangles +=
+        size_t made =
             tm_polygon_triangulate(xyz, room, k, room + most, surface->triangle + t);
+        surface->flat += made == 0;
+        surface->triangles += made;
         for (; t < surface->triangles; t++) {
             surface->facet[t] = (uint32_t)f;
             if (surface->marker)
@@ -167,33 +176,6 @@ static void drop_triangles(tm_surface *surface)
     surface->triangles = kept;
 }
 
-/* The nodes that triangles have, in their order; number[v] becomes the new number. */
-static tm_status take_nodes(tm_surface *surface, const tm_polygon_surface *from,
-                            uint32_t *number, tm_error *error)
-{
-    size_t corners = 3 * surface->triangles;
-    for (size_t v = 0; v < from->nodes; v++)
-        number[v] = TM_NONE;
-    for (size_t i = 0; i < corners; i++)
-        number[surface->triangle[i / 3][i % 3]] = 0;
-    for (size_t v = 0; v < from->nodes; v++)
-        if (number[v] == 0)
-            number[v] = (uint32_t)surface->nodes++;
-    surface->xyz = tm_new(surface->nodes, sizeof *surface->xyz);
-    surface->origin = tm_new(surface->nodes, sizeof *surface->origin);
-    if (!surface->xyz || !surface->origin)
-        return tm_fail_memory(error);
-    for (size_t v = 0; v < from->nodes; v++) {
-        if (number[v] == TM_NONE)
-            continue;
-        memcpy(surface->xyz[number[v]], from->xyz[v], sizeof *surface->xyz);
-        surface->origin[number[v]] = (uint32_t)v;
-    }
-    for (size_t i = 0; i < corners; i++)
-        surface->triangle[i / 3][i % 3] = number[surface->triangle[i / 3][i % 3]];
-    return TM_OK;
-}
-
 static void find_bounds(tm_surface *surface)
 {
     for (int i = 0; i < 3; i++) {
@@ -204,6 +186,43 @@ static void find_bounds(tm_surface *surface)
             surface->high[i] = fmax(surface->high[i], surface->xyz[v][i]);
         }
     }
+}
+
+tm_status tm_surface_drop_nodes(tm_surface *surface, tm_error *error)
+{
+    size_t corners = 3 * surface->triangles, kept = 0;
+    uint32_t *number = calloc(surface->nodes + 1, sizeof *number);
+    if (!number)
+        return tm_fail_memory(error);
+    for (size_t i = 0; i < corners; i++)
+        number[surface->triangle[i / 3][i % 3]] = 1;
+    for (size_t v = 0; v < surface->nodes; v++) {
+        if (number[v] == 0)
+            continue;
+        memmove(surface->xyz[kept], surface->xyz[v], sizeof *surface->xyz);
+        surface->origin[kept] = surface->origin[v];
+        number[v] = (uint32_t)kept++;
+    }
+    surface->nodes = kept;
+    for (size_t i = 0; i < corners; i++)
+        surface->triangle[i / 3][i % 3] = number[surface->triangle[i / 3][i % 3]];
+    find_bounds(surface);
+    free(number);
+    return TM_OK;
+}
+
+static tm_status copy_nodes(tm_surface *surface, const tm_polygon_surface *from,
+                            tm_error *error)
+{
+    surface->nodes = from->nodes;
+    surface->xyz = tm_new(surface->nodes, sizeof *surface->xyz);
+    surface->origin = tm_new(surface->nodes, sizeof *surface->origin);
+    if (!surface->xyz || !surface->origin)
+        return tm_fail_memory(error);
+    memcpy(surface->xyz, from->xyz, surface->nodes * sizeof *surface->xyz);
+    for (size_t v = 0; v < surface->nodes; v++)
+        surface->origin[v] = (uint32_t)v;
+    return TM_OK;
 }
 
 tm_status tm_surface_triangulate(tm_surface *surface, const tm_polygon_surface *polygons,
@@ -221,16 +240,10 @@ tm_status tm_surface_triangulate(tm_surface *surface, const tm_polygon_surface *
         status = find_duplicates(surface, error);
     if (status == TM_OK) {
         drop_triangles(surface);
-        if (surface->triangles == 0)
-            status = tm_fail(error, TM_ERROR_INPUT,
-                             "no triangle is left: all %zu faces have no area (%zu "
-                             "triangles with a node twice, %zu duplicates)",
-                             polygons->facets, surface->flat, surface->duplicates);
+        status = copy_nodes(surface, polygons, error);
     }
     if (status == TM_OK)
-        status = take_nodes(surface, polygons, place, error);
-    if (status == TM_OK)
-        find_bounds(surface);
+        status = tm_surface_drop_nodes(surface, error);
     free(place);
     return status;
 }

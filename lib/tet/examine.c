@@ -6,7 +6,7 @@
 #include "../base/sum.h"
 #include "../geom/predicates.h"
 #include "../geom/vector.h"
-#include "examine_boundary.h"
+#include "../quality/examination_boundary.h"
 #include "examine_faces.h"
 #include "face_order.h"
 
@@ -123,7 +123,7 @@ tm_status tm_tet_examine(tm_examination *found, const tm_tet_arrays *mesh,
     free(sign);
     if (status == TM_OK)
         status = tm_examine_boundary(found, mesh->xyz, mesh->nodes,
-                                     (const uint32_t(*)[3])boundary.node, boundary.count,
+                                     (const uint32_t *)boundary.node, 3, boundary.count,
                                      error);
     free(boundary.node);
     if (status == TM_OK)

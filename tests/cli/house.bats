@@ -54,6 +54,14 @@ END
     sed 's/^\.node/surface.node/; s/^\.face/surface.face/; /^\.ele/,/^1 1 2/d' \
         corner.tm >surface.tm
     printf '%s\n' '2 0' 4 '0 0 0' '1 0 0' '0 1 0' '0 0 1' >corner.visf
+    printf '%s\n' '[Vertices, ARRAY1<POINT3D>]' 3 '0 0 0' '1 0 0' '0 1 0' \
+        '[Triangles, ARRAY1<STRING>]' 1 '0 1 2 0 0 0' >corner.mdl
+    printf '%s\n' MIXED '4 1' '0 0 0' '1 0 0' '0 1 0' '0 0 1' 'T 0 1 2 3' >corner.mvm
+    printf '%s\n' '8 0 1' '0 0 0' '0 0 1' '1 0 1' '1 0 0' '0 1 0' '0 1 1' '1 1 1' '1 1 0' \
+        '8 0 1 2 3 4 5 6 7 0' 0 1 >cube.oct
+    { sed '$d' corner.tm; printf '%s\n' .mix '1 0' '1 4 1 2 3 4' .octant '1 0' \
+        '1 0 0 0 0 1 2' .root '1 0' '1 0 0 0 1 0' surface.node '3 3 0 0' '1 0 0 0' \
+        '2 1 0 0' '3 0 1 0' surface.face '1 0' '1 1 2 3' .end; } >octant.tm
 }
 
 # The operands with which a filter reads the file $2; for tetgen-import, a .node file.
@@ -76,6 +84,10 @@ input() {
     tetgen-import) echo corner.node ;;
     tetgen-mesh) echo surface.tm ;;
     visf-import) echo corner.visf ;;
+    mdl-import) echo corner.mdl ;;
+    m3d-import) echo corner.mvm ;;
+    oct-import) echo cube.oct ;;
+    oct-export) echo octant.tm ;;
     *) echo corner.tm ;;
     esac
 }
@@ -199,15 +211,19 @@ teardown() {
     awk '/^\.ele/ { print ".face\n20000 0"; getline; faces = 1; next }
         faces && NF == 5 { NF = 4 } { print }' many.tm >faces.tm
     { printf '2 0\n20000\n'; sed 1d many.node | cut -d ' ' -f 2-; } >many.visf
+    { printf 'MIXED\n20000 0\n'; sed 1d many.node | cut -d ' ' -f 2-; } >many.mvm
     closes() {
         case $1 in
         tet-stats) command="tet-stats --list many.tm" ;;
+        jens-stats) command="jens-stats -l many.tm" ;;
         lepp-improve) command="lepp-improve -q many-nodes.tm" ;;
         tetgen-import) command="tetgen-import many.node" ;;
         tetgen-mesh) command="tetgen-mesh --quiet many.node" ;;
         off-export) command="off-export faces.tm" ;;
         visf-export) command="visf-export many-nodes.tm" ;;
         visf-import) command="visf-import many.visf" ;;
+        m3d-import) command="m3d-import many.mvm" ;;
+        vtk-export | m3d-export | mvm-export | getfem-export) command="$1 many.tm" ;;
         *) return 0 ;; # writes less than a pipe holds
         esac
         run -0 --separate-stderr bash -c "{ $command; echo \$? >status; } | head -n 1"

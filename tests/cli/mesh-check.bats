@@ -169,13 +169,13 @@ non-manifold vertices                1
 duplicate nodes                      1
   node 10 is at the place of node 3
 dangling faces                       2
-  row 1 of .face is no face of a tetrahedron
-  row 3 of .face is no face of a tetrahedron
+  row 1 of .face is no face of any tetrahedron
+  row 3 of .face is no face of any tetrahedron
 repeated faces                       1
   row 2 of .face repeats row 0
 dangling edges                       2
-  row 2 of .edge is no edge of a tetrahedron
-  row 3 of .edge is no edge of a tetrahedron
+  row 2 of .edge is no edge of any tetrahedron
+  row 3 of .edge is no edge of any tetrahedron
 repeated edges                       1
   row 1 of .edge repeats row 0
 END
@@ -267,13 +267,7 @@ END
     done
 }
 
-@test "a stream of other elements only: exit 3" {
-    printf 'termesh 1\n.node\n1 3 0 0\n1 0 0 0\n.mix\n0 0\n.end\n' >mixed.tm
-    run -3 --separate-stderr mesh-check mixed.tm
-    [ "$output" = "" ]
-    [ "$stderr" = "mesh-check: mixed.tm: .mix: mesh-check reads tetrahedra (.ele) or \
-polyhedra (.cell)" ]
-    # Beside tetrahedra they are passed over, and the user is told.
+@test "of several kinds of elements one is examined, with a note for the others" {
     sed 's/^\.end/.mix\n0 0\n.end/' cube.tm >both.tm
     run -0 --separate-stderr mesh-check both.tm
     [ "$stderr" = "mesh-check: both.tm: .mix is not examined, only .ele" ]
@@ -282,6 +276,239 @@ polyhedra (.cell)" ]
     run -0 --separate-stderr mesh-check both.tm
     [ "$stderr" = "mesh-check: both.tm: .cell is not examined, only .ele" ]
     [ "$output" = "$(mesh-check cube.tm)" ]
+    printf 'termesh 1\n.node\n0 3 0 0\n.mix\n0 0\n.facet\n0 0\n.cell\n0 0\n.end\n' >both.tm
+    run -0 --separate-stderr mesh-check both.tm
+    [ "$stderr" = "mesh-check: both.tm: .mix is not examined, only .cell" ]
+    [[ "$output" =~ polyhedra\ +0 ]]
+}
+
+@test "good mixed elements: the table and the JSON, exit 0" {
+    mixed >mixed.tm
+    run -0 --separate-stderr mesh-check --json out.json mixed.tm
+    [ "$stderr" = "" ]
+    diff - <(echo "$output") <<'END'
+nodes                               12
+elements                             4
+tetrahedra                           1
+pyramids                             1
+wedges                               1
+hexahedra                            1
+components                           1
+Euler number                         1
+volume                      1.91666667
+boundary faces                      14
+boundary area               10.1502815
+unused nodes                         0
+
+nothing is wrong
+END
+    python3 - out.json <<'END'
+import json, sys
+mesh = json.load(open(sys.argv[1]))
+assert list(mesh)[20:] == ["tetrahedra", "pyramids", "wedges", "hexahedra"]
+assert [mesh[k] for k in ("tetrahedra", "pyramids", "wedges", "hexahedra")] == [1] * 4
+assert (mesh["elements"], mesh["boundary_faces"], mesh["euler"]) == (4, 14, 1)
+END
+}
+
+@test "every kind of defect of mixed elements has its sentence" {
+    # Counted from 0: two cubes, and what is wrong beside them.
+    cat >wrong.tm <<'END'
+termesh 1
+.node
+15 3 0 0
+0 0 0 0
+1 1 0 0
+2 2 0 0
+3 0 1 0
+4 1 1 0
+5 2 1 0
+6 0 0 1
+7 1 0 1
+8 2 0 1
+9 0 1 1
+10 1 1 1
+11 2 1 1
+12 0.5 0.5 -1
+13 1.5 0.5 2
+14 1.5 0.5 2
+.mix
+9 0
+0 8 0 1 4 3 6 7 10 9
+1 8 1 2 5 4 7 8 11 10
+2 5 0 3 4 1 12
+3 4 7 8 11 13
+4 5 1 7 10 4 14
+5 5 2 8 5 11 12
+6 5 2 5 11 8 2
+7 5 0 1 4 3 12
+8 4 0 1 12 2
+.face
+2 0
+0 7 11 13
+1 0 1 2
+.edge
+2 0
+0 0 1
+1 0 5
+.facet
+5 1
+0 0 -1 4 0 3 4 1 5
+1 0 -1 4 0 1 7 6 5
+2 0 -1 4 7 6 0 1 5
+3 0 -1 4 3 9 10 4 6
+4 1 -1 4 3 9 10 4 6
+.end
+END
+    run -1 --separate-stderr mesh-check wrong.tm
+    [ "$stderr" = "" ]
+    diff - <(echo "$output" | sed -n '/^$/,$p') <<'END'
+
+inverted                             3
+  element 4 is inverted
+  element 5 is inverted
+  element 7 is inverted
+degenerate                           2
+  element 6 names node 2 twice
+  element 8 is flat
+unmatched faces                      5
+  face 0 1 3 belongs to 3 elements
+  face 0 1 12 belongs to 3 elements
+  face 1 4 7 belongs to 3 elements
+  quadrilateral 2 5 8 is there in another order too
+  triangle 7 8 11 is half of a quadrilateral
+overlapping faces                    3
+  elements 2 and 7 are on the same side of their common face
+  elements 2 and 7 are on the same side of their common face
+  elements 2 and 7 are on the same side of their common face
+open edges                           7
+  edge 0 3 belongs to 1 boundary face
+  edge 0 12 belongs to 1 boundary face
+  edge 1 7 belongs to 3 boundary faces
+  edge 1 12 belongs to 1 boundary face
+  edge 3 4 belongs to 1 boundary face
+  and 2 more
+non-manifold edges                   9
+  edge 1 2 belongs to 4 boundary faces
+  edge 1 7 belongs to 3 boundary faces
+  edge 2 8 belongs to 4 boundary faces
+  edge 2 12 belongs to 4 boundary faces
+  edge 4 10 belongs to 3 boundary faces
+  and 4 more
+duplicate nodes                      1
+  node 14 is at the place of node 13
+dangling faces                       1
+  row 0 of .facet is no face of the elements that it names
+repeated faces                       2
+  row 2 of .facet repeats row 1
+  row 4 of .facet repeats row 3
+dangling edges                       1
+  row 1 of .edge is no edge of any element
+END
+}
+
+@test "tetrahedra of .mix are examined as those of .ele, by each number of threads alike" {
+    many >many.tm
+    awk '$1 == ".ele" { print ".mix"; getline; print $1, 0; mix = 1; next }
+        mix && NF == 5 { $1 = $1 " 4" }
+        { print }' many.tm >mix.tm
+    run -1 mesh-check -j 1 mix.tm
+    diff <(echo "$output" | sed '2,6d; s/element/tetrahedron/; s/tetrahedrons/tetrahedra/') \
+        <(mesh-check many.tm | sed 2d)
+    cmp <(mesh-check -j 3 --json - mix.tm) <(mesh-check -j 1 --json - mix.tm)
+    [ "$output" = "$(mesh-check -j 3 mix.tm)" ]
+}
+
+@test "facets of mixed elements: the reference, the face, the sense" {
+    sed 's/^\.end/.facet\n2 1\n1 1 -1 4 1 4 3 2 5\n2 4 -1 3 6 7 12 -7\n.end/' \
+        <(mixed) >facets.tm
+    run -0 --separate-stderr mesh-check facets.tm
+    [ "$stderr" = "" ]
+    [ "$output" = "$(mixed | mesh-check)" ]
+    sed 's/^2 4 -1/2 5 -1/' facets.tm >far.tm
+    run -3 --separate-stderr mesh-check far.tm
+    [ "$output" = "" ]
+    [ "$stderr" = "mesh-check: far.tm: .facet: row 2: element 5 is out of range (there are 4)" ]
+    sed 's/^1 1 -1 4 1 4 3 2/1 1 -1 4 1 2 3 4/' facets.tm >turned.tm
+    run -1 mesh-check turned.tm
+    [[ "$output" == *"row 1 of .facet is no face of the elements that it names"* ]]
+}
+
+@test "volumes and areas of mixed elements are VTK's; its wedge is ours" {
+    python3 - >warped.tm <<'END'
+# Hexahedra, some cut into two wedges, others into six pyramids; nodes inside moved.
+import random
+random.seed(11)
+n = 4
+m = n + 1
+nodes = [[c + (random.uniform(-.2, .2) if 0 < c < n else 0) for c in (x, y, z)]
+         for z in range(m) for y in range(m) for x in range(m)]
+elements = []
+for z in range(n):
+    for y in range(n):
+        for x in range(n):
+            v = [x + a + m * (y + b + m * (z + c))
+                 for c in (0, 1) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))]
+            if x == 1 and y == 2:
+                elements += [[v[i] for i in w] for w in
+                             ((0, 2, 1, 4, 6, 5), (0, 3, 2, 4, 7, 6))]
+            elif (x + y + z) % 3 == 0 and x != 1:
+                nodes.append([x + .5, y + .5, z + .5])
+                elements += [[v[i] for i in f] + [len(nodes) - 1] for f in
+                             ((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2),
+                              (2, 6, 7, 3), (3, 7, 4, 0))]
+            else:
+                elements.append(v)
+print('termesh 1\n.node\n%d 3 0 0' % len(nodes))
+for i, p in enumerate(nodes):
+    print(i, *p)
+print('.mix\n%d 0' % len(elements))
+for i, e in enumerate(elements):
+    print(i, len(e), *e)
+print('.end')
+END
+    run -0 mesh-check --json out.json warped.tm
+    vtu-export warped.tm >warped.vtu
+    /usr/bin/python3 - out.json warped.vtu <<'END'
+import json, sys
+import numpy, vtk
+from vtk.util.numpy_support import vtk_to_numpy
+mesh = json.load(open(sys.argv[1]))
+reader = vtk.vtkXMLUnstructuredGridReader()
+reader.SetFileName(sys.argv[2])
+reader.Update()
+grid = reader.GetOutput()
+assert [mesh[k] > 7 for k in ("pyramids", "wedges", "hexahedra")] == [True] * 3
+
+def surface(cell, nodes):
+    """Six times the volume inside of a cell's faces, as VTK turns them."""
+    total = 0
+    for f in range(cell.GetNumberOfFaces()):
+        face = cell.GetFace(f)
+        p = [nodes[face.GetPointId(i)] for i in range(face.GetNumberOfPoints())]
+        fans = [p] if len(p) == 3 else [p[:3], [p[0], p[2], p[3]], p[1:], [p[0], p[1], p[3]]]
+        total += sum(numpy.linalg.det(t) for t in fans) / (1 if len(p) == 3 else 2)
+    return total
+
+nodes = vtk_to_numpy(grid.GetPoints().GetData()).astype(float)
+volumes = [surface(grid.GetCell(c), nodes) / 6 for c in range(grid.GetNumberOfCells())]
+assert min(volumes) > 0.02
+assert abs(sum(volumes) - mesh["volume"]) < 1e-9 and abs(mesh["volume"] - 64) < 1e-11
+# VTK's own sizes, of tetrahedra that halve the quadrilaterals, have the same signs.
+size = vtk.vtkCellSizeFilter()
+size.SetInputData(grid)
+size.Update()
+own = vtk_to_numpy(size.GetOutput().GetCellData().GetArray("Volume"))
+assert own.min() > 0.02
+assert abs(own - volumes).max() < 0.1
+outside = vtk.vtkDataSetSurfaceFilter()
+outside.SetInputData(grid)
+mass = vtk.vtkCellSizeFilter()
+mass.SetInputConnection(outside.GetOutputPort())
+mass.Update()
+area = vtk_to_numpy(mass.GetOutput().GetCellData().GetArray("Area")).sum()
+assert abs(area - mesh["area"]) < 1e-6 and abs(mesh["area"] - 96) < 1e-11
+END
 }
 
 @test "good polyhedra: the table and the JSON, exit 0" {

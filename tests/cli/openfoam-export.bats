@@ -151,6 +151,14 @@ $volume" ]
     [ "$(check mixed)" = '12 4 17 3 marker_0 1.91666667' ]
     mixed | sed 's/^1 8 1 2 3 4 5 6 7 8/1 8 1 4 3 2 5 8 7 6/' | openfoam-export turned
     check turned
+    # Markers of boundary polygons, wherever they begin; what is no face is passed over.
+    mixed | sed 's/^\.end/.facet\n4 1\n1 1 -1 4 3 2 1 4 5\n2 4 -1 3 12 6 7 -7\n3 1 -1 3 1 2 3 8\n4 1 2 4 5 6 7 8 9\n.end/' |
+        openfoam-export marked
+    [ "$(check marked)" = '12 4 17 3 marker_-7,marker_0,marker_5 1.91666667' ]
+    # Those of .facet stand over those of .face.
+    mixed | sed 's/^\.end/.face\n2 1\n1 6 7 12 3\n2 2 3 10 4\n.facet\n1 1\n1 4 -1 3 12 6 7 -7\n.end/' |
+        openfoam-export both
+    [ "$(check both)" = '12 4 17 3 marker_-7,marker_0,marker_4 1.91666667' ]
 }
 
 @test "a folder that is there is used again, but not with other files in it" {

@@ -4,11 +4,12 @@
  *     fuzz FOLDER CASES
  *
  * FOLDER holds the filters. Each case is read by the library; what it reads as a stream
- * must be written and read back alike; polyhedra are examined and measured; tetrahedra
- * must stay a mesh when they are improved.
+ * must be written and read back alike; polyhedra are examined and measured, mixed
+ * elements examined; tetrahedra must stay a mesh when they are improved.
  * Every FILTER_EVERY-th case goes through the filters: no signal, no report of a
  * sanitizer, no other exit status than 0, 1 and 3. No case may take longer than SECONDS.
  * TM_SEED repeats a run. The first case that fails is kept in a file. */
+#include "../../lib/mixed/mixed_examine.h"
 #include "../../lib/poly/poly_examine.h"
 #include "../../lib/poly/poly_statistics.h"
 #include "../../lib/tet/improve.h"
@@ -42,6 +43,8 @@ typedef struct {
 static const command commands[] = {
     {"tet-stats", {"--list", INPUT}, false},
     {"tet-stats", {INPUT, INPUT}, false},
+    {"jens-stats", {"-l", "--certify", INPUT}, false},
+    {"jens-stats", {"--verdict", "--json", "-", "-o", "list", INPUT}, false},
     {"lepp-improve", {INPUT}, false},
     {"lepp-improve", {"-t", "45", "--max-growth", "0.5", INPUT}, true},
     {"lepp-improve", {"-a", "selective", "-Q", "volume", "-m", "1", INPUT}, false},
@@ -64,6 +67,16 @@ static const command commands[] = {
     {"visf-import", {INPUT}, false},
     {"visf-export", {"--per-cell", "--binary", "big", INPUT}, false},
     {"vtu-export", {INPUT}, false},
+    {"vtk-export", {INPUT}, false},
+    {"getfem-export", {INPUT}, false},
+    {"mvm-export", {INPUT}, false},
+    {"m3d-export", {"-o", "out.m3d", INPUT}, false},
+    {"m3d-import", {"out.m3d"}, true},
+    {"m3d-import", {INPUT}, false},
+    {"mdl-import", {INPUT}, false},
+    {"oct-export", {"-o", "out.oct", INPUT}, false},
+    {"oct-import", {"out.oct"}, true},
+    {"oct-import", {"-m", "out.m3d", INPUT}, true},
     {"tetgen-mesh", {"--tetgen", "false", INPUT}, true},
 };
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
@@ -218,6 +231,21 @@ static void check_polyhedra(const tm_stream *stream)
             "polyhedra are examined and measured differently");
 }
 
+/* Mixed elements that are wrong are examined, alike by each number of threads. */
+static void check_mixed_elements(const tm_stream *stream)
+{
+    tm_examination found, again;
+    tm_error error;
+    const tm_mixed_arrays mesh = tm_mixed_arrays_of(stream);
+    require(tm_mixed_examine(&found, &mesh, 1, &error) == TM_OK &&
+                tm_mixed_examine(&again, &mesh, 2, &error) == TM_OK,
+            "mixed elements are not examined");
+    require(memcmp(found.defect, again.defect, sizeof found.defect) == 0 &&
+                found.euler == again.euler && found.components <= mesh.elements &&
+                found.unused_nodes <= mesh.nodes,
+            "mixed elements are examined differently");
+}
+
 static void check_library(const tm_text *text)
 {
     tm_stream stream;
@@ -225,6 +253,7 @@ static void check_library(const tm_text *text)
     if (read_bytes(&stream, text->byte ? text->byte : "", text->size, &error) == TM_OK) {
         check_round_trip(&stream);
         check_polyhedra(&stream);
+        check_mixed_elements(&stream);
         check_improvement(&stream);
         tm_stream_free(&stream);
     } else {

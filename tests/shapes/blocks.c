@@ -28,10 +28,20 @@ static uint32_t node_at(blocks *b, const size_t line[3])
     return *number;
 }
 
-/* The side of a cell in the direction of an axis, low or high. */
+static double distance2(const surface *s, uint32_t a, uint32_t b)
+{
+    double square = 0;
+    for (int i = 0; i < 3; i++)
+        square += (s->xyz[a][i] - s->xyz[b][i]) * (s->xyz[a][i] - s->xyz[b][i]);
+    return square;
+}
+
+/* The side of a cell in the direction of an axis, low or high, cut along its shorter
+ * diagonal. */
 static void add_side(blocks *b, const size_t cell[3], unsigned axis, unsigned high)
 {
     static const unsigned char ring[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    const double clearly = 0.999; /* rounding does not decide */
     uint32_t node[4];
     for (unsigned i = 0; i < 4; i++) {
         const unsigned char *corner = ring[high != 0 ? i : 3 - i];
@@ -41,8 +51,12 @@ static void add_side(blocks *b, const size_t cell[3], unsigned axis, unsigned hi
         line[(axis + 2) % 3] = cell[(axis + 2) % 3] + corner[1];
         node[i] = node_at(b, line);
     }
-    add_triangle(b->surface, node[0], node[1], node[2]);
-    add_triangle(b->surface, node[0], node[2], node[3]);
+    const unsigned first = distance2(b->surface, node[1], node[3]) <
+                                   clearly * distance2(b->surface, node[0], node[2])
+                               ? 1
+                               : 0;
+    add_triangle(b->surface, node[first], node[first + 1], node[first + 2]);
+    add_triangle(b->surface, node[first], node[first + 2], node[(first + 3) % 4]);
 }
 
 void make_blocks(blocks *b)

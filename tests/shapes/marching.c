@@ -2,7 +2,9 @@
 #include "marching.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 
 static size_t index_of(const marching *m, const size_t line[3])
 {
@@ -82,6 +84,57 @@ static void cut_tetrahedron(marching *m, const size_t cell[3], const unsigned co
     add_cut(m, cell, sorted, inside);
 }
 
+/* How fast a function grows at a point. */
+static void slope_of(shape_function *function, const double at[3], double step,
+                     double slope[3])
+{
+    for (int i = 0; i < 3; i++) {
+        double low[3] = {at[0], at[1], at[2]}, high[3] = {at[0], at[1], at[2]};
+        low[i] -= step;
+        high[i] += step;
+        slope[i] = (function(high) - function(low)) / (2 * step);
+    }
+}
+
+/* Takes a point to where the function vanishes; false if it is not close to that. */
+static bool go_back(shape_function *function, double step, double at[3])
+{
+    for (int round = 0; round < 3; round++) {
+        double slope[3];
+        slope_of(function, at, step, slope);
+        const double square =
+            slope[0] * slope[0] + slope[1] * slope[1] + slope[2] * slope[2];
+        const double value = function(at);
+        for (int i = 0; i < 3; i++)
+            at[i] -= value * slope[i] / square;
+    }
+    return fabs(function(at)) < step;
+}
+
+/* Puts every node in the middle of its neighbours, and from there back to where the
+ * function vanishes. */
+static void relax(marching *m, shape_function *function, double (*sum)[4])
+{
+    surface *s = m->surface;
+    const double step = m->side / (double)m->cells / 64;
+    memset(sum, 0, s->nodes * sizeof *sum);
+    for (size_t t = 0; t < s->triangles; t++)
+        for (int c = 0; c < 3; c++) {
+            double *to = sum[s->triangle[t][c]];
+            const double *from = s->xyz[s->triangle[t][(c + 1) % 3]];
+            for (int i = 0; i < 3; i++)
+                to[i] += from[i];
+            to[3]++;
+        }
+    for (size_t node = 0; node < s->nodes; node++) {
+        double at[3];
+        for (int i = 0; i < 3; i++)
+            at[i] = sum[node][i] / sum[node][3];
+        if (go_back(function, step, at))
+            memcpy(s->xyz[node], at, sizeof at);
+    }
+}
+
 void make_marching(marching *m, shape_function *function)
 {
     static const unsigned path[6][4] = {{0, 1, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7},
@@ -102,6 +155,11 @@ void make_marching(marching *m, shape_function *function)
             for (at[0] = 0; at[0] < n; at[0]++)
                 for (int i = 0; i < 6; i++)
                     cut_tetrahedron(m, at, path[i]);
+    room = 0;
+    double(*sum)[4] = grow(NULL, m->surface->nodes, &room, sizeof *sum);
+    for (int round = 0; round < 6; round++)
+        relax(m, function, sum);
+    free(sum);
     free(m->value);
     free(m->number);
 }

@@ -18,7 +18,8 @@ typedef struct marching {
 } marching;
 
 /* Cuts each of the six tetrahedra along the diagonal of each cell. The function has to be
- * positive on the sides of the cube. */
+ * positive on the sides of the cube, and smooth where it vanishes: nodes are spread
+ * evenly over the surface in the end. */
 void make_marching(marching *m, shape_function *function);
 
 #endif

@@ -80,12 +80,19 @@ static void place_cortex(const grid *g, double at[3])
 {
     (void)g;
     to_ball(at);
-    const double pitch = 5.2, width = 0.25, depth = 0.35;
+    const double pitch = 3.2, width = 0.5, depth = 0.32, swell = 0.05;
     const double x = pitch * at[0] + 0.5, y = pitch * at[1] + 1.1, z = pitch * at[2];
     const double wave = sin(x) * cos(y) + sin(y) * cos(z) + sin(z) * cos(x);
     const double r = 1 - depth * exp(-(wave / width) * (wave / width)) +
-                     0.05 * cos(1.9 * x) * cos(1.3 * z);
+                     swell * cos(1.9 * x) * cos(1.3 * z);
     scale(at, r, r, 0.8 * r);
+}
+
+/* The larger of two, rounded where they differ by less than a width. */
+static double rounded_max(double a, double b, double width)
+{
+    const double h = fmax(0, 1 - fabs(a - b) / width);
+    return fmax(a, b) + h * h * width / 4;
 }
 
 /* Cones from the ball of radius 1 to tips over the corners and sides of the cube. */
@@ -97,15 +104,16 @@ static void place_spikes(const grid *g, double at[3])
     double r = 1;
     for (int tip = 0; tip < 27; tip++) {
         const int along[3] = {tip % 3 - 1, tip / 3 % 3 - 1, tip / 9 - 1};
-        const double axis[3] = {along[0], along[1], along[2]};
-        const double length = length_of(axis);
-        if (length < 1 || (length > 1.1 && length < 1.5))
+        const int ones = abs(along[0]) + abs(along[1]) + abs(along[2]);
+        if (ones % 2 == 0)
             continue;
-        const double height = length < 1.1 ? 2.2 : 1.8;
-        const double c =
-            fmin(1, (at[0] * axis[0] + at[1] * axis[1] + at[2] * axis[2]) / length);
+        const double height = ones == 1 ? 2.2 : 1.8;
+        double product = 0;
+        for (int i = 0; i < 3; i++)
+            product += at[i] * along[i];
+        const double c = fmin(1, product / sqrt(ones));
         if (c > 0.5) /* where the ray is on the cone: r sin = slope (height - r cos) */
-            r = fmax(r, slope * height / (sqrt(1 - c * c) + slope * c));
+            r = rounded_max(r, slope * height / (sqrt(1 - c * c) + slope * c), 0.2);
     }
     scale(at, r, r, r);
 }
@@ -114,14 +122,14 @@ static void place_plate(const grid *g, double at[3])
 {
     (void)g;
     scale(at, 1, 1, 0.025);
-    tilt(at);
 }
 
 static void place_sheets(const grid *g, double at[3])
 {
     (void)g;
-    scale(at, 1, 1, 0.06);
-    const double x = at[0], angle = 0.11;
+    const double angle = 0.3;
+    scale(at, 1, 1, 0.12);
+    const double x = at[0];
     at[0] = cos(angle) * x - sin(angle) * at[2];
     at[2] = sin(angle) * x + cos(angle) * at[2];
 }
@@ -148,7 +156,6 @@ static void place_turned(const grid *g, double at[3])
 {
     (void)g;
     scale(at, 1, 0.7, 0.5);
-    tilt(at);
 }
 
 enum { TEETH = 16, TOOTH = 8 }; /* so many cells along a tooth and its gap */
@@ -162,7 +169,7 @@ static void place_gear(const grid *g, double at[3])
     const double turn = -2 * pi * (tooth + share[line % TOOTH]) / TEETH;
     const double outer = line % TOOTH < TOOTH / 2 ? 1 : 0.84;
     const double r = between(0.35, outer, at[1]);
-    at[2] = 0.3 * at[2];
+    at[2] = 0.5 * at[2];
     at[0] = r * cos(turn);
     at[1] = r * sin(turn);
 }
@@ -197,14 +204,13 @@ static double ball(const double at[3], double radius)
     return length_of(at) - radius;
 }
 
-/* One side of a gyroid, cut by a ball; where they meet it is rounded. */
+/* One side of a gyroid, cut by a ball. */
 static double gyroid(const double at[3])
 {
-    const double pitch = 5.2, level = 0.2, rounding = 0.1;
+    const double pitch = 5.2, level = 0.2, rounding = 0.3;
     const double x = pitch * at[0], y = pitch * at[1], z = pitch * at[2];
     const double wave = sin(x) * cos(y) + sin(y) * cos(z) + sin(z) * cos(x);
-    const double a = (wave - level) / pitch, b = ball(at, 1);
-    return (a + b + sqrt((a - b) * (a - b) + rounding * rounding)) / 2;
+    return rounded_max((wave - level) / pitch, ball(at, 1), rounding);
 }
 
 /* The distance to the points within a radius of a line. */
@@ -236,7 +242,8 @@ static double hand(const double at[3])
     scale(palm, 1 / 0.5, 1 / 0.5, 1 / 0.16);
     double least = ball(palm, 1) * 0.16;
     for (int i = 0; i < 5; i++)
-        least = fmin(least, capsule(at, finger[i][0], finger[i][1], 0.075));
+        least =
+            -rounded_max(-least, -capsule(at, finger[i][0], finger[i][1], 0.075), 0.08);
     return least;
 }
 
@@ -251,6 +258,7 @@ typedef struct shape {
     has_function *has;
     shape_function *function;
     double side;
+    bool tilted;
 } shape;
 
 static const shape shapes[] = {
@@ -259,10 +267,15 @@ static const shape shapes[] = {
      .fine = 96,
      .cells = {0, 10, 10},
      .wrapped = true,
-     .place = place_torus},
+     .place = place_torus,
+     .tilted = true},
     {.name = "gyroid", .fine = 22, .function = gyroid, .side = 2.1},
-    {.name = "cortex", .fine = 36, .place = place_cortex},
-    {.name = "plate", .fine = 40, .cells = {0, 0, 1}, .place = place_plate},
+    {.name = "cortex", .fine = 44, .place = place_cortex},
+    {.name = "plate",
+     .fine = 40,
+     .cells = {0, 0, 1},
+     .place = place_plate,
+     .tilted = true},
     {.name = "sheets",
      .fine = 30,
      .cells = {0, 0, 3},
@@ -274,9 +287,10 @@ static const shape shapes[] = {
      .fine = 8,
      .cells = {(size_t)TEETH * TOOTH, 0, 0},
      .wrapped = true,
-     .place = place_gear},
-    {.name = "turned", .fine = 16, .place = place_turned},
-    {.name = "hand", .fine = 40, .function = hand, .side = 2.4},
+     .place = place_gear,
+     .tilted = true},
+    {.name = "turned", .fine = 16, .place = place_turned, .tilted = true},
+    {.name = "hand", .fine = 40, .function = hand, .side = 2.4, .tilted = true},
     {.name = "folded", .fine = 96, .cells = {0, 20, 1}, .place = place_folded},
 };
 enum { SHAPES = sizeof shapes / sizeof shapes[0] };
@@ -325,6 +339,8 @@ int main(int argc, char **argv)
     }
     surface s = {0};
     make(is, fine > 0 ? fine : is->fine, &s);
+    for (size_t i = 0; is->tilted && i < s.nodes; i++)
+        tilt(s.xyz[i]);
     print(&s);
     free(s.xyz);
     free(s.triangle);

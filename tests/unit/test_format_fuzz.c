@@ -2,6 +2,8 @@
 /* No input makes a reader of foreign formats crash or return a surface that is not one:
  * every beginning of a good file, and good files with bytes changed. */
 #include "../../lib/format/cell_faces.h"
+#include "../../lib/format/m3d.h"
+#include "../../lib/format/oct.h"
 #include "../../lib/format/tetgen_rows.h"
 #include "../../lib/format/visf.h"
 #include "format_samples.h"
@@ -11,6 +13,7 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <stdio.h>
 
 #include <cmocka.h>
 
@@ -216,6 +219,107 @@ static void test_visf(void **state)
     tm_stream_free(&stream);
 }
 
+/* What is read refers to what there is, and is written again. */
+static void read_m3d(const char *bytes, size_t size)
+{
+    char *copy = malloc(size + !size);
+    assert_non_null(copy);
+    memcpy(copy, bytes, size);
+    tm_stream stream;
+    tm_text text = {0};
+    size_t materials;
+    tm_error error = {.status = TM_OK};
+    tm_stream_init(&stream);
+    if (tm_m3d_read(&stream, copy, size, "file", &materials, &error) == TM_OK) {
+        const tm_block *mix = tm_stream_find(&stream, ".mix");
+        check_ranges(mix->start, mix->count, mix->start[mix->count]);
+        for (size_t i = 0; i < mix->start[mix->count]; i++)
+            assert_true(mix->item[i] < tm_stream_find(&stream, ".node")->count);
+        assert_true(materials <= mix->count);
+        assert_int_equal(tm_m3d_write(&text, &stream, TM_MVM, 1, &error),
+                         mix->count > 0 ? TM_OK : TM_ERROR_INPUT);
+        tm_text_free(&text);
+    } else {
+        assert_int_equal(error.status, TM_ERROR_INPUT);
+        assert_true(error.what[0] != '\0');
+        assert_int_equal(stream.blocks, 0);
+    }
+    tm_stream_free(&stream);
+    free(copy);
+}
+
+/* Where octants are read and fit into a tree, their places are in its roots. */
+static void read_oct(const char *bytes, size_t size)
+{
+    char *copy = malloc(size + !size);
+    assert_non_null(copy);
+    memcpy(copy, bytes, size);
+    tm_stream stream;
+    tm_oct oct;
+    tm_error error = {.status = TM_OK};
+    tm_stream_init(&stream);
+    tm_status status = tm_oct_read(&oct, copy, size, "file", &error);
+    if (status == TM_OK)
+        status = tm_oct_give(&oct, &stream, "file", &error);
+    if (status == TM_OK) {
+        const tm_block *octant = tm_stream_find(&stream, ".octant");
+        const tm_block *root = tm_stream_find(&stream, ".root");
+        assert_int_equal(octant->count, oct.octants);
+        for (size_t o = 0; o < octant->count; o++)
+            assert_true(octant->integer[6 * o] <= root->integer[0]);
+        for (size_t i = 0; i < 4 * root->count; i++)
+            assert_true(isfinite(root->real[i]));
+    } else {
+        assert_int_equal(status, TM_ERROR_INPUT);
+        assert_true(error.status == status && error.what[0] != '\0');
+    }
+    tm_oct_free(&oct);
+    tm_stream_free(&stream);
+    free(copy);
+}
+
+static void read_damaged(const char *text, void (*read)(const char *, size_t))
+{
+    size_t length = strlen(text);
+    for (size_t size = 0; size <= length; size++)
+        read(text, size);
+    for (int i = 0; i < CHANGED && length > 0; i++) {
+        char changed[BINARY_MAX];
+        memcpy(changed, text, length);
+        change(changed, length);
+        read(changed, length);
+    }
+}
+
+static void test_m3d(void **state)
+{
+    (void)state;
+    read_damaged("[Name, STRING]\r\ntoto\r\n[Elements, ARRAY1<STRING>]\r\n4\r\n"
+                 "H 0 1 2 3 4 5 6 7 1000.0 0.45 1.0\nP 4 5 6 7 8 1000.0 0.45 1.0\n"
+                 "R 1 3 0 5 7 4 1000.0 0.5 1.0\nT 0 1 2 8 1000.0 0.45 1.0\n"
+                 "[Nodes, ARRAY1<STRING>]\n9\n\n1 0 0 0\n1 1 0 0\n1 1 1 0\n1 0 1 0\n"
+                 "1 0 0 1\n1 1 0 1\n1 1 1 1\n1 0 1 1\n1 +5.0E-01 .5 2\n",
+                 read_m3d);
+    read_damaged("MIXED\n5 2\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n.5 .5 1\nP 0 1 2 3 4\n"
+                 "T 0 1 2 4\n",
+                 read_m3d);
+}
+
+static void test_oct(void **state)
+{
+    (void)state;
+    static const char points[] = "0 0 0\n0 0 1\n1 0 1\n1 0 0\n0 1 0\n0 1 1\n1 1 1\n"
+                                 "1 1 0\n2 0 1\n2 0 0\n2 1 1\n2 1 0\n0 1 0\n8 9 1\n";
+    static const char octants[] = "8 0 1 2 3 4 5 6 7 1\n3 0 1 2\n"
+                                  "8 3 2 8 9 7 6 10 11 1\r\n0\n\n"
+                                  "Geometric Transform\n0 0 0\n0 0 0\n";
+    char text[BINARY_MAX];
+    snprintf(text, sizeof text, "12 2 2\n\n%s\n%s1 0", points, octants);
+    read_damaged(text, read_oct);
+    snprintf(text, sizeof text, "12 2 2 3\n\n%s\n1 2\n%s", points, octants);
+    read_damaged(text, read_oct);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -224,6 +328,8 @@ int main(void)
         cmocka_unit_test(test_wrong_reader),
         cmocka_unit_test(test_rows),
         cmocka_unit_test(test_visf),
+        cmocka_unit_test(test_m3d),
+        cmocka_unit_test(test_oct),
     };
     make_samples(samples);
     random_start();

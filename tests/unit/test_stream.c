@@ -211,6 +211,10 @@ static const wrong wrongs[] = {
     {NODES ".cell\n1 0\n1 4 1 1 1 1\n.end\n", 0, ".cell", "facet 1 is out of range"},
     {NODES ".facet\n1 0\n1 2 -1 3 1 2 1\n.cell\n1 0\n1 4 1 1 1 1\n.end\n", 0, ".facet",
      "cell 2 is out of range"},
+    {NODES ".facet\n1 0\n1 2 -1 3 1 2 1\n.mix\n1 0\n1 4 1 1 1 1\n.end\n", 0, ".facet",
+     "element 2 is out of range"},
+    {NODES ".mix\n1 0\n1 4 1 1 1 1\n.facet\n1 0\n1 1 2 3 1 2 1\n.end\n", 0, ".facet",
+     "element 2 is out of range"},
     {NODES ".octant\n1 0\n1 0 0 0 0 1 2\n.end\n", 0, ".octant", "(of 0 in .mix)"},
 };
 

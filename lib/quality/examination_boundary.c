@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* At each node v, its boundary faces sorted by their edges at v: a run of k is an edge
  * with k boundary faces, and joins them into one fan. */
-#include "examine_boundary.h"
+#include "examination_boundary.h"
 
 #include "../base/array.h"
 #include "../base/disjoint_sets.h"
@@ -17,7 +17,8 @@ typedef struct spoke {
 } spoke;
 
 typedef struct surface {
-    const uint32_t (*face)[3];
+    const uint32_t *face; /* [faces][corners] */
+    size_t corners;
     size_t faces;
     size_t *start;     /* [nodes + 1]: the faces at v are */
     uint32_t *face_at; /* face_at[start[v] … start[v + 1]) */
@@ -35,22 +36,32 @@ static void surface_free(surface *s)
     free(s->parent);
 }
 
+/* How many nodes a face has. */
+static size_t corners_of(const surface *s, const uint32_t *face)
+{
+    return s->corners == 4 && face[3] == TM_NONE ? 3 : s->corners;
+}
+
 static bool list_faces(surface *s, size_t nodes)
 {
     s->start = calloc(nodes + 2, sizeof *s->start);
-    s->face_at = tm_new(3 * s->faces, sizeof *s->face_at);
+    s->face_at = tm_new(s->faces, s->corners * sizeof *s->face_at);
     if (!s->start || !s->face_at)
         return false;
     /* start[v + 2] counts, then start[v + 1] is where the next face of v goes. */
     size_t *next = s->start + 1;
-    for (size_t f = 0; f < s->faces; f++)
-        for (size_t i = 0; i < 3; i++)
-            next[s->face[f][i] + 1]++;
+    for (size_t f = 0; f < s->faces; f++) {
+        const uint32_t *n = s->face + s->corners * f;
+        for (size_t i = 0; i < corners_of(s, n); i++)
+            next[n[i] + 1]++;
+    }
     for (size_t v = 0; v < nodes; v++)
         next[v + 1] += next[v];
-    for (size_t f = 0; f < s->faces; f++)
-        for (size_t i = 0; i < 3; i++)
-            s->face_at[next[s->face[f][i]]++] = (uint32_t)f;
+    for (size_t f = 0; f < s->faces; f++) {
+        const uint32_t *n = s->face + s->corners * f;
+        for (size_t i = 0; i < corners_of(s, n); i++)
+            s->face_at[next[n[i]]++] = (uint32_t)f;
+    }
     return true;
 }
 
@@ -88,11 +99,14 @@ static bool find_spokes(surface *s, uint32_t v, size_t count)
         return false;
     size_t found = 0;
     for (uint32_t i = 0; i < count; i++) {
-        const uint32_t *n = s->face[s->face_at[s->start[v] + i]];
+        const uint32_t *n = s->face + s->corners * s->face_at[s->start[v] + i];
+        const size_t k = corners_of(s, n);
+        size_t at = 0;
+        while (n[at] != v)
+            at++;
         s->parent[i] = i;
-        for (size_t k = 0; k < 3; k++)
-            if (n[k] != v)
-                s->spoke[found++] = (spoke){n[k], i};
+        s->spoke[found++] = (spoke){n[at + 1 < k ? at + 1 : 0], i};
+        s->spoke[found++] = (spoke){n[at > 0 ? at - 1 : k - 1], i};
     }
     sort(s->spoke, found);
     return true;
@@ -136,16 +150,19 @@ static double area(const surface *s, const double (*xyz)[3])
 {
     tm_sum sum = {0};
     for (size_t f = 0; f < s->faces; f++) {
-        const uint32_t *n = s->face[f];
-        tm_sum_add(&sum, tm_triangle_area(xyz[n[0]], xyz[n[1]], xyz[n[2]]));
+        const uint32_t *n = s->face + s->corners * f;
+        const double *a = xyz[n[0]], *b = xyz[n[1]], *c = xyz[n[2]];
+        tm_sum_add(&sum, corners_of(s, n) == 3 ? tm_triangle_area(a, b, c)
+                                               : tm_bilinear_area(a, b, c, xyz[n[3]]));
     }
     return tm_sum_value(sum);
 }
 
 tm_status tm_examine_boundary(tm_examination *found, const double (*xyz)[3], size_t nodes,
-                              const uint32_t (*face)[3], size_t faces, tm_error *error)
+                              const uint32_t *face, size_t corners, size_t faces,
+                              tm_error *error)
 {
-    surface s = {.face = face, .faces = faces};
+    surface s = {.face = face, .corners = corners, .faces = faces};
     bool enough = list_faces(&s, nodes);
     for (uint32_t v = 0; enough && v < nodes; v++)
         enough = check_node(found, &s, v);

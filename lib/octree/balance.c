@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "forest.h"
+#include "balance.h"
 
 #include "../base/array.h"
+#include "p4est_call.h"
 
 #include <p8est_extended.h>
 #include <p8est_io.h>
@@ -12,12 +13,13 @@ enum { FINER = P8EST_MAXLEVEL - TM_OCTREE_FINEST, FIELDS = 4 };
 
 _Static_assert(TM_OCTREE_FINEST == P8EST_QMAXLEVEL, "the deepest level of p4est");
 
-tm_status tm_forest_memory(size_t count, size_t size, tm_error *error)
-{
-    void *block = tm_new(count, size);
-    free(block);
-    return block ? TM_OK : tm_fail_memory(error);
-}
+/* Leaves on their way into a forest; until[t]: how many there are up to tree t. */
+typedef struct inflation {
+    const tm_leaf_list *leaves;
+    const tm_brick *brick;
+    p4est_gloidx_t *until; /* [trees + 1] */
+    p8est_t *forest;
+} inflation;
 
 /* The tree that the leaf is in, from the one that the leaf before it is in. */
 static size_t tree_of(const tm_brick *brick, size_t tree, const uint32_t anchor[3])
@@ -31,43 +33,54 @@ static size_t tree_of(const tm_brick *brick, size_t tree, const uint32_t anchor[
     }
 }
 
-/* x y z level of each leaf in its tree, and how many there are up to each tree. */
-static void deflate(const tm_leaf_list *leaves, const tm_brick *brick,
-                    sc_array_t *quadrants, p4est_gloidx_t *until)
+/* x y z level of each leaf in its tree. */
+static void deflate(const inflation *in, p4est_qcoord_t *out)
 {
     const uint32_t within = ((uint32_t)1 << TM_OCTREE_FINEST) - 1;
-    p4est_qcoord_t *out = (p4est_qcoord_t *)(void *)quadrants->array;
+    const tm_leaf_list *leaves = in->leaves;
     size_t tree = 0;
     for (size_t i = 0; i < leaves->count; i++) {
         const tm_leaf *leaf = &leaves->leaf[i];
-        for (const size_t now = tree_of(brick, tree, leaf->anchor); tree < now;)
-            until[++tree] = (p4est_gloidx_t)i;
+        for (const size_t now = tree_of(in->brick, tree, leaf->anchor); tree < now;)
+            in->until[++tree] = (p4est_gloidx_t)i;
         for (int k = 0; k < 3; k++)
             *out++ = (p4est_qcoord_t)((leaf->anchor[k] & within) << FINER);
         *out++ = leaf->level;
     }
-    while (tree < brick->count)
-        until[++tree] = (p4est_gloidx_t)leaves->count;
+    while (tree < in->brick->count)
+        in->until[++tree] = (p4est_gloidx_t)leaves->count;
 }
 
-static tm_status inflate(p8est_t **forest, const tm_leaf_list *leaves,
-                         const tm_brick *brick, tm_error *error)
+static void inflate(void *user)
 {
-    p4est_gloidx_t *until = calloc(brick->count + 1, sizeof *until);
-    if (!until)
-        return tm_fail_memory(error);
-    const size_t each = FIELDS * sizeof(p4est_qcoord_t) + sizeof(p8est_quadrant_t);
-    tm_status status = tm_forest_memory(leaves->count, each, error);
-    if (status == TM_OK) {
-        sc_array_t *quadrants =
-            sc_array_new_count(sizeof(p4est_qcoord_t), FIELDS * leaves->count);
-        deflate(leaves, brick, quadrants, until);
-        const p4est_gloidx_t first[2] = {0, (p4est_gloidx_t)leaves->count};
-        *forest = p8est_inflate(sc_MPI_COMM_WORLD, brick->trees, first, until, quadrants,
-                                NULL, NULL);
-        sc_array_destroy(quadrants);
-    }
-    free(until);
+    inflation *in = user;
+    const size_t count = in->leaves->count;
+    sc_array_t *quadrants = sc_array_new_count(sizeof(p4est_qcoord_t), FIELDS * count);
+    deflate(in, (p4est_qcoord_t *)(void *)quadrants->array);
+    const p4est_gloidx_t first[2] = {0, (p4est_gloidx_t)count};
+    in->forest = p8est_inflate(sc_MPI_COMM_SELF, in->brick->trees, first, in->until,
+                               quadrants, NULL, NULL);
+    sc_array_destroy(quadrants);
+}
+
+static void balance(void *forest)
+{
+    p8est_balance(forest, P8EST_CONNECT_EDGE, NULL);
+}
+
+/* A balanced forest of the leaves. */
+static tm_status plant(p8est_t **forest, const tm_leaf_list *leaves,
+                       const tm_brick *brick, tm_error *error)
+{
+    inflation in = {.leaves = leaves, .brick = brick};
+    in.until = calloc(brick->count + 1, sizeof *in.until);
+    tm_status status =
+        in.until ? tm_p4est_call(inflate, &in, error) : tm_fail_memory(error);
+    free(in.until);
+    if (status == TM_OK)
+        status = tm_p4est_call(balance, in.forest, error);
+    if (status == TM_OK)
+        *forest = in.forest;
     return status;
 }
 
@@ -122,22 +135,28 @@ static void replace(tm_leaf_list *leaves, tm_leaf *now, p8est_t *forest,
     *leaves = (tm_leaf_list){.count = count, .room = count, .leaf = now};
 }
 
-tm_status tm_forest_balance(p8est_t **forest, tm_leaf_list *leaves,
-                            const tm_octree *octree, const tm_brick *brick,
-                            const tm_surface *surface, tm_error *error)
+static tm_status take_leaves(tm_leaf_list *leaves, p8est_t *forest,
+                             const tm_octree *octree, const tm_brick *brick,
+                             const tm_surface *surface, tm_error *error)
 {
-    tm_status status = inflate(forest, leaves, brick, error);
-    if (status == TM_OK)
-        status = tm_forest_memory(leaves->count, 3 * sizeof(p8est_quadrant_t), error);
-    if (status != TM_OK)
-        return status;
-    p8est_balance(*forest, P8EST_CONNECT_EDGE, NULL);
-    const size_t count = (size_t)(*forest)->local_num_quadrants;
+    const size_t count = (size_t)forest->local_num_quadrants;
     if (count == leaves->count)
         return TM_OK;
     tm_leaf *now = tm_new(count, sizeof *now);
     if (!now)
         return tm_fail_memory(error);
-    replace(leaves, now, *forest, octree, brick, surface);
+    replace(leaves, now, forest, octree, brick, surface);
     return TM_OK;
+}
+
+tm_status tm_balance(tm_leaf_list *leaves, const tm_octree *octree, const tm_brick *brick,
+                     const tm_surface *surface, tm_error *error)
+{
+    p8est_t *forest = NULL;
+    tm_status status = plant(&forest, leaves, brick, error);
+    if (status != TM_OK)
+        return status;
+    status = take_leaves(leaves, forest, octree, brick, surface, error);
+    p8est_destroy(forest);
+    return status;
 }

@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The restart file (.oct) of the mixed-element octree mesher (C. Lobos and others,
+ * 2013-2021), text with ids from 0:
+ *
+ *     np ne no                       points, edges, octants
+ *     x y z                          np lattice points
+ *     a b m                          ne edges of octants and the point in the middle of
+ *                                    each, 0 where there is none
+ *     8 n0 … n7 l                    no times the corners and the level of an octant,
+ *     k t1 … tk                      and the triangles of the surface that meet it
+ *     Geometric Transform
+ *     x y z
+ *     a b c                          angles by which the octree is turned about x y z
+ *     e1 … eno                       how many elements are in each octant
+ *
+ * Another version has four numbers in the first line, the last of which is how many
+ * elements there are, and the element counts before the octants. Corners come as those of
+ * a hexahedron in .m3d. The elements themselves are in the .m3d file beside it, in the
+ * order of the octants. */
+#ifndef TM_FORMAT_OCT_H
+#define TM_FORMAT_OCT_H
+
+#include "../stream/stream.h"
+
+enum { TM_OCT_CORNERS = 8 };
+
+/* What is read of a file. */
+typedef struct tm_oct {
+    size_t points;
+    double (*xyz)[3];
+    size_t octants;
+    uint32_t (*corner)[TM_OCT_CORNERS];
+    unsigned char *level;
+    uint32_t *elements; /* [octants], or NULL where the file ends before them */
+} tm_oct;
+
+/* Reads a file of either version; edges and triangles are only looked over.
+ * TM_ERROR_INPUT with the line, also where the octree is turned, for octants of a stream
+ * are along the axes. *oct is to be freed, after an error too. O(size). */
+tm_status tm_oct_read(tm_oct *oct, const char *bytes, size_t size, const char *name,
+                      tm_error *error);
+void tm_oct_free(tm_oct *oct);
+
+/* Adds .octant and .root to a stream. Where it has a .mix, that is the mesh of the
+ * octants; else .node and .mix become the lattice points and the octants themselves as
+ * hexahedra. The brick is over all lattice points; where the octants do not fit into one
+ * that begins there, which can be where those at its side are missing, it begins where
+ * they do. TM_ERROR_INPUT where octants are no cubes, of different trees, or not as many
+ * elements as the mesh has. *stream is as before after an error, but for blocks added.
+ * O(n). */
+tm_status tm_oct_give(const tm_oct *oct, tm_stream *stream, const char *name,
+                      tm_error *error);
+
+/* Appends the file of the first version to *text: .octant, .root and .mix, and
+ * surface.node and surface.face for the triangles that meet the closed octants. Point 0
+ * is the middle of no edge. TM_ERROR_INPUT where a block is missing, octants are not in
+ * the tree that .root says, overlap, or do not have their elements in their own order.
+ * `threads` format. O(n log n). */
+tm_status tm_oct_write(tm_text *text, const tm_stream *stream, unsigned threads,
+                       tm_error *error);
+
+#endif
