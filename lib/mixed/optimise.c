@@ -287,7 +287,7 @@ static tm_status rank_bad(tm_optimise_work *w, tm_error *error)
     return TM_OK;
 }
 
-static bool is_spent(const tm_optimise_work *w)
+bool tm_optimise_is_spent(const tm_optimise_work *w)
 {
     const size_t most = w->options->most_measured;
     return most > 0 && w->cluster.measured >= most;
@@ -297,7 +297,7 @@ static tm_status make_pass(tm_optimise_work *w, const pass *how, uint64_t round,
                            tm_error *error)
 {
     tm_status status = rank_bad(w, error);
-    for (size_t b = 0; status == TM_OK && b < w->bads && !is_spent(w); b++) {
+    for (size_t b = 0; status == TM_OK && b < w->bads && !tm_optimise_is_spent(w); b++) {
         const uint32_t e = w->bad[b];
         if (!w->visited[e] && w->jens[e] < tm_threshold_of(w->options, e))
             status = mend_cluster(w, e, how, round, error);

@@ -105,7 +105,9 @@ tm_status tm_optimise_release(tm_optimise_work *w, tm_error *error)
 {
     list nodes = {0};
     tm_status status = TM_OK;
-    for (size_t step = 0; step < STEPS && status == TM_OK && w->bads > 0; step++)
+    for (size_t step = 0;
+         step < STEPS && status == TM_OK && w->bads > 0 && !tm_optimise_is_spent(w);
+         step++)
         status = make_step(w, step, &nodes, error);
     take_back(w, &nodes);
     free(nodes.item);

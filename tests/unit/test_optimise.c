@@ -273,7 +273,8 @@ static void check(const grid *g, const tm_boundary *boundary, double threshold,
 
 static tm_optimise_report optimise(grid *g, const tm_boundary *boundary, double threshold)
 {
-    const tm_optimise_options options = {threshold, NULL, threshold, 0, 3};
+    const tm_optimise_options options = {
+        .threshold = threshold, .held_threshold = threshold, .effort = 3};
     tm_optimise_report report;
     tm_error error;
     assert_int_equal(
@@ -322,7 +323,7 @@ static void test_ball(void **state)
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
         grid g = make_grid(kinds[k]);
         make_round(&g);
-        throw_nodes(&g, &ball, 0.25, 1);
+        throw_nodes(&g, &ball, 0.2, 1);
         remember(&g);
         const tm_optimise_report report = optimise(&g, &ball, threshold);
         check(&g, &ball, threshold, &report);
@@ -505,7 +506,10 @@ static void test_released(void **state)
         g.rule[1] = g.rule[0];
         memcpy(g.mesh.xyz[1], g.mesh.xyz[0], sizeof *g.mesh.xyz);
         remember(&g);
-        const tm_optimise_options options = {0.03, NULL, 0.03, may * 0.01, 1};
+        const tm_optimise_options options = {.threshold = 0.03,
+                                             .held_threshold = 0.03,
+                                             .release_threshold = may * 0.01,
+                                             .effort = 1};
         tm_optimise_report report;
         tm_error error;
         assert_int_equal(
@@ -536,7 +540,8 @@ static void test_thresholds(void **state)
         thresholds[e] = e % 7 == 0 ? 0.25 : 0.02;
         bad += g.before[e] < thresholds[e];
     }
-    const tm_optimise_options options = {0, thresholds, 0.02, 0, 3};
+    const tm_optimise_options options = {
+        .thresholds = thresholds, .held_threshold = 0.02, .effort = 3};
     tm_optimise_report report;
     tm_error error;
     assert_int_equal(tm_mixed_optimise(&g.mesh, g.rule, &cube, &options, &report, &error),
@@ -547,6 +552,31 @@ static void test_thresholds(void **state)
     for (size_t e = 0; e < g.mesh.elements; e += 7)
         assert_true(quality(&g, e) >= 0.25);
     free(thresholds);
+    free_grid(&g);
+}
+
+/* An end to the work: nothing is begun after the first cluster, and what was done stays.
+ */
+static void test_spent(void **state)
+{
+    (void)state;
+    grid g = make_grid(ANY);
+    throw_nodes(&g, &cube, 0.45, 1);
+    for (uint32_t v = 0; v < GRID; v += WIDE * WIDE + 1)
+        g.rule[v].held = g.rule[v].freedom == TM_MOVES_ON_SURFACE;
+    remember(&g);
+    const tm_optimise_options options = {.threshold = 0.1,
+                                         .held_threshold = 0.1,
+                                         .release_threshold = 0.1,
+                                         .effort = 1,
+                                         .most_measured = 1};
+    tm_optimise_report report;
+    tm_error error;
+    assert_int_equal(tm_mixed_optimise(&g.mesh, g.rule, &cube, &options, &report, &error),
+                     TM_OK);
+    check(&g, &cube, 0.1, &report);
+    assert_int_equal(report.clusters, 1);
+    assert_int_equal(report.held_after, report.held_before);
     free_grid(&g);
 }
 
@@ -575,12 +605,12 @@ int main(void)
 {
     random_start();
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_untangles),     cmocka_unit_test(test_few),
-        cmocka_unit_test(test_ball),          cmocka_unit_test(test_surface),
-        cmocka_unit_test(test_nothing),       cmocka_unit_test(test_fixed),
-        cmocka_unit_test(test_held),          cmocka_unit_test(test_held_stays),
-        cmocka_unit_test(test_released),      cmocka_unit_test(test_thresholds),
-        cmocka_unit_test(test_deterministic),
+        cmocka_unit_test(test_untangles), cmocka_unit_test(test_few),
+        cmocka_unit_test(test_ball),      cmocka_unit_test(test_surface),
+        cmocka_unit_test(test_nothing),   cmocka_unit_test(test_fixed),
+        cmocka_unit_test(test_held),      cmocka_unit_test(test_held_stays),
+        cmocka_unit_test(test_released),  cmocka_unit_test(test_thresholds),
+        cmocka_unit_test(test_spent),     cmocka_unit_test(test_deterministic),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
