@@ -117,7 +117,7 @@ static tm_node_rule *find_rules(const tm_octree_mesh *m)
 {
     static const uint8_t freedom[] = {[TM_ON_PATCH] = TM_MOVES_ON_SURFACE,
                                       [TM_ON_CURVE] = TM_MOVES_ON_CURVE,
-                                      [TM_ON_CORNER] = TM_MOVES_NOT};
+                                      [TM_ON_CORNER] = TM_MOVES_AT_CORNER};
     const tm_assembly *a = &m->assembly;
     tm_node_rule *rule = tm_new(a->mesh.nodes, sizeof *rule);
     for (size_t n = 0; rule && n < a->mesh.nodes; n++)
