@@ -8,7 +8,9 @@
 #include "../lib/octree/octree_mesh_stream.h"
 #include "../lib/octree/resolve.h"
 #include "../lib/quality/jens.h"
+#include "../lib/surface/thin_place.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 enum { FEATURE_ANGLE = FILTER_OWN, RESOLVE, LENIENT };
@@ -83,9 +85,26 @@ static settings read_options(filter *f)
     return o;
 }
 
-/* What of the surface could not be made, and where. */
+/* The boundary is not what the surface is: a handle or a piece is lost, or one too much.
+ */
+static void note_topology(const filter *f, const tm_surface *s,
+                          const tm_octree_mesh_report *r, double leaf_side)
+{
+    double at[3];
+    char place[128] = "";
+    if (tm_surface_thin_place(s, 2 * leaf_side, at))
+        snprintf(place, sizeof place, ", as near (%g, %g, %g)", at[0], at[1], at[2]);
+    filter_note(f,
+                "the boundary has %zu components and Euler number %lld, the surface %zu "
+                "and %lld: a part or a gap of it is too thin for this level%s",
+                r->components, (long long)r->euler, s->components, (long long)s->euler,
+                place);
+}
+
+/* What of the surface could not be made, and where; leaf_side is that of the smallest
+ * octants. */
 static void note_losses(const filter *f, const tm_surface *s,
-                        const tm_octree_mesh_report *r)
+                        const tm_octree_mesh_report *r, double leaf_side)
 {
     if (r->lost)
         filter_note(f,
@@ -93,12 +112,8 @@ static void note_losses(const filter *f, const tm_surface *s,
                     "is lost near (%g, %g, %g); a finer level there, or --resolve, may "
                     "keep it",
                     r->lost, r->lost_at[0], r->lost_at[1], r->lost_at[2]);
-    if (r->components != s->components || r->euler != s->euler)
-        filter_note(f,
-                    "the boundary has %zu components and Euler number %lld, the surface "
-                    "%zu and %lld: something is too thin for this level",
-                    r->components, (long long)r->euler, s->components,
-                    (long long)s->euler);
+    if (!s->by_winding && (r->components != s->components || r->euler != s->euler))
+        note_topology(f, s, r, leaf_side);
     if (r->corners_lost + r->curves_lost)
         filter_note(f,
                     "%zu corners and %zu sharp edges of the surface are too close "
@@ -112,6 +127,15 @@ static void note_losses(const filter *f, const tm_surface *s,
                     r->held_back);
     if (r->invalid)
         filter_note(f, "%zu elements are inverted", r->invalid);
+}
+
+static double smallest_side(const tm_octree *octree)
+{
+    double side = octree->side;
+    for (size_t l = 0; l < octree->leaves; l++)
+        if (tm_leaf_side(octree, &octree->leaf[l]) < side)
+            side = tm_leaf_side(octree, &octree->leaf[l]);
+    return side;
 }
 
 static void write_json(filter *f, const tm_octree *octree, const tm_octree_mesh *mesh)
@@ -170,7 +194,7 @@ int main(int argc, char **argv)
         tm_octree_mesh_resolve(&mesh, &octree, &surface, o.resolve, &error) != TM_OK)
         filter_fail(&f, &error);
     octree_rules_free(&o.rules);
-    note_losses(&f, &surface, &mesh.report);
+    note_losses(&f, &surface, &mesh.report, smallest_side(&octree));
     if (f.json)
         write_json(&f, &octree, &mesh);
     const size_t nodes = mesh.assembly.mesh.nodes;

@@ -17,8 +17,8 @@ static void add(const filter *f, octree_rules *rules, const tm_octree_rule *rule
         filter_fail(f, &error);
 }
 
-void octree_rules_add_level(const filter *f, octree_rules *rules, tm_octree_rule_kind kind,
-                            unsigned level)
+void octree_rules_add_level(const filter *f, octree_rules *rules,
+                            tm_octree_rule_kind kind, unsigned level)
 {
     add(f, rules, &(tm_octree_rule){.kind = kind, .level = level});
 }

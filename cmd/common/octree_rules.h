@@ -19,8 +19,8 @@ typedef struct octree_rules {
 void octree_rules_option(filter *f, octree_rules *rules, int c);
 
 /* A rule of a kind that has only a level. */
-void octree_rules_add_level(const filter *f, octree_rules *rules, tm_octree_rule_kind kind,
-                            unsigned level);
+void octree_rules_add_level(const filter *f, octree_rules *rules,
+                            tm_octree_rule_kind kind, unsigned level);
 
 void octree_rules_free(octree_rules *rules);
 

@@ -159,7 +159,8 @@ static void note_mending(const filter *f, const tm_surface *s)
     if (s->open_edges)
         filter_note(f, "%s: the surface is open at %zu edges", name, s->open_edges);
     if (s->rough)
-        filter_verbose(f, "%s: the surface is rough: no edge is kept as sharp", name);
+        filter_note(
+            f, "%s: the surface is rough all over: no edge of it is kept as sharp", name);
     if (s->crossings)
         filter_note(f, "%s: the surface crosses itself at %zu pairs of triangles", name,
                     s->crossings);

@@ -2,6 +2,7 @@
 #include "optimise.h"
 
 #include "../base/array.h"
+#include "../geom/vector.h"
 #include "../quality/jens.h"
 #include "../stream/stream.h"
 #include "optimise_parts.h"
@@ -22,9 +23,9 @@ typedef struct pass {
 } pass;
 
 static const pass passes[] = {
-    {0, false, 0}, {1, false, 0}, {0, true, 0}, {1, true, 0}, {2, true, 0}};
+    {0, false, 0}, {1, false, 0}, {0, true, 0}, {1, true, 0}, {2, false, 0}};
 static const pass last_passes[] = {
-    {0, true, 0.1}, {0, true, 0.3}, {1, true, 0.1}, {1, true, 0.3}};
+    {0, true, 0.1}, {0, true, 0.3}, {1, true, 0.1}, {1, true, 0.3}, {2, true, 0.1}};
 enum {
     PASSES = sizeof passes / sizeof *passes,
     LAST_PASSES = sizeof last_passes / sizeof *last_passes
@@ -162,7 +163,7 @@ void tm_optimise_accept(tm_optimise_work *w)
     const tm_cluster *cluster = &w->cluster;
     for (size_t v = 0; v < cluster->moving; v++) {
         const uint32_t node = cluster->node[v];
-        if (memcmp(w->mesh->xyz[node], cluster->best[v], sizeof *cluster->best) == 0)
+        if (tm_distance2(w->mesh->xyz[node], cluster->best[v]) == 0)
             continue;
         memcpy(w->mesh->xyz[node], cluster->best[v], sizeof *cluster->best);
         w->moved[node] = true;
@@ -286,7 +287,7 @@ static tm_status rank_bad(tm_optimise_work *w, tm_error *error)
     return TM_OK;
 }
 
-static bool is_spent(const tm_optimise_work *w)
+bool tm_optimise_is_spent(const tm_optimise_work *w)
 {
     const size_t most = w->options->most_measured;
     return most > 0 && w->cluster.measured >= most;
@@ -296,7 +297,7 @@ static tm_status make_pass(tm_optimise_work *w, const pass *how, uint64_t round,
                            tm_error *error)
 {
     tm_status status = rank_bad(w, error);
-    for (size_t b = 0; status == TM_OK && b < w->bads && !is_spent(w); b++) {
+    for (size_t b = 0; status == TM_OK && b < w->bads && !tm_optimise_is_spent(w); b++) {
         const uint32_t e = w->bad[b];
         if (!w->visited[e] && w->jens[e] < tm_threshold_of(w->options, e))
             status = mend_cluster(w, e, how, round, error);

@@ -49,7 +49,9 @@ static tm_status approach(tm_optimise_work *w, uint32_t node, double factor, boo
 static tm_status bring(tm_optimise_work *w, uint32_t node, bool *closer, tm_error *error)
 {
     size_t f = 0;
-    for (size_t t = 0; t < TRIES && f < FACTORS && w->rule[node].held; t++) {
+    for (size_t t = 0;
+         t < TRIES && f < FACTORS && w->rule[node].held && !tm_optimise_is_spent(w);
+         t++) {
         bool done;
         const tm_status status = approach(w, node, factors[f], &done, error);
         if (status != TM_OK)

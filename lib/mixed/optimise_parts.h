@@ -168,6 +168,9 @@ typedef struct tm_optimise_work {
  * leaves elements inverted, it may untangle first. */
 void tm_optimise_descend(tm_optimise_work *work, bool may_untangle);
 
+/* Whether no more is to be begun, by most_measured. */
+bool tm_optimise_is_spent(const tm_optimise_work *work);
+
 /* Takes the best places of the cluster into the mesh. */
 void tm_optimise_accept(tm_optimise_work *work);
 

@@ -4,6 +4,7 @@
 #include "optimise_parts.h"
 
 #include "../base/array.h"
+#include "../geom/vector.h"
 #include "../stream/stream.h"
 
 #include <stdlib.h>
@@ -93,7 +94,7 @@ static void take_back(tm_optimise_work *w, const list *nodes)
 {
     for (size_t i = 0; i < nodes->count; i++) {
         const released *one = &nodes->item[i];
-        if (memcmp(w->mesh->xyz[one->node], one->xyz, sizeof one->xyz) == 0)
+        if (tm_distance2(w->mesh->xyz[one->node], one->xyz) == 0)
             w->rule[one->node] = one->rule;
         else
             w->report->released++;
@@ -104,7 +105,9 @@ tm_status tm_optimise_release(tm_optimise_work *w, tm_error *error)
 {
     list nodes = {0};
     tm_status status = TM_OK;
-    for (size_t step = 0; step < STEPS && status == TM_OK && w->bads > 0; step++)
+    for (size_t step = 0;
+         step < STEPS && status == TM_OK && w->bads > 0 && !tm_optimise_is_spent(w);
+         step++)
         status = make_step(w, step, &nodes, error);
     take_back(w, &nodes);
     free(nodes.item);

@@ -8,15 +8,15 @@
 
 enum { LEAF_CORNERS = 8, LEAF_FACES = 6, MOST_NODES = 8 };
 
-const uint8_t tm_cut_triangles[3][2][3] = {[TM_CUT_02] = {{0, 1, 2}, {2, 3, 0}},
-                                           [TM_CUT_13] = {{1, 2, 3}, {3, 0, 1}}};
+const uint8_t tm_cut_triangles[3][2][3] = {
+    [TM_CUT_02] = {{0, 1, 2}, {2, 3, 0}}, [TM_CUT_13] = {{1, 2, 3}, {3, 0, 1}}};
 
 typedef struct {
     const tm_octree *octree;
     const tm_solid *solid;
     const tm_skin *skin;
     tm_assembly *assembly;
-    bool counting;       /* nothing is written yet */
+    bool counting;                         /* nothing is written yet */
     size_t face, middles, elements, items; /* so far */
 } assembler;
 
@@ -59,8 +59,8 @@ static tm_status allocate(const assembler *a, tm_error *error)
     to->middles = a->middles;
     to->middle_leaf = tm_new(a->middles, sizeof *to->middle_leaf);
     to->layer = tm_new(a->skin->faces, sizeof *to->layer);
-    if (!mesh->xyz || !mesh->start || !mesh->item || !to->first ||
-        !to->layer || !to->middle_leaf)
+    if (!mesh->xyz || !mesh->start || !mesh->item || !to->first || !to->layer ||
+        !to->middle_leaf)
         return tm_fail_memory(error);
     return TM_OK;
 }
@@ -102,7 +102,8 @@ static bool is_next(const assembler *a, size_t face, size_t l, unsigned piece)
            a->skin->piece[face] == piece;
 }
 
-/* Divides a leaf from its centre, with the pieces of its faces that are cut as triangles. */
+/* Divides a leaf from its centre, with the pieces of its faces that are cut as triangles.
+ */
 static void add_star(assembler *a, size_t l, const uint32_t at[TM_LEAF_NODES])
 {
     const tm_leaf_state state = tm_solid_leaf_state(a->solid, a->octree, l);
@@ -164,8 +165,9 @@ static void add_leaf(assembler *a, size_t l)
 static void add_wedge(assembler *a, const uint32_t *in, const uint32_t *out,
                       const uint8_t c[3])
 {
-    add_element(a, 6, (uint32_t[]){out[c[0]], out[c[1]], out[c[2]], in[c[0]], in[c[1]],
-                                   in[c[2]]});
+    add_element(
+        a, 6,
+        (uint32_t[]){out[c[0]], out[c[1]], out[c[2]], in[c[0]], in[c[1]], in[c[2]]});
 }
 
 /* The layer's elements under the faces of leaf l. */
@@ -186,9 +188,9 @@ static void add_layer(assembler *a, size_t l)
         if (k == 3)
             add_wedge(a, in, out, (const uint8_t[]){0, 1, 2});
         else if (skin->cut[f] == TM_UNCUT)
-            add_element(a, MOST_NODES,
-                        (uint32_t[]){in[0], in[1], in[2], in[3], out[0], out[1], out[2],
-                                     out[3]});
+            add_element(
+                a, MOST_NODES,
+                (uint32_t[]){in[0], in[1], in[2], in[3], out[0], out[1], out[2], out[3]});
         else
             for (unsigned t = 0; t < 2; t++)
                 add_wedge(a, in, out, tm_cut_triangles[skin->cut[f]][t]);

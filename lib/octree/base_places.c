@@ -6,8 +6,8 @@
 
 enum { LEAF_CORNERS = 8 };
 
-/* The level of the smallest chosen leaf at each node of the octree; one more than that of a
- * leaf which has it in the middle of an edge or a face. */
+/* The level of the smallest chosen leaf at each node of the octree; one more than that of
+ * a leaf which has it in the middle of an edge or a face. */
 static uint8_t *find_levels(const tm_octree *octree, const tm_solid *solid)
 {
     uint8_t *level = calloc(octree->nodes + 1, 1);
@@ -21,8 +21,7 @@ static uint8_t *find_levels(const tm_octree *octree, const tm_solid *solid)
     return level;
 }
 
-static void place_middles(const tm_assembly *a, const tm_octree *octree,
-                          double (*xyz)[3])
+static void place_middles(const tm_assembly *a, const tm_octree *octree, double (*xyz)[3])
 {
     for (size_t m = 0; m < a->middles; m++) {
         const uint32_t *corner = octree->node[a->middle_leaf[m]];

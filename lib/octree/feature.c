@@ -86,8 +86,7 @@ static tm_status find_corners(finder *find, tm_error *error)
               compare_candidates);
     for (size_t i = 0; i < find->candidates; i++) {
         const candidate *c = &find->candidate[i];
-        if (find->node_of[c->corner] != TM_NONE ||
-            feature->kind[c->node] != TM_ON_PATCH)
+        if (find->node_of[c->corner] != TM_NONE || feature->kind[c->node] != TM_ON_PATCH)
             continue;
         find->node_of[c->corner] = c->node;
         feature->kind[c->node] = TM_ON_CORNER;
@@ -104,8 +103,11 @@ static tm_status find_corners(finder *find, tm_error *error)
 /* Joins the patches on the two sides of a curve. */
 static void join_patches(const tm_surface *surface, uint32_t *parent, uint32_t curve)
 {
-    const uint32_t a = tm_set_root(parent, surface->curve_patch[curve][0]);
-    const uint32_t b = tm_set_root(parent, surface->curve_patch[curve][1]);
+    const uint32_t *patch = surface->curve_patch[curve];
+    if (patch[0] == TM_NONE || patch[1] == TM_NONE)
+        return; /* an open edge */
+    const uint32_t a = tm_set_root(parent, patch[0]);
+    const uint32_t b = tm_set_root(parent, patch[1]);
     if (a != b)
         parent[a > b ? a : b] = a > b ? b : a;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which nodes of the skin stand for the corners and curves of the surface, and which patch
- * each of the others belongs to. */
+/* Which nodes of the skin stand for the corners and curves of the surface, and which
+ * patch each of the others belongs to. */
 #ifndef TM_OCTREE_FEATURE_H
 #define TM_OCTREE_FEATURE_H
 

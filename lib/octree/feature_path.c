@@ -84,11 +84,11 @@ static tm_path_visit *look_at(tm_path_finder *p, uint32_t s)
     size_t segment;
     place_of(p, s, xyz);
     tm_surface_closest_on_curve(p->surface, curve, xyz, closest, &segment);
-    const uint32_t begin = p->surface->curve_node[p->surface->curve_start[curve] + segment];
+    const uint32_t begin =
+        p->surface->curve_node[p->surface->curve_start[curve] + segment];
     v->curve_round = curve + 1;
     v->distance2 = tm_distance2(xyz, closest);
-    v->param =
-        p->length[segment] + sqrt(tm_distance2(p->surface->xyz[begin], closest));
+    v->param = p->length[segment] + sqrt(tm_distance2(p->surface->xyz[begin], closest));
     return v;
 }
 
@@ -138,8 +138,8 @@ static tm_status relax(tm_path_finder *p, uint32_t s, uint32_t to, tm_error *err
     const double edge = sqrt(tm_distance2(here, there));
     const double size = fmin(p->size[s], p->size[to]);
     const double off = (a->distance2 + b->distance2) / (size * size);
-    const double cost = a->cost + along_curve(p, a->param, b->param) +
-                        edge * (nearness + off);
+    const double cost =
+        a->cost + along_curve(p, a->param, b->param) + edge * (nearness + off);
     if (b->round == p->round && b->cost <= cost)
         return TM_OK;
     b->round = p->round;
@@ -260,8 +260,8 @@ static void take_off_curve(tm_path_finder *p, uint32_t s)
 
 /* Appends the nodes after the first stop up to the second, and takes them. Two edges of
  * one face would be flattened to a straight angle, so their third side is taken. */
-static tm_status take(tm_path_finder *p, const tm_path_stop *from,
-                      const tm_path_stop *to, tm_error *error)
+static tm_status take(tm_path_finder *p, const tm_path_stop *from, const tm_path_stop *to,
+                      tm_error *error)
 {
     const size_t begin = p->path_count;
     tm_status status = TM_OK;
@@ -341,8 +341,7 @@ static void enter(tm_path_finder *p)
         if (p->feature->kind[s] != TM_ON_CURVE || (i == 0 && !around))
             continue;
         p->feature->along[s][0] = i > 0 ? p->path[i - 1] : p->path[p->path_count - 2];
-        p->feature->along[s][1] =
-            i + 1 < p->path_count ? p->path[i + 1] : p->path[1];
+        p->feature->along[s][1] = i + 1 < p->path_count ? p->path[i + 1] : p->path[1];
     }
 }
 
@@ -357,10 +356,9 @@ static tm_status measure(tm_path_finder *p, tm_error *error)
     p->length = room;
     p->length[0] = 0;
     for (size_t i = 1; i < count; i++)
-        p->length[i] =
-            p->length[i - 1] +
-            sqrt(tm_distance2(surface->xyz[surface->curve_node[begin + i - 1]],
-                              surface->xyz[surface->curve_node[begin + i]]));
+        p->length[i] = p->length[i - 1] +
+                       sqrt(tm_distance2(surface->xyz[surface->curve_node[begin + i - 1]],
+                                         surface->xyz[surface->curve_node[begin + i]]));
     p->total = p->length[count - 1];
     return TM_OK;
 }
@@ -370,8 +368,8 @@ static void place_on_curve(const tm_path_finder *p, double param, double xyz[3])
 {
     const uint32_t *node = p->surface->curve_node + p->surface->curve_start[p->curve];
     size_t i = 0;
-    const size_t last = p->surface->curve_start[p->curve + 1] -
-                        p->surface->curve_start[p->curve] - 2;
+    const size_t last =
+        p->surface->curve_start[p->curve + 1] - p->surface->curve_start[p->curve] - 2;
     while (i < last && p->length[i + 1] < param)
         i++;
     const double *a = p->surface->xyz[node[i]];

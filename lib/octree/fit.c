@@ -9,7 +9,7 @@
 
 /* Measured on the bench's surfaces: more sweeps change the worst elements little. Curves
  * are swept alone first: their nodes may be crowded at an end. */
-enum { CURVE_SWEEPS = 8, SKIN_SWEEPS = 4, CORE_SWEEPS = 6, HEXAHEDRON = 8 };
+enum { CURVE_SWEEPS = 8, SKIN_SWEEPS = 2, CORE_SWEEPS = 6, HEXAHEDRON = 8 };
 
 typedef struct {
     tm_assembly *assembly;
@@ -111,8 +111,8 @@ static bool has_moving(const zone *z, const tm_mixed_mesh *mesh, size_t e)
     return false;
 }
 
-/* The inner nodes, those in an element with one of them, and those of elements that are no
- * hexahedra, without the outer ones. */
+/* The inner nodes, those in an element with one of them, and those of elements that are
+ * no hexahedra, without the outer ones. */
 static tm_status find_moving(const fitter *fit, zone *z, tm_error *error)
 {
     const tm_assembly *a = fit->assembly;

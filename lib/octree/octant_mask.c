@@ -5,8 +5,8 @@ const tm_octant_mask tm_place_octants[26] = {
     0x80, 0x40, 0x20, 0x10, 0x08, 0x04, 0x02, 0x01, 0xc0, 0x30, 0x0c, 0x03, 0xa0,
     0x50, 0x0a, 0x05, 0x88, 0x44, 0x22, 0x11, 0xaa, 0x55, 0xcc, 0x33, 0xf0, 0x0f};
 
-const uint8_t tm_face_edge[6][4] = {{4, 6, 8, 10}, {5, 7, 9, 11}, {0, 2, 8, 9},
-                                    {1, 3, 10, 11}, {0, 1, 4, 5}, {2, 3, 6, 7}};
+const uint8_t tm_face_edge[6][4] = {{4, 6, 8, 10},  {5, 7, 9, 11}, {0, 2, 8, 9},
+                                    {1, 3, 10, 11}, {0, 1, 4, 5},  {2, 3, 6, 7}};
 
 /* The octants on the low side of each axis; their partners are that many bits higher. */
 static const unsigned low_side[3] = {0x55, 0x33, 0x0f};

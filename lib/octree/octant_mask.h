@@ -6,14 +6,14 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Octant o lies in the positive direction of axis i where bit i of o is set. A mask has bit
- * o set where octant o is filled. */
+/* Octant o lies in the positive direction of axis i where bit i of o is set. A mask has
+ * bit o set where octant o is filled. */
 typedef uint8_t tm_octant_mask;
 
 enum { TM_ALL_OCTANTS = 0xff };
 
-/* The octants that a leaf fills around the node at each of its places (octree.h): one at a
- * corner, two at the middle of an edge, four at the centre of a face. */
+/* The octants that a leaf fills around the node at each of its places (octree.h): one at
+ * a corner, two at the middle of an edge, four at the centre of a face. */
 extern const tm_octant_mask tm_place_octants[26];
 
 /* The edges (0 … 11) of each face. */

@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Where the skin's nodes are closest to the surface. Neighbours in number are mostly close
- * to each other, so that each begins where the last one ended. */
+/* Where the skin's nodes are closest to the surface. Neighbours in number are mostly
+ * close to each other, so that each begins where the last one ended. */
 static tm_status find_closest(tm_octree_mesh *m, const tm_octree *octree,
                               const tm_surface *surface, tm_error *error)
 {
@@ -56,12 +56,13 @@ static tm_status measure_boundary(tm_octree_mesh *m, tm_error *error)
     return TM_OK;
 }
 
-static tm_status count_lost(tm_octree_mesh *m, const tm_octree *octree, tm_error *error)
+static tm_status count_lost(tm_octree_mesh *m, const tm_octree *octree,
+                            const tm_surface *surface, tm_error *error)
 {
     uint8_t *lost = tm_new(octree->leaves, sizeof *lost);
     if (!lost)
         return tm_fail_memory(error);
-    m->report.lost = tm_solid_find_lost(&m->solid, octree, lost);
+    m->report.lost = tm_solid_find_lost(&m->solid, octree, surface, lost);
     for (size_t l = 0; m->report.lost > 0 && l < octree->leaves; l++)
         if (lost[l]) {
             tm_leaf_centre(octree, &octree->leaf[l], m->report.lost_at);
@@ -113,7 +114,7 @@ static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *su
     if (status == TM_OK)
         status = find_skin(m, octree, surface, error);
     if (status == TM_OK)
-        status = count_lost(m, octree, error);
+        status = count_lost(m, octree, surface, error);
     if (status == TM_OK)
         status = tm_feature_find(&m->feature, &m->skin, octree, surface, m->at, error);
     if (status == TM_OK)

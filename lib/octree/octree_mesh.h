@@ -9,16 +9,16 @@
 
 /* What was made, and what could not be. Places are points. */
 typedef struct tm_octree_mesh_report {
-    size_t filled, removed;     /* leaves, so that the boundary is a manifold */
-    size_t lost;                /* leaves with surface but no boundary close by */
-    double lost_at[3];          /* the centre of one of them */
+    size_t filled, removed;           /* leaves, so that the boundary is a manifold */
+    size_t lost;                      /* leaves with surface but no boundary close by */
+    double lost_at[3];                /* the centre of one of them */
     size_t corners_lost, curves_lost; /* of the surface */
     double feature_lost_at[3];
-    size_t held_back;           /* boundary nodes that are not on the surface */
-    size_t invalid;             /* elements with J_ENS <= 0 */
-    size_t components;          /* of the boundary */
-    int64_t euler;              /* of the boundary */
-    size_t below;               /* elements that had to be improved, and were */
+    size_t held_back;  /* boundary nodes that are not on the surface */
+    size_t invalid;    /* elements with J_ENS <= 0 */
+    size_t components; /* of the boundary */
+    int64_t euler;     /* of the boundary */
+    size_t below;      /* elements that had to be improved, and were */
 } tm_octree_mesh_report;
 
 typedef struct tm_octree_mesh {
@@ -33,8 +33,8 @@ typedef struct tm_octree_mesh {
 
 /* Makes the mesh of an octree. The surface's patches are joined for a while where one of
  * its curves is too fine, and are as they were after. TM_ERROR_INPUT where no leaf is
- * inside; TM_ERROR_SYSTEM where memory or 32-bit ids are out. *mesh is to be freed, after an
- * error too. */
+ * inside; TM_ERROR_SYSTEM where memory or 32-bit ids are out. *mesh is to be freed, after
+ * an error too. */
 tm_status tm_octree_mesh_make(tm_octree_mesh *mesh, const tm_octree *octree,
                               tm_surface *surface, tm_error *error);
 /* The same where the leaves are chosen already: tm_solid_choose() filled *solid, which

@@ -6,8 +6,8 @@
 #include "../stream/stream.h"
 #include "octree_mesh.h"
 
-/* The attribute of a node in .node: where it is. Negative where it should be there, but is
- * held back. */
+/* The attribute of a node in .node: where it is. Negative where it should be there, but
+ * is held back. */
 typedef enum tm_node_place {
     TM_NODE_INSIDE,
     TM_NODE_ON_PATCH,
@@ -16,10 +16,10 @@ typedef enum tm_node_place {
 } tm_node_place;
 
 /* Appends .node .mix .octant .root surface.node surface.face, and, where the surface has
- * markers, .facet with the boundary faces and the marker of the closest triangle. `levels`:
- * elements have the level of their octant as attribute. Arrays of mesh and surface are
- * taken; both are to be freed still. *stream must be empty. TM_ERROR_SYSTEM where memory
- * is out. */
+ * markers, .facet with the boundary faces and the marker of the closest triangle.
+ * `levels`: elements have the level of their octant as attribute. Arrays of mesh and
+ * surface are taken; both are to be freed still. *stream must be empty. TM_ERROR_SYSTEM
+ * where memory is out. */
 tm_status tm_octree_mesh_give(tm_octree_mesh *mesh, const tm_octree *octree,
                               tm_surface *surface, bool levels, tm_stream *stream,
                               tm_error *error);

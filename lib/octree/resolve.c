@@ -30,7 +30,7 @@ static tm_status make_without_loss(tm_octree_mesh *mesh, tm_octree *octree,
         status = lost ? tm_solid_choose(&solid, octree, surface, error)
                       : tm_fail_memory(error);
         if (status == TM_OK) {
-            tm_solid_find_lost(&solid, octree, lost);
+            tm_solid_find_lost(&solid, octree, surface, lost);
             more = keep_shallow(octree, deepest, lost) > 0;
         }
         if (status == TM_OK && more)
@@ -109,9 +109,9 @@ tm_status tm_octree_mesh_resolve(tm_octree_mesh *mesh, tm_octree *octree,
     deepest += levels;
     if (deepest > TM_OCTREE_LEVEL_MAX)
         deepest = TM_OCTREE_LEVEL_MAX;
-    tm_status status =
-        levels > 0 ? make_without_loss(mesh, octree, surface, deepest, error)
-                   : tm_octree_mesh_make(mesh, octree, surface, error);
+    tm_status status = levels > 0
+                           ? make_without_loss(mesh, octree, surface, deepest, error)
+                           : tm_octree_mesh_make(mesh, octree, surface, error);
     for (bool better = levels > 0; status == TM_OK && better;) {
         uint8_t *split =
             mesh->report.held_back > 0 ? mark_held(mesh, octree, deepest) : NULL;

@@ -61,9 +61,8 @@ static bool take_back(retreat *r)
     bool any = false;
     for (size_t e = 0; e < mesh->elements; e++) {
         const size_t k = mesh->start[e + 1] - mesh->start[e];
-        if (!has_changed(r, e) ||
-            tm_jens(k, (const double(*)[3])mesh->xyz, mesh->item + mesh->start[e]) >=
-                least_valid)
+        if (!has_changed(r, e) || tm_jens(k, (const double(*)[3])mesh->xyz,
+                                          mesh->item + mesh->start[e]) >= least_valid)
             continue;
         if (mark_nodes(r, e))
             any = true;
@@ -100,9 +99,8 @@ static tm_status hold_back(tm_octree_mesh *m, const tm_octree *octree, tm_error 
                  .steps = calloc(nodes + 1, 1),
                  .changed = malloc(nodes + 1),
                  .to_change = calloc(nodes + 1, 1)};
-    tm_status status = base && r.steps && r.changed && r.to_change
-                           ? TM_OK
-                           : tm_fail_memory(error);
+    tm_status status =
+        base && r.steps && r.changed && r.to_change ? TM_OK : tm_fail_memory(error);
     if (status == TM_OK)
         status = tm_base_places(&m->assembly, octree, &m->solid, &m->skin, base, error);
     if (status == TM_OK)
@@ -119,7 +117,7 @@ static tm_node_rule *find_rules(const tm_octree_mesh *m)
 {
     static const uint8_t freedom[] = {[TM_ON_PATCH] = TM_MOVES_ON_SURFACE,
                                       [TM_ON_CURVE] = TM_MOVES_ON_CURVE,
-                                      [TM_ON_CORNER] = TM_MOVES_NOT};
+                                      [TM_ON_CORNER] = TM_MOVES_AT_CORNER};
     const tm_assembly *a = &m->assembly;
     tm_node_rule *rule = tm_new(a->mesh.nodes, sizeof *rule);
     for (size_t n = 0; rule && n < a->mesh.nodes; n++)

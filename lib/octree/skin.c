@@ -73,11 +73,13 @@ static tm_status add_face(finder *find, size_t leaf, const tm_piece *piece,
                           unsigned which, tm_error *error)
 {
     tm_skin *skin = find->skin;
-    void *face = tm_grow(skin->face, &find->face_room, skin->faces + 1, sizeof *skin->face);
+    void *face =
+        tm_grow(skin->face, &find->face_room, skin->faces + 1, sizeof *skin->face);
     if (!face)
         return tm_fail_memory(error);
     skin->face = face;
-    void *leaves = tm_grow(skin->leaf, &find->leaf_room, skin->faces + 1, sizeof *skin->leaf);
+    void *leaves =
+        tm_grow(skin->leaf, &find->leaf_room, skin->faces + 1, sizeof *skin->leaf);
     if (!leaves)
         return tm_fail_memory(error);
     skin->leaf = leaves;
@@ -114,7 +116,8 @@ static tm_status add_faces_of(finder *find, size_t leaf, tm_error *error)
         for (unsigned i = 0; i < pieces; i++) {
             if (!is_open(find, leaf, f, corner_of(f, &piece[i])))
                 continue;
-            const tm_status status = add_face(find, leaf, &piece[i], TM_FACE_PIECES * f + i, error);
+            const tm_status status =
+                add_face(find, leaf, &piece[i], TM_FACE_PIECES * f + i, error);
             if (status != TM_OK)
                 return status;
         }

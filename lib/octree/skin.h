@@ -14,14 +14,14 @@ typedef struct tm_skin {
     size_t nodes;
     uint32_t *grid_node; /* [nodes]: the octree's */
     size_t faces;
-    uint32_t (*face)[4]; /* skin nodes; counter-clockwise seen from outside; TM_NONE as
-                            the fourth of a triangle */
-    uint32_t *leaf;      /* [faces]: the chosen one that it is of, ascending */
-    uint8_t *piece;      /* [faces]: it is piece i of the leaf's face f (tm_face_pieces):
-                            TM_FACE_PIECES * f + i, ascending for each leaf */
-    uint8_t *cut;        /* [faces]: tm_cut; TM_UNCUT at first */
+    uint32_t (*face)[4];  /* skin nodes; counter-clockwise seen from outside; TM_NONE as
+                             the fourth of a triangle */
+    uint32_t *leaf;       /* [faces]: the chosen one that it is of, ascending */
+    uint8_t *piece;       /* [faces]: it is piece i of the leaf's face f (tm_face_pieces):
+                             TM_FACE_PIECES * f + i, ascending for each leaf */
+    uint8_t *cut;         /* [faces]: tm_cut; TM_UNCUT at first */
     size_t *around_start; /* [nodes + 1] */
-    uint32_t *around; /* the faces at node n: around[around_start[n]] … */
+    uint32_t *around;     /* the faces at node n: around[around_start[n]] … */
 } tm_skin;
 
 /* The corners of a face: 3 or 4. */

@@ -42,10 +42,10 @@ tm_status tm_skin_cells_sort(tm_skin_cells *cells, const tm_octree *octree,
     cells->shift = octree->finest - coarsest + 1;
     for (size_t s = 0; s < skin->nodes; s++) {
         const uint32_t *grid = octree->grid[skin->grid_node[s]];
-        cells->cell[s] = (tm_skin_cell){key_of(grid[0] >> cells->shift,
-                                               grid[1] >> cells->shift,
-                                               grid[2] >> cells->shift),
-                                        (uint32_t)s};
+        cells->cell[s] =
+            (tm_skin_cell){key_of(grid[0] >> cells->shift, grid[1] >> cells->shift,
+                                  grid[2] >> cells->shift),
+                           (uint32_t)s};
     }
     if (skin->nodes > 0)
         qsort(cells->cell, skin->nodes, sizeof *cells->cell, compare);

@@ -8,7 +8,7 @@
 typedef struct tm_skin_cells {
     const tm_octree *octree;
     const tm_skin *skin;
-    unsigned shift; /* a cell has 2^shift grid units along each side */
+    unsigned shift;            /* a cell has 2^shift grid units along each side */
     struct tm_skin_cell *cell; /* [nodes], sorted by cell */
 } tm_skin_cells;
 

@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* After so many rounds of adding and taking away leaves are only taken away, which ends. */
+/* After so many rounds of adding and taking away leaves are only taken away, which ends.
+ */
 enum { FREE_ROUNDS = 24 };
 
 /* Whether two leaves' closed cubes have a point in common. */
@@ -21,8 +22,8 @@ static bool touch(const tm_octree *octree, const tm_leaf *a, const tm_leaf *b)
     return true;
 }
 
-/* Between two leaves that touch and that the surface does not meet there is none of it, so
- * the second needs no test. */
+/* Between two leaves that touch and that the surface does not meet there is none of it,
+ * so the second needs no test. */
 static void classify(tm_solid *solid, const tm_octree *octree, const tm_surface *surface)
 {
     for (size_t l = 0; l < octree->leaves; l++) {
@@ -103,8 +104,7 @@ static tm_status find_contacts(cleaner *c, tm_error *error)
             if (!more)
                 return tm_fail_memory(error);
             c->contact = more;
-            c->contact[c->contacts++] =
-                (contact){node, (uint32_t)l, tm_place_octants[p]};
+            c->contact[c->contacts++] = (contact){node, (uint32_t)l, tm_place_octants[p]};
         }
     }
     if (c->contacts > 0)
@@ -127,8 +127,8 @@ static double depth(const cleaner *c, size_t l)
     return sqrt(at.distance2) / tm_leaf_side(c->octree, leaf);
 }
 
-/* How many of a leaf's nodes would have a bad mask if it changed, less those that have one
- * now. */
+/* How many of a leaf's nodes would have a bad mask if it changed, less those that have
+ * one now. */
 static int harm(const cleaner *c, size_t l)
 {
     int more = 0;
@@ -180,8 +180,8 @@ static tm_status clean(cleaner *c, tm_error *error)
     }
 }
 
-/* The nodes that the mesh has. A face of which a part is shared with a smaller chosen leaf
- * has its centre, and is then divided in four. */
+/* The nodes that the mesh has. A face of which a part is shared with a smaller chosen
+ * leaf has its centre, and is then divided in four. */
 void tm_solid_find_used(tm_solid *solid, const tm_octree *octree)
 {
     solid->count = 0;
@@ -236,12 +236,13 @@ void tm_solid_free(tm_solid *solid)
     *solid = (tm_solid){0};
 }
 
-size_t tm_solid_find_lost(const tm_solid *solid, const tm_octree *octree, uint8_t *lost)
+size_t tm_solid_find_lost(const tm_solid *solid, const tm_octree *octree,
+                          const tm_surface *surface, uint8_t *lost)
 {
     const tm_octant_mask full = 0xff;
     size_t count = 0;
     for (size_t l = 0; l < octree->leaves; l++) {
-        bool near = !octree->leaf[l].crossed;
+        bool near = !octree->leaf[l].crossed || surface->by_winding;
         for (int p = 0; !near && p < TM_LEAF_EDGE; p++) {
             const tm_octant_mask mask = solid->mask[octree->node[l][p]];
             near = mask != 0 && mask != full;

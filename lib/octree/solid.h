@@ -8,11 +8,11 @@
 #include "octree.h"
 
 typedef struct tm_solid {
-    bool *chosen;         /* [leaves] */
-    tm_octant_mask *mask; /* [nodes of the octree] */
-    bool *used;           /* [nodes]: the mesh has the node: it is a corner of a chosen
-                             leaf, or in the middle of an edge of a face with a centre */
-    size_t count;         /* leaves chosen */
+    bool *chosen;           /* [leaves] */
+    tm_octant_mask *mask;   /* [nodes of the octree] */
+    bool *used;             /* [nodes]: the mesh has the node: it is a corner of a chosen
+                               leaf, or in the middle of an edge of a face with a centre */
+    size_t count;           /* leaves chosen */
     size_t filled, removed; /* changed so that the boundary is a manifold */
 } tm_solid;
 
@@ -26,13 +26,15 @@ tm_status tm_solid_choose(tm_solid *solid, const tm_octree *octree,
                           const tm_surface *surface, tm_error *error);
 void tm_solid_free(tm_solid *solid);
 
-/* Makes a leaf chosen that is not, or the other way, with the masks of its nodes; used and
- * count are then as tm_solid_find_used() says again. */
+/* Makes a leaf chosen that is not, or the other way, with the masks of its nodes; used
+ * and count are then as tm_solid_find_used() says again. */
 void tm_solid_flip(tm_solid *solid, const tm_octree *octree, size_t leaf);
 void tm_solid_find_used(tm_solid *solid, const tm_octree *octree);
 
 /* Marks the leaves that the surface crosses but none of whose corners is on the boundary
- * of the chosen ones: there a thin part, or a gap, is lost. Returns how many. */
-size_t tm_solid_find_lost(const tm_solid *solid, const tm_octree *octree, uint8_t *lost);
+ * of the chosen ones: there a thin part, or a gap, is lost. Returns how many. None where
+ * the inside is by the winding number: there surface may be within the solid. */
+size_t tm_solid_find_lost(const tm_solid *solid, const tm_octree *octree,
+                          const tm_surface *surface, uint8_t *lost);
 
 #endif

@@ -353,8 +353,8 @@ static tm_status find_curves(feature_finder *f, tm_error *error)
     return TM_OK;
 }
 
-/* On what is made, sharp edges follow each other. A surface that has many which end freely
- * is rough all over, as a scanned bone is, and has no edges. */
+/* On what is made, sharp edges follow each other. A surface that has many which end
+ * freely is rough all over, as a scanned bone is, and has no edges. */
 static tm_status smooth_if_rough(feature_finder *f, tm_error *error)
 {
     const tm_surface *surface = f->surface;

@@ -51,7 +51,14 @@ static void on_cube_edge(const void *of, uint32_t curve, const double point[3],
     at->xyz[(d + 2) % 3] = curve / 2 % 2 * SIDE;
 }
 
-static const tm_boundary cube = {NULL, on_cube, on_cube_edge, NULL};
+static void at_cube_corner(const void *of, uint32_t corner, tm_boundary_place *at)
+{
+    (void)of;
+    for (size_t i = 0; i < 3; i++)
+        at->xyz[i] = (corner >> i & 1) * (double)SIDE;
+}
+
+static const tm_boundary cube = {NULL, on_cube, on_cube_edge, at_cube_corner};
 
 /* The ball around the origin. */
 static const double radius = SIDE / 2.0;
@@ -128,7 +135,9 @@ static tm_node_rule rule_of(const uint32_t place[3])
         return (tm_node_rule){curve, TM_MOVES_ON_CURVE, false};
     }
     default:
-        return (tm_node_rule){TM_NONE, TM_MOVES_NOT, false};
+        return (tm_node_rule){place[0] / SIDE + 2 * (place[1] / SIDE) +
+                                  4 * (place[2] / SIDE),
+                              TM_MOVES_AT_CORNER, false};
     }
 }
 
@@ -182,7 +191,7 @@ static void make_round(grid *g)
         for (size_t i = 0; length > 0 && i < 3; i++)
             p[i] *= most / length;
         if (g->rule[v].freedom != TM_MOVES_FREELY)
-            g->rule[v].freedom = TM_MOVES_ON_SURFACE;
+            g->rule[v] = (tm_node_rule){TM_NONE, TM_MOVES_ON_SURFACE, false};
     }
 }
 
@@ -194,6 +203,8 @@ static void place_node(grid *g, const tm_boundary *boundary, size_t v)
         boundary->on_surface(boundary->of, rule->where, g->mesh.xyz[v], &at);
     else if (rule->freedom == TM_MOVES_ON_CURVE)
         boundary->on_curve(boundary->of, rule->where, g->mesh.xyz[v], &at);
+    else if (rule->freedom == TM_MOVES_AT_CORNER)
+        boundary->at_corner(boundary->of, rule->where, &at);
     else
         return;
     memcpy(g->mesh.xyz[v], at.xyz, sizeof at.xyz);
@@ -204,7 +215,7 @@ static void throw_nodes(grid *g, const tm_boundary *boundary, double most,
                         unsigned one_of)
 {
     for (size_t v = 0; v < g->mesh.nodes; v++) {
-        if (g->rule[v].freedom == TM_MOVES_NOT || random_below(one_of) > 0)
+        if (g->rule[v].freedom == TM_MOVES_AT_CORNER || random_below(one_of) > 0)
             continue;
         for (size_t i = 0; i < 3; i++)
             g->mesh.xyz[v][i] += most * (2 * random_unit() - 1);
@@ -262,7 +273,8 @@ static void check(const grid *g, const tm_boundary *boundary, double threshold,
 
 static tm_optimise_report optimise(grid *g, const tm_boundary *boundary, double threshold)
 {
-    const tm_optimise_options options = {threshold, NULL, threshold, 0, 1};
+    const tm_optimise_options options = {
+        .threshold = threshold, .held_threshold = threshold, .effort = 3};
     tm_optimise_report report;
     tm_error error;
     assert_int_equal(
@@ -311,7 +323,7 @@ static void test_ball(void **state)
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
         grid g = make_grid(kinds[k]);
         make_round(&g);
-        throw_nodes(&g, &ball, 0.25, 1);
+        throw_nodes(&g, &ball, 0.2, 1);
         remember(&g);
         const tm_optimise_report report = optimise(&g, &ball, threshold);
         check(&g, &ball, threshold, &report);
@@ -328,7 +340,8 @@ static tm_surface build_cube(void)
     tm_polygon_surface polygons;
     tm_polygon_surface_init(&polygons);
     for (unsigned v = 0; v < 8; v++) {
-        const double xyz[3] = {v % 2 * SIDE, v / 2 % 2 * SIDE, v / 4 * SIDE};
+        const double xyz[3] = {(v & 1) * (double)SIDE, (v >> 1 & 1) * (double)SIDE,
+                               (v >> 2) * (double)SIDE};
         assert_int_equal(tm_polygon_surface_add_node(&polygons, xyz, &error), TM_OK);
     }
     for (unsigned d = 0; d < 3; d++) {
@@ -355,6 +368,12 @@ static uint32_t where_on(const tm_surface *surface, const tm_node_rule *rule,
         tm_surface_closest(surface, p, TM_NONE, &at);
         return surface->patch[at.triangle];
     }
+    if (rule->freedom == TM_MOVES_AT_CORNER) {
+        uint32_t c = 0;
+        while (tm_distance2(p, surface->xyz[surface->corner[c]]) > 0)
+            c++;
+        return c;
+    }
     for (uint32_t c = 0; c < surface->curves; c++) {
         double closest[3];
         size_t segment;
@@ -377,7 +396,7 @@ static void test_surface(void **state)
     const double threshold = 0.03;
     grid g = make_grid(ANY);
     for (size_t v = 0; v < GRID; v++)
-        if (g.rule[v].where != TM_NONE)
+        if (g.rule[v].freedom != TM_MOVES_FREELY)
             g.rule[v].where = where_on(&surface, &g.rule[v], g.mesh.xyz[v]);
     throw_nodes(&g, &boundary, 0.4, 1);
     remember(&g);
@@ -424,8 +443,8 @@ static void test_fixed(void **state)
     free_grid(&g);
 }
 
-/* Nodes of one side are up to a cell and a half inside, and their neighbours further: the
- * elements are valid. All of them come to it. */
+/* Nodes of one side, its edges and corners are up to half a cell inside: the elements are
+ * valid. All of them come to it. */
 static void test_held(void **state)
 {
     (void)state;
@@ -435,8 +454,7 @@ static void test_held(void **state)
         grid g = make_grid(kinds[k]);
         for (uint32_t v = 0; v < GRID; v++) {
             tm_node_rule *rule = &g.rule[v];
-            if (rule->freedom != TM_MOVES_ON_SURFACE || rule->where != 0 ||
-                random_below(8) > 0)
+            if (g.mesh.xyz[v][0] > 0 || random_below(8) > 0)
                 continue;
             rule->held = true;
             g.mesh.xyz[v][0] = 0.2 + 0.3 * random_unit();
@@ -473,20 +491,57 @@ static void test_held_stays(void **state)
     free_grid(&g);
 }
 
+/* Two neighbours have to be at the same corner: their elements are valid only if one of
+ * them may leave it. */
+static void test_released(void **state)
+{
+    (void)state;
+    tm_surface surface = build_cube();
+    const tm_boundary boundary = tm_boundary_of_surface(&surface);
+    for (int may = 0; may < 2; may++) {
+        grid g = make_grid(HEXAHEDRON);
+        for (size_t v = 0; v < GRID; v++)
+            if (g.rule[v].freedom != TM_MOVES_FREELY)
+                g.rule[v].where = where_on(&surface, &g.rule[v], g.mesh.xyz[v]);
+        g.rule[1] = g.rule[0];
+        memcpy(g.mesh.xyz[1], g.mesh.xyz[0], sizeof *g.mesh.xyz);
+        remember(&g);
+        const tm_optimise_options options = {.threshold = 0.03,
+                                             .held_threshold = 0.03,
+                                             .release_threshold = may * 0.01,
+                                             .effort = 1};
+        tm_optimise_report report;
+        tm_error error;
+        assert_int_equal(
+            tm_mixed_optimise(&g.mesh, g.rule, &boundary, &options, &report, &error),
+            TM_OK);
+        check(&g, &boundary, 0.03, &report);
+        assert_int_equal(report.inverted_before, 1);
+        assert_int_equal(report.inverted_after, 1 - may);
+        assert_int_equal(report.bad_after, 1 - may);
+        assert_int_equal(report.released > 0, may);
+        for (size_t v = 0; v < 2 && !may; v++)
+            assert_int_equal(g.rule[v].freedom, TM_MOVES_AT_CORNER);
+        free_grid(&g);
+    }
+    tm_surface_free(&surface);
+}
+
 /* Thresholds of elements: only those that are to be good are looked after. */
 static void test_thresholds(void **state)
 {
     (void)state;
     grid g = make_grid(HEXAHEDRON);
-    throw_nodes(&g, &cube, 0.3, 1);
+    throw_nodes(&g, &cube, 0.35, 1);
     remember(&g);
     double *thresholds = calloc(g.mesh.elements, sizeof *thresholds);
     size_t bad = 0;
     for (size_t e = 0; e < g.mesh.elements; e++) {
-        thresholds[e] = e % 7 == 0 ? 0.3 : -1;
+        thresholds[e] = e % 7 == 0 ? 0.25 : 0.02;
         bad += g.before[e] < thresholds[e];
     }
-    const tm_optimise_options options = {0, thresholds, -1, 0, 1};
+    const tm_optimise_options options = {
+        .thresholds = thresholds, .held_threshold = 0.02, .effort = 3};
     tm_optimise_report report;
     tm_error error;
     assert_int_equal(tm_mixed_optimise(&g.mesh, g.rule, &cube, &options, &report, &error),
@@ -495,8 +550,33 @@ static void test_thresholds(void **state)
     assert_true(bad > 0);
     assert_int_equal(report.bad_after, 0);
     for (size_t e = 0; e < g.mesh.elements; e += 7)
-        assert_true(quality(&g, e) >= 0.3);
+        assert_true(quality(&g, e) >= 0.25);
     free(thresholds);
+    free_grid(&g);
+}
+
+/* An end to the work: nothing is begun after the first cluster, and what was done stays.
+ */
+static void test_spent(void **state)
+{
+    (void)state;
+    grid g = make_grid(ANY);
+    throw_nodes(&g, &cube, 0.45, 1);
+    for (uint32_t v = 0; v < GRID; v += WIDE * WIDE + 1)
+        g.rule[v].held = g.rule[v].freedom == TM_MOVES_ON_SURFACE;
+    remember(&g);
+    const tm_optimise_options options = {.threshold = 0.1,
+                                         .held_threshold = 0.1,
+                                         .release_threshold = 0.1,
+                                         .effort = 1,
+                                         .most_measured = 1};
+    tm_optimise_report report;
+    tm_error error;
+    assert_int_equal(tm_mixed_optimise(&g.mesh, g.rule, &cube, &options, &report, &error),
+                     TM_OK);
+    check(&g, &cube, 0.1, &report);
+    assert_int_equal(report.clusters, 1);
+    assert_int_equal(report.held_after, report.held_before);
     free_grid(&g);
 }
 
@@ -525,11 +605,12 @@ int main(void)
 {
     random_start();
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_untangles),  cmocka_unit_test(test_few),
-        cmocka_unit_test(test_ball),       cmocka_unit_test(test_surface),
-        cmocka_unit_test(test_nothing),    cmocka_unit_test(test_fixed),
-        cmocka_unit_test(test_held),       cmocka_unit_test(test_held_stays),
-        cmocka_unit_test(test_thresholds), cmocka_unit_test(test_deterministic),
+        cmocka_unit_test(test_untangles), cmocka_unit_test(test_few),
+        cmocka_unit_test(test_ball),      cmocka_unit_test(test_surface),
+        cmocka_unit_test(test_nothing),   cmocka_unit_test(test_fixed),
+        cmocka_unit_test(test_held),      cmocka_unit_test(test_held_stays),
+        cmocka_unit_test(test_released),  cmocka_unit_test(test_thresholds),
+        cmocka_unit_test(test_spent),     cmocka_unit_test(test_deterministic),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

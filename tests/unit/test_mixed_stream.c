@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Mixed meshes out of streams and back. */
+#include "../../lib/mixed/mixed_stream.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+/* A tetrahedron and a pyramid, with attributes. */
+static tm_stream make_stream(void)
+{
+    static const uint32_t item[] = {0, 1, 2, 4, 0, 1, 2, 3, 4};
+    static const size_t start[] = {0, 4, 9};
+    tm_stream stream;
+    tm_error error;
+    tm_stream_init(&stream);
+    tm_block *node = tm_stream_add(&stream, ".node");
+    assert_int_equal(tm_block_allocate(node, 5, 0, &error), TM_OK);
+    for (size_t i = 0; i < 15; i++)
+        node->real[i] = (double)i;
+    tm_block *mix = tm_stream_add(&stream, ".mix");
+    mix->attributes = 1;
+    assert_int_equal(tm_block_allocate(mix, 2, 9, &error), TM_OK);
+    memcpy(mix->start, start, sizeof start);
+    memcpy(mix->item, item, sizeof item);
+    return stream;
+}
+
+static void test_take_and_give(void **state)
+{
+    (void)state;
+    tm_stream stream = make_stream();
+    tm_mixed_mesh mesh;
+    tm_error error;
+    assert_int_equal(tm_mixed_mesh_take(&mesh, &stream, &error), TM_OK);
+    assert_int_equal(mesh.nodes, 5);
+    assert_int_equal(mesh.elements, 2);
+    assert_true(mesh.xyz[4][2] == 14);
+    assert_int_equal(mesh.item[mesh.start[1] + 3], 3);
+    mesh.xyz[4][2] = 7;
+    assert_int_equal(tm_mixed_mesh_give(&mesh, &stream, &error), TM_OK);
+    assert_null(mesh.xyz);
+    const tm_block *node = tm_stream_find(&stream, ".node");
+    const tm_block *mix = tm_stream_find(&stream, ".mix");
+    assert_true(node->real[14] == 7);
+    assert_int_equal(mix->count, 2);
+    assert_int_equal(mix->start[2], 9);
+    assert_int_equal(mix->item[8], 4);
+    tm_mixed_mesh_free(&mesh);
+    tm_stream_free(&stream);
+}
+
+/* Attributes of elements that are not there any more would be wrong. */
+static void test_other_counts(void **state)
+{
+    (void)state;
+    tm_stream stream = make_stream();
+    tm_mixed_mesh mesh;
+    tm_error error;
+    assert_int_equal(tm_mixed_mesh_take(&mesh, &stream, &error), TM_OK);
+    mesh.elements = 1;
+    assert_int_equal(tm_mixed_mesh_give(&mesh, &stream, &error), TM_ERROR_INTERNAL);
+    assert_int_equal(mesh.nodes, 5);
+    tm_block *mix = tm_stream_find(&stream, ".mix");
+    free(mix->attribute);
+    mix->attribute = NULL;
+    mix->attributes = 0;
+    assert_int_equal(tm_mixed_mesh_give(&mesh, &stream, &error), TM_OK);
+    assert_int_equal(tm_stream_find(&stream, ".mix")->count, 1);
+    tm_mixed_mesh_free(&mesh);
+    tm_stream_free(&stream);
+}
+
+static void test_node_twice(void **state)
+{
+    (void)state;
+    tm_stream stream = make_stream();
+    tm_stream_find(&stream, ".mix")->item[8] = 2;
+    tm_mixed_mesh mesh;
+    tm_error error;
+    assert_int_equal(tm_mixed_mesh_take(&mesh, &stream, &error), TM_ERROR_INPUT);
+    assert_string_equal(error.what, "element 2 names a node twice");
+    tm_mixed_mesh_free(&mesh);
+    tm_stream_free(&stream);
+}
+
+static void test_empty(void **state)
+{
+    (void)state;
+    tm_stream stream;
+    tm_mixed_mesh mesh;
+    tm_error error;
+    tm_stream_init(&stream);
+    assert_int_equal(tm_mixed_mesh_take(&mesh, &stream, &error), TM_OK);
+    assert_int_equal(mesh.nodes + mesh.elements, 0);
+    assert_int_equal(mesh.start[0], 0);
+    assert_int_equal(tm_mixed_mesh_give(&mesh, &stream, &error), TM_OK);
+    tm_mixed_mesh_free(&mesh);
+    tm_stream_free(&stream);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_take_and_give),
+        cmocka_unit_test(test_other_counts),
+        cmocka_unit_test(test_node_twice),
+        cmocka_unit_test(test_empty),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
