@@ -313,7 +313,7 @@ static size_t count_lost(const tm_octree *octree, const tm_surface *surface)
     tm_solid solid;
     uint8_t *lost = malloc(octree->leaves);
     assert_ok(tm_solid_choose(&solid, octree, surface, &error), &error);
-    const size_t count = tm_solid_find_lost(&solid, octree, lost);
+    const size_t count = tm_solid_find_lost(&solid, octree, surface, lost);
     tm_solid_free(&solid);
     free(lost);
     return count;
