@@ -246,7 +246,7 @@ tm_status tm_feature_find(tm_feature *feature, tm_skin *skin, const tm_octree *o
                             .feature = feature}};
     find.path.size = find.size = find_sizes(skin, octree);
     find.path.on_path = calloc(skin->faces + 1, 1);
-    find.path.visit = tm_path_visits(skin->nodes);
+    find.path.visit = calloc(skin->nodes + 1, sizeof *find.path.visit);
     if (status == TM_OK && !(find.size && find.path.on_path && find.path.visit))
         status = tm_fail_memory(error);
     if (status == TM_OK)
