@@ -42,7 +42,7 @@ static tm_text read_file(const filter *f, const char *file)
     return bytes;
 }
 
-/* One pointer more at the end of an array of `count`. */
+/* One item more at the end of an array of `count`. */
 static void *append(const filter *f, void *array, size_t count, size_t size)
 {
     tm_error error;
@@ -84,11 +84,13 @@ static void add_region(const filter *f, octree_rules *rules, const char *file,
 {
     filter named = *f;
     named.input = file;
-    tm_surface *surface = append(f, NULL, 0, sizeof *surface);
+    /* Rules point to regions, which therefore stay where they are: there is room for one
+     * for each word of the command. */
+    if (!rules->region)
+        rules->region = append(f, NULL, (size_t)f->argc, sizeof *rules->region);
+    tm_surface *surface = &rules->region[rules->regions++];
     const tm_surface_options options = {.feature_angle = TM_FEATURE_ANGLE};
     surface_input_build(&named, &options, surface, NULL);
-    rules->region = append(f, rules->region, rules->regions, sizeof *rules->region);
-    rules->region[rules->regions++] = surface;
     add(f, rules,
         &(tm_octree_rule){.kind = TM_RULE_REGION, .level = level, .region = surface});
 }
@@ -120,10 +122,8 @@ void octree_rules_option(filter *f, octree_rules *rules, int c)
 
 void octree_rules_free(octree_rules *rules)
 {
-    for (size_t i = 0; i < rules->regions; i++) {
-        tm_surface_free(rules->region[i]);
-        free(rules->region[i]);
-    }
+    for (size_t i = 0; i < rules->regions; i++)
+        tm_surface_free(&rules->region[i]);
     for (size_t i = 0; i < rules->leaf_lists; i++)
         free(rules->leaf_list[i]);
     free(rules->region);

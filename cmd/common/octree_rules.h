@@ -10,7 +10,7 @@
 typedef struct octree_rules {
     tm_octree_rules rules;
     size_t regions, leaf_lists;
-    tm_surface **region;
+    tm_surface *region;
     uint32_t **leaf_list;
 } octree_rules;
 

@@ -15,4 +15,12 @@ static inline uint32_t tm_set_root(uint32_t *parent, uint32_t x)
     return x;
 }
 
+/* Makes one set of those of a and b; its root is the smaller one. */
+static inline void tm_set_unite(uint32_t *parent, uint32_t a, uint32_t b)
+{
+    a = tm_set_root(parent, a);
+    b = tm_set_root(parent, b);
+    parent[a > b ? a : b] = a > b ? b : a;
+}
+
 #endif

@@ -106,10 +106,7 @@ static void join_patches(const tm_surface *surface, uint32_t *parent, uint32_t c
     const uint32_t *patch = surface->curve_patch[curve];
     if (patch[0] == TM_NONE || patch[1] == TM_NONE)
         return; /* an open edge */
-    const uint32_t a = tm_set_root(parent, patch[0]);
-    const uint32_t b = tm_set_root(parent, patch[1]);
-    if (a != b)
-        parent[a > b ? a : b] = a > b ? b : a;
+    tm_set_unite(parent, patch[0], patch[1]);
 }
 
 static tm_status find_curves(finder *find, tm_surface *surface, tm_error *error)
@@ -246,7 +243,7 @@ tm_status tm_feature_find(tm_feature *feature, tm_skin *skin, const tm_octree *o
                             .feature = feature}};
     find.path.size = find.size = find_sizes(skin, octree);
     find.path.on_path = calloc(skin->faces + 1, 1);
-    find.path.visit = tm_path_visits(skin->nodes);
+    find.path.visit = calloc(skin->nodes + 1, sizeof *find.path.visit);
     if (status == TM_OK && !(find.size && find.path.on_path && find.path.visit))
         status = tm_fail_memory(error);
     if (status == TM_OK)

@@ -27,14 +27,6 @@ static uint32_t half_at(const regions *r, size_t f, unsigned i)
     return (uint32_t)(2 * f + (turned >= 2));
 }
 
-static void unite(uint32_t *parent, uint32_t a, uint32_t b)
-{
-    a = tm_set_root(parent, a);
-    b = tm_set_root(parent, b);
-    if (a != b)
-        parent[a > b ? a : b] = a > b ? b : a;
-}
-
 /* Joins the halves on both sides of each edge that is on no path. */
 static void join_edge(regions *r, size_t f, unsigned i)
 {
@@ -46,7 +38,7 @@ static void join_edge(regions *r, size_t f, unsigned i)
         const unsigned n = tm_skin_corners(skin, g);
         for (unsigned c = 0; g != f && c < n; c++)
             if (skin->face[g][c] == b && skin->face[g][(c + 1) % n] == a)
-                unite(r->parent, half_at(r, f, i), half_at(r, g, c));
+                tm_set_unite(r->parent, half_at(r, f, i), half_at(r, g, c));
     }
 }
 

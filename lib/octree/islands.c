@@ -27,13 +27,6 @@ typedef struct {
 
 enum { TO_CHANGE = 1, TO_KEEP = 2 };
 
-static void unite(uint32_t *parent, uint32_t a, uint32_t b)
-{
-    a = tm_set_root(parent, a);
-    b = tm_set_root(parent, b);
-    parent[a > b ? a : b] = a > b ? b : a;
-}
-
 /* Six times the volume between the origin and triangle abc of skin nodes. */
 static double cone(const finder *f, uint32_t a, uint32_t b, uint32_t c)
 {
@@ -53,7 +46,7 @@ static void find_pieces(finder *f, const tm_surface *surface, const tm_surface_p
         f->parent[s] = s;
     for (size_t i = 0; i < skin->faces; i++)
         for (unsigned c = 1; c < tm_skin_corners(skin, i); c++)
-            unite(f->parent, skin->face[i][0], skin->face[i][c]);
+            tm_set_unite(f->parent, skin->face[i][0], skin->face[i][c]);
     for (size_t i = 0; i < skin->faces; i++) {
         const uint32_t *face = skin->face[i];
         piece *p = &f->pieces[tm_set_root(f->parent, face[0])];
@@ -109,7 +102,7 @@ static void mark_leaves(finder *f, bool chosen)
     for (size_t l = 0; l < octree->leaves; l++)
         for (int p = 1; f->solid->chosen[l] == chosen && p < TM_LEAF_NODES; p++)
             if (octree->node[l][p] != TM_NONE)
-                unite(f->leaf_parent, octree->node[l][0], octree->node[l][p]);
+                tm_set_unite(f->leaf_parent, octree->node[l][0], octree->node[l][p]);
     for (uint32_t s = 0; s < f->skin->nodes; s++) {
         const piece *p = &f->pieces[tm_set_root(f->parent, s)];
         const bool goes = !p->stays && (p->volume > 0) == chosen;

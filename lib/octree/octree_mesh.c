@@ -43,11 +43,8 @@ static tm_status measure_boundary(tm_octree_mesh *m, tm_error *error)
     for (size_t f = 0; f < skin->faces; f++) {
         const unsigned k = tm_skin_corners(skin, f);
         half_edges += k;
-        for (unsigned i = 1; i < k; i++) {
-            const uint32_t a = tm_set_root(parent, skin->face[f][0]);
-            const uint32_t b = tm_set_root(parent, skin->face[f][i]);
-            parent[a > b ? a : b] = a > b ? b : a;
-        }
+        for (unsigned i = 1; i < k; i++)
+            tm_set_unite(parent, skin->face[f][0], skin->face[f][i]);
     }
     for (size_t s = 0; s < skin->nodes; s++)
         m->report.components += tm_set_root(parent, (uint32_t)s) == s;

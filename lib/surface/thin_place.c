@@ -32,10 +32,9 @@ static bool is_thin(const tm_surface *surface, size_t t, double distance,
 
 bool tm_surface_thin_place(const tm_surface *surface, double most, double place[3])
 {
-    const double first = 0.125;
-    for (double share = first; share <= 1; share *= 2)
+    for (int halves = 3; halves >= 0; halves--)
         for (size_t t = 0; t < surface->triangles; t++)
-            if (is_thin(surface, t, share * most, place))
+            if (is_thin(surface, t, ldexp(most, -halves), place))
                 return true;
     return false;
 }
