@@ -6,8 +6,9 @@
 
 #include <string.h>
 
-static const tm_surface_options strict = {TM_FEATURE_ANGLE, false};
-static const tm_surface_options lenient = {TM_FEATURE_ANGLE, true};
+static const tm_surface_options strict = {.feature_angle = TM_FEATURE_ANGLE};
+static const tm_surface_options lenient = {.feature_angle = TM_FEATURE_ANGLE,
+                                           .lenient = true};
 static const double origin[3] = {0, 0, 0};
 
 /* Builds, checks, and frees the polygons. */
@@ -502,7 +503,7 @@ static void test_feature_angle(void **state)
 {
     (void)state;
     for (int angle = 44; angle <= 46; angle += 2) {
-        const tm_surface_options options = {angle, false};
+        const tm_surface_options options = {.feature_angle = angle};
         double xy[8][2];
         tm_polygon_surface p;
         tm_surface s;

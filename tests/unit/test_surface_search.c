@@ -22,7 +22,8 @@ static void make_surface(tm_surface *surface, bool far, bool lenient)
     tm_polygon_surface p;
     const double centre[3] = {0, 0, 4}, low[3] = {-1, -2, -7}, high[3] = {1, 0, -5};
     const double needle[4][2] = {{5, 0}, {5.001, 0}, {6, 1e-9}, {5.0005, 1e-7}};
-    const tm_surface_options options = {TM_FEATURE_ANGLE, lenient};
+    const tm_surface_options options = {.feature_angle = TM_FEATURE_ANGLE,
+                                        .lenient = lenient};
     tm_polygon_surface_init(&p);
     add_torus(&p, 3, 1, 48, 24);
     add_box(&p, low, high, false);
@@ -145,7 +146,7 @@ static void test_closest_on_curve(void **state)
     tm_error error = {0};
     tm_polygon_surface p;
     tm_surface s;
-    const tm_surface_options options = {TM_FEATURE_ANGLE, false};
+    const tm_surface_options options = {.feature_angle = TM_FEATURE_ANGLE};
     make_star(xy, 200, 1, 1);
     tm_polygon_surface_init(&p);
     add_prism(&p, (const double(*)[2])xy, 200, 1);
@@ -282,7 +283,7 @@ static void test_touching_boxes(void **state)
     tm_error error = {0};
     tm_polygon_surface p;
     tm_surface s;
-    const tm_surface_options options = {TM_FEATURE_ANGLE, false};
+    const tm_surface_options options = {.feature_angle = TM_FEATURE_ANGLE};
     tm_polygon_surface_init(&p);
     add_cube(&p, 0, 0, 0, 3);
     assert_int_equal(tm_surface_build(&s, &p, &options, &error), TM_OK);
@@ -307,7 +308,8 @@ static void test_touching_boxes(void **state)
 static void test_soup(void **state)
 {
     (void)state;
-    const tm_surface_options options = {TM_FEATURE_ANGLE, true};
+    const tm_surface_options options = {.feature_angle = TM_FEATURE_ANGLE,
+                                        .lenient = true};
     size_t taken = 0;
     for (int round = 0; round < POINTS; round++) {
         tm_error error = {0};
