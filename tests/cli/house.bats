@@ -82,7 +82,7 @@ input() {
     case $1 in
     poly-stats) echo cell.tm ;;
     tetgen-import) echo corner.node ;;
-    tetgen-mesh) echo surface.tm ;;
+    tetgen-mesh | octree-mesh) echo surface.tm ;;
     visf-import) echo corner.visf ;;
     mdl-import) echo corner.mdl ;;
     m3d-import) echo corner.mvm ;;
@@ -219,6 +219,7 @@ teardown() {
         lepp-improve) command="lepp-improve -q many-nodes.tm" ;;
         tetgen-import) command="tetgen-import many.node" ;;
         tetgen-mesh) command="tetgen-mesh --quiet many.node" ;;
+        octree-mesh) command="octree-mesh -q surface.tm" ;;
         off-export) command="off-export faces.tm" ;;
         visf-export) command="visf-export many-nodes.tm" ;;
         visf-import) command="visf-import many.visf" ;;

@@ -27,8 +27,10 @@ static const char all_blocks[] = "termesh 1\n# made by hand\n.node\n"
                                  "1 1 -1 3 1 3 2 0\n2 1 -1 3 1 2 6 0\n"
                                  "3 1 -1 3 2 3 6 0\n4 1 -1 3 1 6 3 0\n"
                                  ".cell\n1 1\n1 4 1 2 3 4 0.25\n"
-                                 "surface.node\n3 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n"
-                                 "surface.face\n1 0\n1 1 2 3\n"
+                                 "surface.node\n4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n"
+                                 "4 0 0 1\n"
+                                 "surface.face\n4 1\n1 1 3 2 5\n2 1 2 4 5\n3 2 3 4 6\n"
+                                 "4 1 4 3 0\n"
                                  "# a comment\n.unknown\nsome text\n\n# and more\n.end\n";
 
 /* What numbers are replaced by. */

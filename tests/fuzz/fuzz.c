@@ -77,6 +77,10 @@ static const command commands[] = {
     {"oct-export", {"-o", "out.oct", INPUT}, false},
     {"oct-import", {"out.oct"}, true},
     {"oct-import", {"-m", "out.m3d", INPUT}, true},
+    {"octree-mesh", {"-s", "3", INPUT}, false},
+    {"octree-mesh", {"-b", INPUT, "-l", INPUT, INPUT}, false},
+    {"octree-mesh", {"-s", "2", "-u", "--lenient", INPUT}, false},
+    {"octree-mesh", {"-s", "2", "-r", INPUT, "3", INPUT}, false},
     {"tetgen-mesh", {"--tetgen", "false", INPUT}, true},
 };
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
