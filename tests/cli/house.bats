@@ -369,4 +369,9 @@ END
     done
     run -0 make -C "$root/examples" build="$TM_BUILD" to="$PWD/made"
     [[ "$output" != *lepp-improve* ]]
+    run -0 make -s -C "$root/examples" build="$TM_BUILD" to="$PWD/made" LEVEL=4 mixed
+    for model in knot bar gear; do
+        [ -s "made/$model.mixed.txt" ]
+        [ -s "made/$model.mixed.vtu" ]
+    done
 }
