@@ -124,7 +124,7 @@ static void check_curves(const tm_octree_mesh *mesh, const tm_surface *surface)
 {
     const tm_feature *feature = &mesh->feature;
     size_t nodes[BOX_CURVES] = {0};
-    uint32_t first[BOX_CURVES];
+    uint32_t first[BOX_CURVES] = {0};
     for (uint32_t s = 0; s < mesh->skin.nodes; s++)
         if (feature->kind[s] == TM_ON_CURVE) {
             first[feature->of[s]] = s;
