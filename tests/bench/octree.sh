@@ -8,6 +8,8 @@
 #   LEVELS    of -s; 5 6 7
 #   SHAPES    which shapes and which of these files; all
 #   OPTIONS   more options for octree-mesh
+#   REPAIR    a threshold: what octree-repair -t makes of these meshes is judged instead,
+#             and its time; the title says how many elements went in
 #   FIGURES   the file for the rows as JSON
 # shellcheck source-path=SCRIPTDIR source=common.inc
 . "$(dirname "$0")/common.inc"
@@ -58,11 +60,18 @@ mesh() {
     for option; do
         title="$title $(basename -- "$option" .mdl)"
     done
+    # shellcheck disable=SC2086 # words
+    set -- octree-mesh ${OPTIONS:-} "$@" "$file"
+    if [ -n "${REPAIR:-}" ]; then
+        "$@" -q >"$work/made.tm" || [ $? -eq 1 ]
+        title="$title ($(sed -n '/^\.mix/{n;p;q;}' "$work/made.tm" | cut -d ' ' -f 1))"
+        rate=
+        set -- octree-repair -t "$REPAIR" "$work/made.tm"
+    fi
     echo 0 >"$work/status"
-    # shellcheck disable=SC2016,SC2086 # for the inner shell; words
+    # shellcheck disable=SC2016 # for the inner shell
     cpu 1 sh -c 'to=$1 status=$2; shift 2; "$@" >"$to" || echo $? >"$status"' sh \
-        "$work/mesh.tm" "$work/status" octree-mesh ${OPTIONS:-} "$@" "$file" \
-        >"$work/cpu" 2>"$work/notes" </dev/null
+        "$work/mesh.tm" "$work/status" "$@" >"$work/cpu" 2>"$work/notes" </dev/null
     status=$(cat "$work/status")
     if [ "$status" -gt 1 ]; then
         printf '%-20s failed: %s\n' "$title" "$(tail -n 1 "$work/notes")"
