@@ -109,38 +109,126 @@ static void join_patches(const tm_surface *surface, uint32_t *parent, uint32_t c
     tm_set_unite(parent, patch[0], patch[1]);
 }
 
-static tm_status find_curves(finder *find, tm_surface *surface, tm_error *error)
+/* The skin node that stands for a corner; TM_NONE where there is no corner. */
+static uint32_t node_at(const finder *find, uint32_t corner)
 {
-    tm_feature *feature = find->path.feature;
-    const uint32_t *corner_of = find->choice.corner_of;
-    uint32_t *parent = tm_new(surface->patches, sizeof *parent);
-    tm_status status = parent ? TM_OK : tm_fail_memory(error);
-    for (size_t p = 0; parent && p < surface->patches; p++)
-        parent[p] = (uint32_t)p;
-    for (uint32_t c = 0; status == TM_OK && c < surface->curves; c++) {
+    return corner == TM_NONE ? TM_NONE : find->node_of[corner];
+}
+
+/* Takes the paths of all curves back. */
+static void clear_paths(const finder *find)
+{
+    const tm_path_finder *p = &find->path;
+    memset(p->on_path, 0, p->skin->faces);
+    memset(p->skin->cut, TM_UNCUT, p->skin->faces);
+    for (size_t s = 0; s < p->skin->nodes; s++) {
+        if (p->feature->kind[s] != TM_ON_CURVE)
+            continue;
+        p->feature->kind[s] = TM_ON_PATCH;
+        p->feature->of[s] = p->feature->along[s][0] = p->feature->along[s][1] = TM_NONE;
+    }
+}
+
+/* Finds the paths of the chosen curves in that order, and how many are lost; lost[c] says
+ * which. */
+static tm_status find_paths(finder *find, const uint32_t *order, bool *lost,
+                            size_t *count, tm_error *error)
+{
+    const tm_surface *surface = find->path.surface;
+    tm_status status = TM_OK;
+    *count = 0;
+    for (size_t i = 0; status == TM_OK && i < surface->curves; i++) {
+        const uint32_t c = order[i];
         const uint32_t *node = surface->curve_node + surface->curve_start[c];
-        const size_t last = surface->curve_start[c + 1] - surface->curve_start[c] - 1;
-        const uint32_t from = corner_of[node[0]], to = corner_of[node[last]];
-        bool found = false;
-        if (!find->choice.curve[c]) {
-            join_patches(surface, parent, c);
+        const uint32_t *last = surface->curve_node + surface->curve_start[c + 1] - 1;
+        const uint32_t from = find->choice.corner_of[*node];
+        const uint32_t to = find->choice.corner_of[*last];
+        bool found = !find->choice.curve[c];
+        if (!found && (from == TM_NONE || node_at(find, from) != TM_NONE) &&
+            (to == TM_NONE || node_at(find, to) != TM_NONE))
+            status = tm_path_along_curve(&find->path, c, node_at(find, from),
+                                         node_at(find, to), &found, error);
+        lost[c] = !found;
+        *count += !found;
+    }
+    return status;
+}
+
+/* Moves the curves that are lost to the front: another one may have barred their way. */
+static void put_lost_first(const bool *lost, size_t curves, const uint32_t *order,
+                           uint32_t *next)
+{
+    size_t n = 0;
+    for (int first = 1; first >= 0; first--)
+        for (size_t i = 0; i < curves; i++)
+            if (lost[order[i]] == first)
+                next[n++] = order[i];
+}
+
+/* Tries some orders, each with what the last one lost first, and leaves the paths of the
+ * best. */
+static tm_status try_orders(finder *find, uint32_t *order[2], bool *lost, tm_error *error)
+{
+    enum { TRIES = 4 };
+    size_t least, count;
+    unsigned best = 0;
+    tm_status status = find_paths(find, order[0], lost, &least, error);
+    for (int t = 1; status == TM_OK && least > 0 && t < TRIES; t++) {
+        put_lost_first(lost, find->path.surface->curves, order[best], order[1 - best]);
+        clear_paths(find);
+        status = find_paths(find, order[1 - best], lost, &count, error);
+        if (status != TM_OK || count < least) {
+            best = 1 - best;
+            least = count;
             continue;
         }
-        const bool has_ends = (from == TM_NONE || find->node_of[from] != TM_NONE) &&
-                              (to == TM_NONE || find->node_of[to] != TM_NONE);
-        if (has_ends)
-            status = tm_path_along_curve(
-                &find->path, c, from == TM_NONE ? TM_NONE : find->node_of[from],
-                to == TM_NONE ? TM_NONE : find->node_of[to], &found, error);
-        if (status == TM_OK && !found) {
-            feature->curves_lost++;
-            feature->lost = node[last / 2];
+        clear_paths(find);
+        return find_paths(find, order[best], lost, &count, error);
+    }
+    return status;
+}
+
+/* Joins the patches on both sides of curves that are lost, or were not chosen. */
+static tm_status join_lost(finder *find, tm_surface *surface, const bool *lost,
+                           tm_error *error)
+{
+    tm_feature *feature = find->path.feature;
+    uint32_t *parent = tm_new(surface->patches, sizeof *parent);
+    if (!parent)
+        return tm_fail_memory(error);
+    for (size_t p = 0; p < surface->patches; p++)
+        parent[p] = (uint32_t)p;
+    for (uint32_t c = 0; c < surface->curves; c++) {
+        if (lost[c] || !find->choice.curve[c])
             join_patches(surface, parent, c);
+        if (lost[c]) {
+            const size_t begin = surface->curve_start[c],
+                         end = surface->curve_start[c + 1];
+            feature->curves_lost++;
+            feature->lost = surface->curve_node[(begin + end - 1) / 2];
         }
     }
-    for (size_t t = 0; status == TM_OK && t < surface->triangles; t++)
+    for (size_t t = 0; t < surface->triangles; t++)
         surface->patch[t] = tm_set_root(parent, surface->patch[t]);
     free(parent);
+    return TM_OK;
+}
+
+static tm_status find_curves(finder *find, tm_surface *surface, tm_error *error)
+{
+    uint32_t *order[2] = {tm_new(surface->curves, sizeof(uint32_t)),
+                          tm_new(surface->curves, sizeof(uint32_t))};
+    bool *lost = calloc(surface->curves + 1, sizeof *lost);
+    tm_status status = order[0] && order[1] && lost ? TM_OK : tm_fail_memory(error);
+    for (size_t c = 0; order[0] && c < surface->curves; c++)
+        order[0][c] = (uint32_t)c;
+    if (status == TM_OK)
+        status = try_orders(find, order, lost, error);
+    if (status == TM_OK)
+        status = join_lost(find, surface, lost, error);
+    free(order[0]);
+    free(order[1]);
+    free(lost);
     return status;
 }
 

@@ -64,12 +64,12 @@ typedef struct tm_path_finder {
 static const double tm_path_tube = 2;
 
 /* The place of a skin node on the lattice. */
-void tm_path_place(const tm_path_finder *finder, uint32_t s, double xyz[3]);
+void tm_path_place(const tm_path_finder *p, uint32_t s, double xyz[3]);
 
 /* Searches from one stop of the curve to the next; where *found, visit[].from leads back
  * from the second. O(n log n) in the nodes near the curve. TM_ERROR_SYSTEM where memory
  * is out. */
-tm_status tm_path_search(tm_path_finder *finder, const tm_path_stop *from,
+tm_status tm_path_search(tm_path_finder *p, const tm_path_stop *from,
                          const tm_path_stop *to, bool *found, tm_error *error);
 
 #endif

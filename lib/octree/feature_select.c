@@ -13,6 +13,9 @@
  * free end that is. */
 static const double small_group = 3, short_end = 2;
 
+/* A group of this part of the surface's extent stays all the same. */
+static const double large_group = 0.5;
+
 typedef struct {
     const tm_surface *surface;
     const double *size;
@@ -84,6 +87,9 @@ static void drop_groups(chooser *c)
         stretch(c->box[a], c->box[b] + 3);
         c->parent[b] = a;
     }
+    const double whole[6] = {s->low[0],  s->low[1],  s->low[2],
+                             s->high[0], s->high[1], s->high[2]};
+    const double large = large_group * extent(whole);
     for (size_t curve = 0; curve < s->curves; curve++) {
         const uint32_t from = end_of(c, curve, 0);
         double box[6];
@@ -91,7 +97,8 @@ static void drop_groups(chooser *c)
             curve_box(s, curve, box);
         else
             memcpy(box, c->box[tm_set_root(c->parent, from)], sizeof box);
-        c->choice->curve[curve] = extent(box) >= small_group * c->size[curve];
+        c->choice->curve[curve] =
+            extent(box) >= fmin(small_group * c->size[curve], large);
     }
 }
 

@@ -14,10 +14,11 @@ typedef struct tm_feature_choice {
 } tm_feature_choice;
 
 /* Leaves out curves that hang together with none of the others over more than a few
- * sides of a leaf, then, again and again, curves of less than two sides that end
- * freely; and the corners that have lost all their curves. Corners without curves, the
- * tips of cones, stay. size[c] is the side of the leaves near curve c. TM_ERROR_SYSTEM
- * where memory is out. *choice is to be freed, after an error too. O(n). */
+ * sides of a leaf (or half of the surface), then, again and again, curves of less than
+ * two sides that end freely; and the corners that have lost all their curves. Corners
+ * without curves, the tips of cones, stay. size[c] is the side of the leaves near curve
+ * c. TM_ERROR_SYSTEM where memory is out. *choice is to be freed, after an error too.
+ * O(n). */
 tm_status tm_feature_choose(tm_feature_choice *choice, const tm_surface *surface,
                             const double *size, tm_error *error);
 void tm_feature_choice_free(tm_feature_choice *choice);
