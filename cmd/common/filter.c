@@ -17,7 +17,7 @@ enum { THREADS_MAX = 256 };
 static const char shared_help[] =
     "  -o, --output FILE   write to FILE instead of standard output, whole or not at "
     "all\n"
-    "  -j, --threads N     use N threads; the output is the same for every N\n"
+    "  %s --threads N     use N threads; the output is the same for every N\n"
     "      --json FILE     write a JSON report to FILE\n"
     "      --no-history    do not add a history line\n"
     "  %s --quiet         no notes on standard error\n"
@@ -43,7 +43,7 @@ _Noreturn static void help(const filter *f)
 {
     usage(f, stdout);
     printf("\n%s\n\n%s", f->purpose, f->help);
-    printf(shared_help, f->q_is_own ? "   " : "-q,");
+    printf(shared_help, f->j_is_own ? "   " : "-j,", f->q_is_own ? "   " : "-q,");
     filter_exit_after_text(f);
 }
 
@@ -165,6 +165,11 @@ static void remember(filter *f, int c, int index)
                        optarg ? "=" : "", optarg ? optarg : "");
 }
 
+static void take_threads(filter *f)
+{
+    f->threads = (unsigned)filter_integer(f, "--threads", optarg, 1, THREADS_MAX);
+}
+
 /* Takes a shared option; false where c is the filter's own. */
 static bool take_shared(filter *f, int c)
 {
@@ -189,7 +194,12 @@ static bool take_shared(filter *f, int c)
         f->verbosity = 1;
         return true;
     case 'j':
-        f->threads = (unsigned)filter_integer(f, "--threads", optarg, 1, THREADS_MAX);
+        if (f->j_is_own)
+            return false;
+        take_threads(f);
+        return true;
+    case FILTER_THREADS:
+        take_threads(f);
         return true;
     case FILTER_JSON:
         f->json = optarg;

@@ -36,15 +36,17 @@ enum { EXIT_GOAL = 1, EXIT_USAGE = 2 };
     {"verbose", no_argument, NULL, 'v'}, \
     {"json", required_argument, NULL, FILTER_JSON}, \
     {"no-history", no_argument, NULL, FILTER_NO_HISTORY}, \
-    {"threads", required_argument, NULL, 'j'}, \
+    {"threads", required_argument, NULL, FILTER_THREADS}, \
     {NULL, 0, NULL, 0}
 /* clang-format on */
-#define FILTER_LETTERS "hVo:vj:q"
+#define FILTER_LETTERS       "hVo:vqj:"
+#define FILTER_LETTERS_NOT_J "hVo:vq" /* where j_is_own */
 
 enum {
     FILTER_JSON = 256,
     FILTER_QUIET,
     FILTER_NO_HISTORY,
+    FILTER_THREADS,
     FILTER_OWN = 512 /* a filter numbers its own long-only options from here */
 };
 
@@ -58,6 +60,7 @@ typedef struct filter {
     const char *letters;          /* getopt's, its own + FILTER_LETTERS */
     bool json_is_output;          /* --json - is stdout: the *-stats and mesh-check */
     bool q_is_own;                /* -q is the filter's; quiet is --quiet only */
+    bool j_is_own;                /* -j is the filter's; threads are --threads only */
     /* set from the command line */
     int argc;
     char **argv;

@@ -11,7 +11,7 @@
  *           =   J_S / K        if -K <= J_S <= K
  *           = -(1 + K) - J_S   if J_S < -K
  *
- * (S. Donoso, 2022, after D. Daines and C. Lobos, 2018). An element is as good as its
+ * (S. Donoso, 2022, after E. Daines and C. Lobos, 2018). An element is as good as its
  * worst corner. A corner with an edge of length 0 has J_S = 0, as a flat one has: it is
  * not inverted, nor is it valid. So is one whose edges overflow.
  *

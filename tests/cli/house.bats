@@ -215,6 +215,7 @@ teardown() {
     closes() {
         case $1 in
         tet-stats) command="tet-stats --list many.tm" ;;
+        jens-stats) command="jens-stats -l many.tm" ;;
         lepp-improve) command="lepp-improve -q many-nodes.tm" ;;
         tetgen-import) command="tetgen-import many.node" ;;
         tetgen-mesh) command="tetgen-mesh --quiet many.node" ;;

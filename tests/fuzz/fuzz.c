@@ -43,6 +43,8 @@ typedef struct {
 static const command commands[] = {
     {"tet-stats", {"--list", INPUT}, false},
     {"tet-stats", {INPUT, INPUT}, false},
+    {"jens-stats", {"-l", "--certify", INPUT}, false},
+    {"jens-stats", {"--verdict", "--json", "-", "-o", "list", INPUT}, false},
     {"lepp-improve", {INPUT}, false},
     {"lepp-improve", {"-t", "45", "--max-growth", "0.5", INPUT}, true},
     {"lepp-improve", {"-a", "selective", "-Q", "volume", "-m", "1", INPUT}, false},
