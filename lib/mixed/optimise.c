@@ -6,6 +6,7 @@
 #include "../stream/stream.h"
 #include "optimise_parts.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,11 +17,14 @@ enum { RINGS_MOST = 2, CORE_MOST = 32 };
 /* One after the other: first what is cheap and mends most. */
 typedef struct pass {
     unsigned rings;
-    double kick; /* nodes are thrown about by so much of their size before */
+    bool untangle; /* what stays inverted, by the other objective */
+    double kick;   /* nodes are thrown about by so much of their size before */
 } pass;
 
-static const pass passes[] = {{0, 0}, {1, 0}, {2, 0}};
-static const pass last_passes[] = {{1, 0.1}, {2, 0.1}, {1, 0.3}, {2, 0.3}};
+static const pass passes[] = {
+    {0, false, 0}, {1, false, 0}, {0, true, 0}, {1, true, 0}, {2, true, 0}};
+static const pass last_passes[] = {
+    {0, true, 0.1}, {0, true, 0.3}, {1, true, 0.1}, {1, true, 0.3}};
 enum {
     PASSES = sizeof passes / sizeof *passes,
     LAST_PASSES = sizeof last_passes / sizeof *last_passes
@@ -28,7 +32,8 @@ enum {
 
 /* The objective becomes the sharper the closer it is to its minimum. */
 static const double sharpness[] = {8, 20, 60};
-enum { UNTANGLE_STAGES = 12, UNTANGLE_ITERATIONS = 20 };
+enum { UNTANGLE_STAGES = 12, UNTANGLE_ITERATIONS = 20, UNTANGLE_IDLE = 2 };
+static const double untangle_gain = 0.9;
 static const double epsilon_least = 1e-6;
 enum { STAGES = sizeof sharpness / sizeof *sharpness, ITERATIONS = 25 };
 
@@ -172,21 +177,32 @@ static void sharpen(tm_cluster *cluster)
         tm_cluster_descend(cluster, (tm_objective){false, sharpness[s]}, ITERATIONS);
 }
 
+/* Ends also where for some stages neither fewer elements are inverted nor the worst of
+ * them less. */
 static void untangle(tm_cluster *cluster)
 {
-    double epsilon = 1;
-    for (size_t s = 0; s < UNTANGLE_STAGES && cluster->best_score.inverted > 0; s++) {
+    double epsilon = 1, worst = -INFINITY;
+    size_t least = SIZE_MAX, idle = 0;
+    for (size_t s = 0;
+         s < UNTANGLE_STAGES && idle < UNTANGLE_IDLE && cluster->best_score.inverted > 0;
+         s++) {
         const double gain = tm_cluster_descend(cluster, (tm_objective){true, epsilon},
                                                UNTANGLE_ITERATIONS);
         epsilon = fmax(tm_untangle_next(cluster, epsilon, gain), epsilon_least);
+        const size_t inverted = tm_cluster_score(cluster).inverted;
+        const bool better =
+            inverted < least || cluster->least_determinant > worst * untangle_gain;
+        idle = better ? 0 : idle + 1;
+        least = inverted < least ? inverted : least;
+        worst = fmax(worst, cluster->least_determinant);
     }
 }
 
-void tm_optimise_descend(tm_optimise_work *w)
+void tm_optimise_descend(tm_optimise_work *w, bool may_untangle)
 {
     tm_cluster *cluster = &w->cluster;
     sharpen(cluster);
-    if (cluster->best_score.inverted == 0)
+    if (cluster->best_score.inverted == 0 || !may_untangle)
         return;
     untangle(cluster);
     if (cluster->best_score.inverted == 0)
@@ -230,7 +246,7 @@ static tm_status mend_cluster(tm_optimise_work *w, uint32_t first, const pass *h
     w->report->clusters++;
     if (how->kick > 0)
         kick_nodes(cluster, how->kick, first ^ round << 32);
-    tm_optimise_descend(w);
+    tm_optimise_descend(w, how->untangle);
     if (tm_score_better(&cluster->best_score, &cluster->first))
         tm_optimise_accept(w);
     return TM_OK;

@@ -207,7 +207,7 @@ tm_status tm_cluster_gather(tm_cluster *cluster, const tm_cluster_source *source
     bool made = gather_moving(cluster, source, core, cores, rings) &&
                 gather_elements(cluster, source) &&
                 make_room(cluster, old_nodes, old_elements);
-    if (made) {
+    if (made && cluster->moving > 0) {
         for (size_t v = 0; v < cluster->nodes; v++)
             memcpy(cluster->xyz[v], source->mesh->xyz[cluster->node[v]],
                    sizeof *cluster->xyz);

@@ -38,7 +38,7 @@ static tm_status approach(tm_optimise_work *w, uint32_t node, double factor, boo
         return TM_OK;
     w->report->clusters++;
     tm_cluster_approach(cluster, v, factor, w->options->held_threshold);
-    tm_optimise_descend(w);
+    tm_optimise_descend(w, true);
     *done = cluster->best_score.bad <= cluster->first.bad;
     if (*done)
         tm_optimise_accept(w);

@@ -95,7 +95,7 @@ static inline double tm_threshold_of(const tm_optimise_options *options, size_t 
 
 /* Gathers the cluster of the elements core[0 … cores): their nodes move, and those up to
  * `rings` elements away, as far as they may; all elements that have a node that moves
- * are in it. */
+ * are in it. Where no node can move, the cluster is empty. */
 tm_status tm_cluster_gather(tm_cluster *cluster, const tm_cluster_source *source,
                             const uint32_t *core, size_t cores, unsigned rings,
                             tm_error *error);
@@ -160,8 +160,9 @@ typedef struct tm_optimise_work {
     tm_optimise_report *report;
 } tm_optimise_work;
 
-/* Minimises, the more sharply the closer it comes, until nothing is bad. */
-void tm_optimise_descend(tm_optimise_work *work);
+/* Minimises, the more sharply the closer it comes, until nothing is bad; where that
+ * leaves elements inverted, it may untangle first. */
+void tm_optimise_descend(tm_optimise_work *work, bool may_untangle);
 
 /* Takes the best places of the cluster into the mesh. */
 void tm_optimise_accept(tm_optimise_work *work);
