@@ -129,8 +129,9 @@ static tm_status visit(void *context, unsigned iteration, const tm_repair_state 
                               p->f.threads, error);
 }
 
-/* A line for each octant that is left. */
-static void list_left(const program *p, const tm_repair_state *state, unsigned base)
+/* What is left to do: a line for each octant, and one for all. */
+static void note_left(const program *p, const tm_repair_state *state,
+                      const tm_repair_score *left, unsigned base)
 {
     tm_error error;
     uint32_t *octant;
@@ -141,6 +142,10 @@ static void list_left(const program *p, const tm_repair_state *state, unsigned b
     for (size_t i = 0; i < count; i++)
         filter_note(&p->f, "octant %zu is left to improve", octant[i] + (size_t)base);
     free(octant);
+    filter_note(&p->f,
+                "%zu elements are still bad (%zu of them invalid, the worst J_ENS %g) and "
+                "%zu nodes not on the surface",
+                left->bad, left->invalid, left->worst, left->held);
 }
 
 static void score_json(tm_json *json, const char *key, const tm_repair_score *score,
@@ -185,22 +190,36 @@ static size size_of(const tm_repair_state *state, const tm_stream *stream)
     return (size){state->mesh.elements, state->remade ? state->octree.leaves : octants};
 }
 
+/* Finds the surface, what nodes may do, and the octree. */
+static void prepare(program *p, const tm_stream *stream, tm_repair_state *state,
+                    tm_repair_notes *notes)
+{
+    tm_error error;
+    build_surface(p, stream);
+    if (tm_repair_prepare(state, stream, p->has_surface ? &p->boundary : NULL, notes,
+                          &error) != TM_OK)
+        fail(p, &error);
+    if (!notes->no_octree.what[0])
+        return;
+    if (p->repair.method == TM_REPAIR_REFINE)
+        fail(p, &notes->no_octree);
+    filter_note(&p->f, "%s: no octant is split: %s", filter_input_name(&p->f),
+                notes->no_octree.what);
+}
+
 /* Repairs the mesh in the stream; returns whether nothing is left to do. */
 static bool run(program *p, tm_stream *stream)
 {
     tm_error error;
     tm_repair_state state;
-    tm_repair_notes notes;
+    tm_repair_notes notes = {0};
     tm_repair_report report;
-    tm_surface *surface = p->has_surface ? &p->boundary : NULL;
     const clock_t start = clock();
-    if (tm_repair_take(&state, stream, surface, &notes, &error) != TM_OK)
+    if (tm_repair_take(&state, stream, &error) != TM_OK)
         fail(p, &error);
-    if (notes.no_octree.what[0] && p->repair.method == TM_REPAIR_FULL)
-        filter_note(&p->f, "%s: no octant is split: %s", filter_input_name(&p->f),
-                    notes.no_octree.what);
-    if (notes.no_octree.what[0] && p->repair.method == TM_REPAIR_REFINE)
-        fail(p, &notes.no_octree);
+    if (tm_repair_is_needed(&state, stream, p->repair.threshold) || p->trace)
+        prepare(p, stream, &state, &notes);
+    tm_surface *surface = p->has_surface ? &p->boundary : NULL;
     const size before = size_of(&state, stream);
     p->repair.visit = visit;
     p->repair.context = p;
@@ -208,14 +227,8 @@ static bool run(program *p, tm_stream *stream)
         fail(p, &error);
     const size after = size_of(&state, stream);
     const bool done = report.after.bad == 0 && report.after.held == 0;
-    if (!done) {
-        list_left(p, &state, stream->base);
-        filter_note(&p->f,
-                    "%zu elements are still bad (%zu of them invalid, the worst J_ENS %g) "
-                    "and %zu nodes not on the surface",
-                    report.after.bad, report.after.invalid, report.after.worst,
-                    report.after.held);
-    }
+    if (!done)
+        note_left(p, &state, &report.after, stream->base);
     if (tm_repair_give(&state, stream, surface, &notes, &error) != TM_OK)
         filter_fail(&p->f, &error);
     if (notes.dropped[0])
@@ -251,7 +264,6 @@ int main(int argc, char **argv)
         read_option(&p, c);
     filter_operands(&p.f);
     filter_read(&p.f, &stream);
-    build_surface(&p, &stream);
     const bool done = run(&p, &stream);
     tm_surface_free(&p.boundary);
     tm_stream_free(&stream);

@@ -13,6 +13,14 @@ tm_status tm_repair_move(tm_repair_state *state, const tm_surface *surface,
                          double threshold, double held_threshold, unsigned effort,
                          tm_repair_score *score, tm_error *error);
 
+/* Divides bad elements that are no tetrahedra from a node in their middle where the worst
+ * part is better than they are, a quadrilateral on the boundary along a diagonal where
+ * that is better still; then nodes move. All is as it was where that does not make the
+ * state better; *divided counts elements that are divided. */
+tm_status tm_repair_divide(tm_repair_state *state, const tm_surface *surface,
+                           double threshold, tm_repair_score *score, size_t *divided,
+                           tm_error *error);
+
 /* Makes *to, which must be zeros, of the octree with those octants split once, balanced
  * and meshed again. It is to be freed, after an error too. */
 tm_status tm_repair_remake(tm_repair_state *to, const tm_repair_state *from,

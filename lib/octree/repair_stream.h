@@ -15,14 +15,24 @@ typedef struct tm_repair_notes {
     char dropped[256];   /* blocks that were removed, with blanks between */
 } tm_repair_notes;
 
-/* Takes the arrays of .node and .mix; the blocks stay. The place of a node is that of the
- * only attribute of .node, as tm_octree_mesh_give() writes it, if all of that is true of
- * the mesh; else it is found. With surface NULL nodes of the boundary do not move.
- * TM_ERROR_INPUT: there are no elements, or an element names a node twice.
- * *state and *notes need not be initialised; *state is to be freed, after an error too. */
-tm_status tm_repair_take(tm_repair_state *state, tm_stream *stream,
-                         const tm_surface *surface, tm_repair_notes *notes,
-                         tm_error *error);
+/* Takes the arrays of .node and .mix; the blocks stay. TM_ERROR_INPUT: there are no
+ * elements, or an element names a node twice. *state need not be initialised; it is to be
+ * freed, after an error too. */
+tm_status tm_repair_take(tm_repair_state *state, tm_stream *stream, tm_error *error);
+
+/* Whether there is something to do: an element is bad, or a node is held back, or may be,
+ * as the attribute of .node does not say that none is. */
+bool tm_repair_is_needed(const tm_repair_state *state, const tm_stream *stream,
+                         double threshold);
+
+/* Finds what nodes may do, and the octree. The place of a node is that of the only
+ * attribute of .node, as tm_octree_mesh_give() writes it, if the nodes of the boundary,
+ * and no others, have one; else it is found. With surface NULL nodes of the boundary do
+ * not move, and there is no octree. *notes need not be initialised. TM_ERROR_SYSTEM where
+ * memory is out. */
+tm_status tm_repair_prepare(tm_repair_state *state, const tm_stream *stream,
+                            const tm_surface *surface, tm_repair_notes *notes,
+                            tm_error *error);
 
 /* Gives them back. Where elements are parts of what they were, .octant, .facet and
  * attributes follow; where all is remade .octant, .root and .facet are new; blocks of the

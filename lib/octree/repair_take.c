@@ -17,7 +17,7 @@
 static tm_status allocate(tm_repair_state *state, tm_error *error)
 {
     const size_t nodes = state->mesh.nodes, elements = state->mesh.elements;
-    state->rule = tm_new(nodes, sizeof *state->rule);
+    state->rule = calloc(nodes + 1, sizeof *state->rule);
     state->place = calloc(nodes + 1, sizeof *state->place);
     state->octant = tm_new(elements, sizeof *state->octant);
     state->origin = tm_new(elements, sizeof *state->origin);
@@ -124,12 +124,9 @@ static tm_status find_rules(tm_repair_state *state, const tm_block *node,
     return status;
 }
 
-tm_status tm_repair_take(tm_repair_state *state, tm_stream *stream,
-                         const tm_surface *surface, tm_repair_notes *notes,
-                         tm_error *error)
+tm_status tm_repair_take(tm_repair_state *state, tm_stream *stream, tm_error *error)
 {
     *state = (tm_repair_state){0};
-    *notes = (tm_repair_notes){0};
     tm_status status = tm_mixed_mesh_take(&state->mesh, stream, error);
     if (status == TM_OK && state->mesh.elements == 0)
         status = tm_fail(error, TM_ERROR_INPUT,
@@ -138,9 +135,34 @@ tm_status tm_repair_take(tm_repair_state *state, tm_stream *stream,
         status = allocate(state, error);
     if (status == TM_OK)
         find_octants(state, tm_stream_find(stream, ".octant"));
-    if (status == TM_OK)
-        status = find_octree(state, stream, surface, notes, error);
-    if (status == TM_OK)
-        status = find_rules(state, tm_stream_find(stream, ".node"), surface, notes, error);
     return status;
+}
+
+static bool says_none_held(const tm_block *node)
+{
+    if (node->attributes != 1)
+        return false;
+    for (size_t v = 0; v < node->count; v++)
+        if (!is_place(node->attribute[v], node->attribute[v] != 0) ||
+            node->attribute[v] < 0)
+            return false;
+    return true;
+}
+
+bool tm_repair_is_needed(const tm_repair_state *state, const tm_stream *stream,
+                         double threshold)
+{
+    return !says_none_held(tm_stream_find(stream, ".node")) ||
+           tm_repair_measure(state, threshold).bad > 0;
+}
+
+tm_status tm_repair_prepare(tm_repair_state *state, const tm_stream *stream,
+                            const tm_surface *surface, tm_repair_notes *notes,
+                            tm_error *error)
+{
+    *notes = (tm_repair_notes){0};
+    const tm_status status = find_octree(state, stream, surface, notes, error);
+    if (status != TM_OK)
+        return status;
+    return find_rules(state, tm_stream_find(stream, ".node"), surface, notes, error);
 }
