@@ -175,6 +175,7 @@ static void write_json(program *p, const tm_repair_report *report, size before,
     score_json(&json, "before", &report->before, before.elements, before.octants);
     score_json(&json, "after", &report->after, after.elements, after.octants);
     tm_json_integer(&json, "iterations", (int64_t)report->iterations);
+    tm_json_integer(&json, "tips", (int64_t)report->tips);
     tm_json_integer(&json, "divided", (int64_t)report->divided);
     tm_json_double(&json, "seconds", seconds);
     tm_json_close(&json, '}');

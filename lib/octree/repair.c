@@ -46,6 +46,8 @@ static tm_status mend(const repair *r, tm_repair_state *state, tm_repair_score *
         status = tm_repair_move(state, r->surface, t, held, 1, score, error);
     }
     if (status == TM_OK && score->bad > 0)
+        status = tm_repair_tips(state, r->surface, t, score, &r->report->tips, error);
+    if (status == TM_OK && score->bad > 0)
         status = tm_repair_divide(state, r->surface, t, score, &r->report->divided, error);
     return status;
 }

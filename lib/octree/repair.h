@@ -28,7 +28,8 @@ typedef struct tm_repair_options {
 typedef struct tm_repair_report {
     tm_repair_score before, after;
     unsigned iterations;
-    size_t divided; /* elements */
+    size_t tips;    /* that were made anew, also in states that were not kept */
+    size_t divided; /* elements, also there */
 } tm_repair_report;
 
 /* Repairs *state. TM_REPAIR_REFINE needs its octree; without it TM_REPAIR_FULL does not

@@ -5,6 +5,7 @@
 #include "../mixed/mixed_shape.h"
 #include "octree_mesh_stream.h"
 #include "octree_stream.h"
+#include "repair_facets.h"
 #include "repair_faces.h"
 
 #include <stdlib.h>
@@ -96,33 +97,6 @@ static void shift_octants(tm_block *octant, const uint32_t *first)
     }
 }
 
-static bool has_nodes(const tm_mixed_mesh *mesh, size_t e, const uint32_t *node, size_t k)
-{
-    size_t found = 0;
-    for (size_t i = mesh->start[e]; i < mesh->start[e + 1]; i++)
-        for (size_t j = 0; j < k; j++)
-            found += mesh->item[i] == node[j];
-    return found == k;
-}
-
-/* A side of a facet: of the parts of the element it is the one that has the face. */
-static void shift_facets(tm_block *facet, const tm_mixed_mesh *mesh,
-                         const uint32_t *first)
-{
-    for (size_t i = 0; facet && i < 2 * facet->count; i++) {
-        const uint32_t old = facet->integer[i];
-        if (old == TM_NONE)
-            continue;
-        const size_t f = i / 2;
-        const uint32_t *node = facet->item + facet->start[f];
-        uint32_t e = first[old];
-        while (e + 1 < first[old + 1] &&
-               !has_nodes(mesh, e, node, facet->start[f + 1] - facet->start[f]))
-            e++;
-        facet->integer[i] = e;
-    }
-}
-
 /* Whether a block stays where elements, or nodes too, are others. */
 static bool stays(const tm_block *block, bool remade)
 {
@@ -171,9 +145,11 @@ static tm_status give_divided(tm_repair_state *state, tm_stream *stream,
     if (!first)
         return tm_fail_memory(error);
     shift_octants(tm_stream_find(stream, ".octant"), first);
-    shift_facets(tm_stream_find(stream, ".facet"), &state->mesh, first);
     free(first);
-    const tm_status status = extend_nodes(node, state->mesh.nodes, error);
+    tm_status status = tm_repair_move_facets(tm_stream_find(stream, ".facet"),
+                                             &state->mesh, error);
+    if (status == TM_OK)
+        status = extend_nodes(node, state->mesh.nodes, error);
     return status == TM_OK ? spread_elements(state, mix, error) : status;
 }
 

@@ -13,6 +13,12 @@ tm_status tm_repair_move(tm_repair_state *state, const tm_surface *surface,
                          double threshold, double held_threshold, unsigned effort,
                          tm_repair_score *score, tm_error *error);
 
+/* Makes elements at sharp tips of the surface anew (repair_tip.h), where that makes those
+ * around better; *count counts. */
+tm_status tm_repair_tips(tm_repair_state *state, const tm_surface *surface,
+                         double threshold, tm_repair_score *score, size_t *count,
+                         tm_error *error);
+
 /* Divides bad elements that are no tetrahedra from a node in their middle where the worst
  * part is better than they are, a quadrilateral on the boundary along a diagonal where
  * that is better still; then nodes move. All is as it was where that does not make the
