@@ -7,10 +7,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How often nodes are moved, with how much effort, before more octants are split; and how
- * many splits in a row may fail. */
+/* With how much effort nodes are moved, one after the other; and by which share of the
+ * threshold elements are measured that a node leaves behind that was held back. */
 static const unsigned efforts[] = {1, 3};
-enum { EFFORTS = sizeof efforts / sizeof *efforts, FAILURES = 2 };
+static const double held_shares[] = {0x1p-2, 0x1p-4, 0x1p-6, 0x1p-8, 0x1p-10,
+                                     0x1p-12, 0x1p-14, 0x1p-16, 0};
+enum {
+    EFFORTS = sizeof efforts / sizeof *efforts,
+    HELD_SHARES = sizeof held_shares / sizeof *held_shares
+};
+
+/* Where so many nodes are held back and such a part of them remains so, the octree is too
+ * coarse for the surface. */
+enum { FEW_HELD = 500 };
+static const double hopeless = 0.9;
+
+/* What became of a step. */
+typedef enum { NOT_BETTER, BETTER, TOO_LARGE } outcome;
 
 typedef struct {
     tm_repair_state *state;
@@ -25,25 +38,23 @@ static bool is_done(const tm_repair_score *score)
     return score->bad == 0 && score->held == 0;
 }
 
-static tm_status visit(const repair *r, unsigned iteration, const uint32_t *bad,
-                       size_t count, tm_error *error)
-{
-    if (!r->options->visit)
-        return TM_OK;
-    return r->options->visit(r->options->context, iteration, r->state, bad, count, error);
-}
-
 /* All that helps without other octants. */
 static tm_status mend(const repair *r, tm_repair_state *state, tm_repair_score *score,
                       tm_error *error)
 {
     const double t = r->options->threshold;
     tm_status status = TM_OK;
-    for (size_t i = 0; i < EFFORTS && status == TM_OK && !is_done(score); i++)
+    const size_t held = score->held;
+    for (size_t i = 0; i < EFFORTS && status == TM_OK && !is_done(score); i++) {
         status = tm_repair_move(state, r->surface, t, t, efforts[i], score, error);
-    for (double held = t; status == TM_OK && score->held > 0 && held > 0;) {
-        held = held > TM_REPAIR_LEAST ? held / 4 : 0;
-        status = tm_repair_move(state, r->surface, t, held, 1, score, error);
+        if (score->held > FEW_HELD && (double)score->held > hopeless * (double)held)
+            return status; /* it takes long and leads to nothing */
+    }
+    for (size_t i = 0; i < HELD_SHARES && status == TM_OK && score->held > 0; i++)
+        status = tm_repair_move(state, r->surface, t, held_shares[i] * t, 1, score, error);
+    if (status == TM_OK && score->held > 0) {
+        tm_repair_free_held(state);
+        status = tm_repair_move(state, r->surface, t, 0, 1, score, error);
     }
     if (status == TM_OK && score->bad > 0)
         status = tm_repair_tips(state, r->surface, t, score, &r->report->tips, error);
@@ -59,23 +70,29 @@ static void replace(tm_repair_state *state, tm_repair_state *by)
     *by = (tm_repair_state){0};
 }
 
-/* Splits octants and keeps what that makes if it is better. */
+/* Splits octants and keeps what that makes if it is better; *large says that there would
+ * be more elements than allowed. */
 static tm_status refine(const repair *r, const uint32_t *octant, size_t count,
-                        tm_repair_score *score, bool *better, tm_error *error)
+                        outcome *became, tm_error *error)
 {
     tm_repair_state made = {0};
-    *better = false;
+    tm_repair_score *score = &r->report->after;
+    *became = NOT_BETTER;
+    r->report->iterations++;
     tm_status status =
         tm_repair_remake(&made, r->state, r->surface, octant, count, error);
     if (status == TM_ERROR_INPUT) { /* too deep: there is no such octree */
         tm_repair_state_free(&made);
         return TM_OK;
     }
-    if (status == TM_OK && made.mesh.elements <= r->elements_at_most) {
+    if (status == TM_OK && made.mesh.elements > r->elements_at_most)
+        *became = TOO_LARGE;
+    if (status == TM_OK && *became != TOO_LARGE) {
         tm_repair_score now = tm_repair_measure(&made, r->options->threshold);
         status = mend(r, &made, &now, error);
-        *better = status == TM_OK && tm_repair_better(&now, score);
-        if (*better) {
+        if (status == TM_OK && made.mesh.elements <= r->elements_at_most &&
+            tm_repair_better(&now, score)) {
+            *became = BETTER;
             *score = now;
             replace(r->state, &made);
         }
@@ -84,29 +101,60 @@ static tm_status refine(const repair *r, const uint32_t *octant, size_t count,
     return status;
 }
 
+/* Splits some of the octants that hold bad elements: all of them, or, in Z order, the
+ * first part of them where all are too many. With `wide` also those around them. */
+static tm_status refine_some(const repair *r, bool wide, bool *better, tm_error *error)
+{
+    enum { HALVINGS = 5 };
+    const int halvings = r->report->after.held > FEW_HELD ? 1 : HALVINGS;
+    uint32_t *octant;
+    size_t count;
+    outcome became = TOO_LARGE;
+    tm_status status = tm_repair_bad_octants(r->state, r->options->threshold, true,
+                                             &octant, &count, error);
+    if (status == TM_OK && wide)
+        status = tm_repair_widen(r->state, &octant, &count, error);
+    for (int i = 0; status == TM_OK && became == TOO_LARGE && count > 0 && i < halvings &&
+                    r->report->iterations < r->options->iterations;
+         i++) {
+        status = refine(r, octant, count, &became, error);
+        count /= 2;
+    }
+    *better = became == BETTER;
+    free(octant);
+    return status;
+}
+
+/* Tells the caller of a state. */
+static tm_status show(const repair *r, bool held, size_t *count, tm_error *error)
+{
+    uint32_t *octant;
+    tm_status status = tm_repair_bad_octants(r->state, r->options->threshold, held,
+                                             &octant, count, error);
+    if (status == TM_OK && r->options->visit)
+        status = r->options->visit(r->options->context, r->report->iterations, r->state,
+                                   octant, *count, error);
+    free(octant);
+    return status;
+}
+
 static tm_status run_full(const repair *r, tm_error *error)
 {
-    const tm_repair_options *o = r->options;
     tm_repair_score *score = &r->report->after;
-    tm_status status = is_done(score) ? TM_OK : mend(r, r->state, score, error);
-    unsigned failures = 0;
-    for (unsigned i = 0; status == TM_OK; i++) {
-        uint32_t *octant;
-        size_t count;
-        bool better = false;
-        status = tm_repair_bad_octants(r->state, o->threshold, true, &octant, &count, error);
-        if (status == TM_OK)
-            status = visit(r, i, octant, count, error);
-        const bool more = count > 0 && r->state->octree.leaves > 0 && i < o->iterations &&
-                          failures < FAILURES;
-        if (status == TM_OK && more) {
-            r->report->iterations++;
-            status = refine(r, octant, count, score, &better, error);
-            failures = better ? 0 : FAILURES;
-        }
-        free(octant);
-        if (!more)
+    size_t count;
+    tm_status status = show(r, true, &count, error);
+    if (status == TM_OK && !is_done(score))
+        status = mend(r, r->state, score, error);
+    for (bool wide = false; status == TM_OK && !is_done(score) &&
+                            r->state->octree.leaves > 0 &&
+                            r->report->iterations < r->options->iterations;) {
+        bool better;
+        status = refine_some(r, wide, &better, error);
+        if (status == TM_OK && better)
+            status = show(r, true, &count, error);
+        if (!better && wide)
             break;
+        wide = !better;
     }
     return status;
 }
@@ -115,25 +163,22 @@ static tm_status run_full(const repair *r, tm_error *error)
 static tm_status run_refine(const repair *r, tm_error *error)
 {
     const tm_repair_options *o = r->options;
-    tm_status status = TM_OK;
-    for (unsigned i = 0; status == TM_OK; i++) {
+    size_t count;
+    tm_status status = show(r, false, &count, error);
+    while (status == TM_OK && count > 0 && r->report->iterations < o->iterations) {
         uint32_t *octant;
-        size_t count;
         tm_repair_state made = {0};
-        status = tm_repair_bad_octants(r->state, o->threshold, false, &octant, &count, error);
+        status =
+            tm_repair_bad_octants(r->state, o->threshold, false, &octant, &count, error);
         if (status == TM_OK)
-            status = visit(r, i, octant, count, error);
-        const bool more = count > 0 && i < o->iterations;
-        if (status == TM_OK && more) {
-            r->report->iterations++;
             status = tm_repair_remake(&made, r->state, r->surface, octant, count, error);
-        }
-        if (status == TM_OK && more)
+        if (status == TM_OK)
             replace(r->state, &made);
         tm_repair_state_free(&made);
         free(octant);
-        if (!more)
-            break;
+        r->report->iterations++;
+        if (status == TM_OK)
+            status = show(r, false, &count, error);
     }
     r->report->after = tm_repair_measure(r->state, o->threshold);
     return status;

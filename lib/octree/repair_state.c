@@ -57,6 +57,18 @@ int tm_repair_compare_octants(const void *a, const void *b)
     return (*p > *q) - (*p < *q);
 }
 
+/* Sorts octants and drops repeats; returns how many are left. */
+static size_t sort_once(uint32_t *octant, size_t count)
+{
+    size_t kept = 0;
+    if (count > 0)
+        qsort(octant, count, sizeof *octant, tm_repair_compare_octants);
+    for (size_t i = 0; i < count; i++)
+        if (i == 0 || octant[i] != octant[i - 1])
+            octant[kept++] = octant[i];
+    return kept;
+}
+
 static bool has_held(const tm_repair_state *state, size_t e)
 {
     for (size_t i = state->mesh.start[e]; i < state->mesh.start[e + 1]; i++)
@@ -85,14 +97,48 @@ tm_status tm_repair_bad_octants(const tm_repair_state *state, double threshold, 
         *octant = grown;
         grown[(*count)++] = state->octant[e];
     }
-    if (*count > 0)
-        qsort(*octant, *count, sizeof **octant, tm_repair_compare_octants);
-    size_t kept = 0;
-    for (size_t i = 0; i < *count; i++)
-        if (i == 0 || (*octant)[i] != (*octant)[i - 1])
-            (*octant)[kept++] = (*octant)[i];
-    *count = kept;
+    *count = sort_once(*octant, *count);
     return TM_OK;
+}
+
+tm_status tm_repair_widen(const tm_repair_state *state, uint32_t **octant, size_t *count,
+                          tm_error *error)
+{
+    const tm_mixed_mesh *mesh = &state->mesh;
+    const size_t old = *count;
+    size_t room = old;
+    bool *marked = calloc(mesh->nodes + 1, sizeof *marked);
+    if (!marked)
+        return tm_fail_memory(error);
+    for (size_t e = 0; e < mesh->elements; e++)
+        if (bsearch(&state->octant[e], *octant, old, sizeof **octant,
+                    tm_repair_compare_octants))
+            for (size_t i = mesh->start[e]; i < mesh->start[e + 1]; i++)
+                marked[mesh->item[i]] = true;
+    for (size_t e = 0; e < mesh->elements; e++) {
+        bool near = false;
+        for (size_t i = mesh->start[e]; i < mesh->start[e + 1] && !near; i++)
+            near = marked[mesh->item[i]];
+        if (!near || state->octant[e] == TM_NONE)
+            continue;
+        uint32_t *grown = tm_grow(*octant, &room, *count + 1, sizeof *grown);
+        if (!grown) {
+            free(marked);
+            return tm_fail_memory(error);
+        }
+        *octant = grown;
+        grown[(*count)++] = state->octant[e];
+    }
+    free(marked);
+    *count = sort_once(*octant, *count);
+    return TM_OK;
+}
+
+void tm_repair_free_held(tm_repair_state *state)
+{
+    for (size_t v = 0; v < state->mesh.nodes; v++)
+        if (state->rule[v].held && state->rule[v].freedom == TM_MOVES_ON_SURFACE)
+            state->rule[v].where = TM_NONE;
 }
 
 tm_status tm_repair_save(tm_repair_places *places, const tm_repair_state *state,

@@ -48,6 +48,13 @@ bool tm_repair_better(const tm_repair_score *a, const tm_repair_score *b);
 tm_status tm_repair_bad_octants(const tm_repair_state *state, double threshold, bool held,
                                 uint32_t **octant, size_t *count, tm_error *error);
 
+/* Adds the octants that have a node in common with the elements of those listed. */
+tm_status tm_repair_widen(const tm_repair_state *state, uint32_t **octant, size_t *count,
+                          tm_error *error);
+
+/* Lets nodes that are held back before one patch go to any. */
+void tm_repair_free_held(tm_repair_state *state);
+
 /* For qsort() and bsearch(). */
 int tm_repair_compare_octants(const void *a, const void *b);
 
