@@ -95,9 +95,10 @@ static void build_surface(program *p, const tm_stream *stream)
     tm_polygon_surface polygons;
     p->has_surface = tm_stream_find(stream, "surface.node") != NULL;
     if (!p->has_surface) {
-        filter_note(&p->f, "%s: there is no surface (surface.node and surface.face): "
-                           "nodes of the boundary stay where they are, and no octant is "
-                           "split",
+        filter_note(&p->f,
+                    "%s: there is no surface (surface.node and surface.face): "
+                    "nodes of the boundary stay where they are, and no octant is "
+                    "split",
                     filter_input_name(&p->f));
         return;
     }
@@ -116,11 +117,13 @@ static tm_status visit(void *context, unsigned iteration, const tm_repair_state 
     program *p = context;
     if (p->repair.method == TM_REPAIR_REFINE) {
         if (p->f.verbosity >= 0 && count > 0)
-            fprintf(stderr, "Octants to improve in iteration %u: %zu\n", iteration, count);
+            fprintf(stderr, "Octants to improve in iteration %u: %zu\n", iteration,
+                    count);
         else if (p->f.verbosity >= 0)
             fprintf(stderr, "No more Octants to improve in iteration %u.\n", iteration);
     } else {
-        filter_verbose(&p->f, "octants to improve in iteration %u: %zu", iteration, count);
+        filter_verbose(&p->f, "octants to improve in iteration %u: %zu", iteration,
+                       count);
     }
     if (!p->trace)
         return TM_OK;
@@ -142,10 +145,11 @@ static void note_left(const program *p, const tm_repair_state *state,
     for (size_t i = 0; i < count; i++)
         filter_note(&p->f, "octant %zu is left to improve", octant[i] + (size_t)base);
     free(octant);
-    filter_note(&p->f,
-                "%zu elements are still bad (%zu of them invalid, the worst J_ENS %g) and "
-                "%zu nodes not on the surface",
-                left->bad, left->invalid, left->worst, left->held);
+    filter_note(
+        &p->f,
+        "%zu elements are still bad (%zu of them invalid, the worst J_ENS %g) and "
+        "%zu nodes not on the surface",
+        left->bad, left->invalid, left->worst, left->held);
 }
 
 static void score_json(tm_json *json, const char *key, const tm_repair_score *score,
@@ -233,7 +237,8 @@ static bool run(program *p, tm_stream *stream)
     if (tm_repair_give(&state, stream, surface, &notes, &error) != TM_OK)
         filter_fail(&p->f, &error);
     if (notes.dropped[0])
-        filter_note(&p->f, "dropped, as they refer to what is no more: %s", notes.dropped);
+        filter_note(&p->f, "dropped, as they refer to what is no more: %s",
+                    notes.dropped);
     filter_write(&p->f, stream, "%zu elements of %zu, bad %zu of %zu", after.elements,
                  before.elements, report.after.bad, report.before.bad);
     if (p->f.json)
@@ -244,20 +249,20 @@ static bool run(program *p, tm_stream *stream)
 
 int main(int argc, char **argv)
 {
-    program p = {.f = {.name = "octree-repair",
-                       .synopsis = synopsis,
-                       .purpose = "Makes the elements of an octree's mesh valid and good: "
-                                  "moves nodes,\n"
-                                  "divides elements, and refines octants.",
-                       .help = own_help,
-                       .options = long_options,
-                       .letters = "t:i:" FILTER_LETTERS},
-                 .repair = {.method = TM_REPAIR_FULL,
-                            .iterations = DEFAULT_ITERATIONS,
-                            .growth = default_growth},
-                 .surface = {.feature_angle = TM_FEATURE_ANGLE,
-                             .unless_rough = true,
-                             .lenient = true}};
+    program p = {
+        .f = {.name = "octree-repair",
+              .synopsis = synopsis,
+              .purpose = "Makes the elements of an octree's mesh valid and good: "
+                         "moves nodes,\n"
+                         "divides elements, and refines octants.",
+              .help = own_help,
+              .options = long_options,
+              .letters = "t:i:" FILTER_LETTERS},
+        .repair = {.method = TM_REPAIR_FULL,
+                   .iterations = DEFAULT_ITERATIONS,
+                   .growth = default_growth},
+        .surface = {
+            .feature_angle = TM_FEATURE_ANGLE, .unless_rough = true, .lenient = true}};
     tm_stream stream;
     int c;
     filter_start(&p.f, argc, argv);

@@ -10,7 +10,7 @@
 /* With how much effort nodes are moved, one after the other; and by which share of the
  * threshold elements are measured that a node leaves behind that was held back. */
 static const unsigned efforts[] = {1, 3};
-static const double held_shares[] = {0x1p-2, 0x1p-4, 0x1p-6, 0x1p-8, 0x1p-10,
+static const double held_shares[] = {0x1p-2,  0x1p-4,  0x1p-6,  0x1p-8, 0x1p-10,
                                      0x1p-12, 0x1p-14, 0x1p-16, 0};
 enum {
     EFFORTS = sizeof efforts / sizeof *efforts,
@@ -51,7 +51,8 @@ static tm_status mend(const repair *r, tm_repair_state *state, tm_repair_score *
             return status; /* it takes long and leads to nothing */
     }
     for (size_t i = 0; i < HELD_SHARES && status == TM_OK && score->held > 0; i++)
-        status = tm_repair_move(state, r->surface, t, held_shares[i] * t, 1, score, error);
+        status =
+            tm_repair_move(state, r->surface, t, held_shares[i] * t, 1, score, error);
     if (status == TM_OK && score->held > 0) {
         tm_repair_free_held(state);
         status = tm_repair_move(state, r->surface, t, 0, 1, score, error);
@@ -59,7 +60,8 @@ static tm_status mend(const repair *r, tm_repair_state *state, tm_repair_score *
     if (status == TM_OK && score->bad > 0)
         status = tm_repair_tips(state, r->surface, t, score, &r->report->tips, error);
     if (status == TM_OK && score->bad > 0)
-        status = tm_repair_divide(state, r->surface, t, score, &r->report->divided, error);
+        status =
+            tm_repair_divide(state, r->surface, t, score, &r->report->divided, error);
     return status;
 }
 
@@ -198,7 +200,7 @@ tm_status tm_repair(tm_repair_state *state, tm_surface *surface,
                           (size_t)(options->growth * (double)state->mesh.elements)};
     if (options->method == TM_REPAIR_FULL)
         return run_full(&r, error);
-    if (state->octree.leaves == 0)
+    if (state->octree.leaves == 0 && report->before.bad > 0)
         return tm_fail(error, TM_ERROR_INPUT, "there are no octants to refine");
     return run_refine(&r, error);
 }

@@ -35,9 +35,9 @@ tm_boundary tm_repair_boundary(const tm_surface *surface)
 /* The curves at each node of the surface: a corner is in many, others in one or none. */
 typedef struct {
     const tm_surface *surface;
-    double near2;    /* the square of how far on is */
-    size_t *start;   /* [nodes of the surface + 1] */
-    uint32_t *curve; /* of node n: curve[start[n]] … */
+    double near2;     /* the square of how far on is */
+    size_t *start;    /* [nodes of the surface + 1] */
+    uint32_t *curve;  /* of node n: curve[start[n]] … */
     uint32_t *corner; /* [nodes of the surface]: its number, or TM_NONE */
 } finder;
 
@@ -73,7 +73,8 @@ typedef struct {
     double distance2;
 } closest;
 
-static void try_corner(const finder *f, uint32_t corner, const double xyz[3], closest *best)
+static void try_corner(const finder *f, uint32_t corner, const double xyz[3],
+                       closest *best)
 {
     const tm_surface *s = f->surface;
     const double d = tm_distance2(s->xyz[s->corner[corner]], xyz);
@@ -93,7 +94,8 @@ static void try_curve(const finder *f, uint32_t curve, const double xyz[3], clos
 
 /* The corner closest to a place: of those at the triangle there, which is enough where
  * the place is on it, or of all. */
-static closest find_corner(const finder *f, const double xyz[3], uint32_t triangle, bool all)
+static closest find_corner(const finder *f, const double xyz[3], uint32_t triangle,
+                           bool all)
 {
     closest best = {.what = TM_NONE};
     for (size_t i = 0; !all && i < 3; i++) {
@@ -107,7 +109,8 @@ static closest find_corner(const finder *f, const double xyz[3], uint32_t triang
 }
 
 /* The same for curves. */
-static closest find_curve(const finder *f, const double xyz[3], uint32_t triangle, bool all)
+static closest find_curve(const finder *f, const double xyz[3], uint32_t triangle,
+                          bool all)
 {
     closest best = {.what = TM_NONE};
     for (size_t i = 0; !all && i < 3; i++) {
@@ -137,7 +140,8 @@ static tm_node_rule rule_given(const finder *f, const double xyz[3],
     if (*place == TM_NODE_ON_PATCH)
         return on_patch(f, at, place);
     closest best = {.what = TM_NONE};
-    for (int all = 0; all < 2 && (best.what == TM_NONE || best.distance2 > f->near2); all++)
+    for (int all = 0; all < 2 && (best.what == TM_NONE || best.distance2 > f->near2);
+         all++)
         best = corner ? find_corner(f, xyz, at->triangle, all)
                       : find_curve(f, xyz, at->triangle, all);
     if (best.what == TM_NONE)
@@ -145,8 +149,8 @@ static tm_node_rule rule_given(const finder *f, const double xyz[3],
     const bool held = best.distance2 > f->near2;
     if (corner && !held)
         return (tm_node_rule){.where = TM_NONE, .freedom = TM_MOVES_NOT};
-    return (tm_node_rule){.where = best.what +
-                                   (corner ? (uint32_t)f->surface->curves : 0),
+    return (tm_node_rule){.where =
+                              best.what + (corner ? (uint32_t)f->surface->curves : 0),
                           .freedom = TM_MOVES_ON_CURVE,
                           .held = held};
 }

@@ -22,8 +22,8 @@ static tm_status add(const tm_mixed_face_order *order, uint32_t **face, size_t *
                      size_t *room, tm_error *error)
 {
     for (size_t i = 0, next; i < order->entries; i = next) {
-        for (next = i + 1; next < order->entries &&
-                           are_same(&order->entry[i], &order->entry[next]);)
+        for (next = i + 1;
+             next < order->entries && are_same(&order->entry[i], &order->entry[next]);)
             next++;
         if (next > i + 1)
             continue;

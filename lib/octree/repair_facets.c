@@ -64,7 +64,8 @@ static void add_halves(tm_block *to, const tm_mixed_mesh *mesh,
                        const tm_block *from, size_t row)
 {
     for (size_t o = 0; o < 2; o++) {
-        const uint32_t a = n[o], b = n[o + 1], c = n[o + 2], d = n[(o + 3) % QUADRILATERAL];
+        const uint32_t a = n[o], b = n[o + 1], c = n[o + 2],
+                       d = n[(o + 3) % QUADRILATERAL];
         bool any = add(to, mesh, around, 3, (uint32_t[]){a, b, c}, from, row);
         any |= add(to, mesh, around, 3, (uint32_t[]){c, d, a}, from, row);
         if (any)
@@ -84,8 +85,8 @@ tm_status tm_repair_move_facets(tm_block *facet, const tm_mixed_mesh *mesh,
     tm_status status = to ? TM_OK : tm_fail_memory(error);
     if (status == TM_OK) {
         to->markers = facet->markers;
-        status = tm_block_allocate(to, 2 * facet->count,
-                                   2 * facet->start[facet->count], error);
+        status = tm_block_allocate(to, 2 * facet->count, 2 * facet->start[facet->count],
+                                   error);
     }
     if (status == TM_OK)
         status = tm_node_elements_find(&around, mesh, error);

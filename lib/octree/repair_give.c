@@ -30,8 +30,8 @@ static tm_status extend_nodes(tm_block *node, size_t nodes, tm_error *error)
 {
     const size_t old = node->count;
     if (node->attributes > 0) {
-        double *grown = realloc(node->attribute,
-                                (nodes * node->attributes + 1) * sizeof *grown);
+        double *grown =
+            realloc(node->attribute, (nodes * node->attributes + 1) * sizeof *grown);
         if (!grown)
             return tm_fail_memory(error);
         memset(grown + old * node->attributes, 0,
@@ -146,8 +146,8 @@ static tm_status give_divided(tm_repair_state *state, tm_stream *stream,
         return tm_fail_memory(error);
     shift_octants(tm_stream_find(stream, ".octant"), first);
     free(first);
-    tm_status status = tm_repair_move_facets(tm_stream_find(stream, ".facet"),
-                                             &state->mesh, error);
+    tm_status status =
+        tm_repair_move_facets(tm_stream_find(stream, ".facet"), &state->mesh, error);
     if (status == TM_OK)
         status = extend_nodes(node, state->mesh.nodes, error);
     return status == TM_OK ? spread_elements(state, mix, error) : status;
@@ -236,7 +236,8 @@ static tm_status give_facets(const tm_repair_state *state, const tm_surface *sur
     return status;
 }
 
-/* Facets of nothing but the boundary are made anew; others are of elements that are gone. */
+/* Facets of nothing but the boundary are made anew; others are of elements that are gone.
+ */
 static bool is_boundary(const tm_block *facet)
 {
     for (size_t f = 0; f < facet->count; f++)
@@ -252,8 +253,8 @@ static tm_status give_remade(tm_repair_state *state, tm_stream *stream,
     remove_others(stream, true, notes);
     tm_block *node = tm_stream_find(stream, ".node");
     tm_block *mix = tm_stream_find(stream, ".mix");
-    tm_status status =
-        give_levels(state, mix, has_levels(mix, tm_stream_find(stream, ".octant")), error);
+    tm_status status = give_levels(
+        state, mix, has_levels(mix, tm_stream_find(stream, ".octant")), error);
     node->attributes = 1;
     node->markers = false;
     free(node->marker);

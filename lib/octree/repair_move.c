@@ -32,7 +32,8 @@ static tm_status move(tm_repair_state *state, const tm_boundary *boundary,
                       const tm_optimise_options *options, tm_error *error)
 {
     tm_optimise_report report;
-    return tm_mixed_optimise(&state->mesh, state->rule, boundary, options, &report, error);
+    return tm_mixed_optimise(&state->mesh, state->rule, boundary, options, &report,
+                             error);
 }
 
 tm_status tm_repair_move(tm_repair_state *state, const tm_surface *surface,
@@ -48,7 +49,8 @@ tm_status tm_repair_move(tm_repair_state *state, const tm_surface *surface,
         thresholds ? tm_repair_save(&best, state, error) : tm_fail_memory(error);
     tm_optimise_options options = {.thresholds = thresholds,
                                    .threshold = threshold,
-                                   .held_threshold = fmax(held_threshold, TM_REPAIR_LEAST),
+                                   .held_threshold =
+                                       fmax(held_threshold, TM_REPAIR_LEAST),
                                    .effort = effort};
     bool is_best = true;
     for (int round = 0; status == TM_OK && round < ROUNDS; round++) {

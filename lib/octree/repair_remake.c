@@ -69,8 +69,8 @@ static tm_status take_mesh(tm_repair_state *to, tm_octree_mesh *made,
         given[made->assembly.outer + s] = made->held[s] ? -place : place;
     }
     const tm_status status =
-        tm_repair_find_rules(surface, nodes, (const double(*)[3])to->mesh.xyz, given, NULL,
-                             to->rule, to->place, error);
+        tm_repair_find_rules(surface, nodes, (const double(*)[3])to->mesh.xyz, given,
+                             NULL, to->rule, to->place, error);
     free(given);
     return status;
 }

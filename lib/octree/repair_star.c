@@ -48,9 +48,8 @@ static double measure(const small *s)
 {
     double worst = 1;
     for (size_t e = 0; e < s->parts; e++) {
-        const double jens =
-            tm_jens(s->start[e + 1] - s->start[e], (const double(*)[3])s->xyz,
-                    s->item + s->start[e]);
+        const double jens = tm_jens(s->start[e + 1] - s->start[e],
+                                    (const double(*)[3])s->xyz, s->item + s->start[e]);
         worst = jens < worst ? jens : worst;
     }
     return worst;

@@ -88,8 +88,8 @@ tm_status tm_repair_bad_octants(const tm_repair_state *state, double threshold, 
         const double jens =
             tm_jens(mesh->start[e + 1] - mesh->start[e], (const double(*)[3])mesh->xyz,
                     mesh->item + mesh->start[e]);
-        if (state->octant[e] == TM_NONE || !(tm_repair_is_bad(mesh, e, jens, threshold) ||
-                                             (held && has_held(state, e))))
+        if (state->octant[e] == TM_NONE ||
+            !(tm_repair_is_bad(mesh, e, jens, threshold) || (held && has_held(state, e))))
             continue;
         uint32_t *grown = tm_grow(*octant, &room, *count + 1, sizeof *grown);
         if (!grown)

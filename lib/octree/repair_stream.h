@@ -9,10 +9,10 @@
 
 /* What of the stream could be used, and what was left out. */
 typedef struct tm_repair_notes {
-    bool attributed;     /* the attribute of .node says where nodes are */
-    tm_error no_octree;  /* why there is none; its message is empty where there is one */
-    bool completed;      /* octants were added where the brick has none */
-    char dropped[256];   /* blocks that were removed, with blanks between */
+    bool attributed;    /* the attribute of .node says where nodes are */
+    tm_error no_octree; /* why there is none; its message is empty where there is one */
+    bool completed;     /* octants were added where the brick has none */
+    char dropped[256];  /* blocks that were removed, with blanks between */
 } tm_repair_notes;
 
 /* Takes the arrays of .node and .mix; the blocks stay. TM_ERROR_INPUT: there are no
@@ -20,8 +20,8 @@ typedef struct tm_repair_notes {
  * freed, after an error too. */
 tm_status tm_repair_take(tm_repair_state *state, tm_stream *stream, tm_error *error);
 
-/* Whether there is something to do: an element is bad, or a node is held back, or may be,
- * as the attribute of .node does not say that none is. */
+/* Whether there is something to do: an element is bad, or there is a surface and a node
+ * is held back, or may be, as the attribute of .node does not say that none is. */
 bool tm_repair_is_needed(const tm_repair_state *state, const tm_stream *stream,
                          double threshold);
 

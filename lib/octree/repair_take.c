@@ -66,7 +66,8 @@ static tm_status find_boundary(const tm_mixed_mesh *mesh, bool *where, tm_error 
     for (size_t f = 0; status == TM_OK && f < faces; f++) {
         const size_t e = face[f] >> TM_FACE_SHIFT;
         const uint32_t *item = mesh->item + mesh->start[e];
-        const tm_mixed_shape *shape = &tm_mixed_shapes[mesh->start[e + 1] - mesh->start[e]];
+        const tm_mixed_shape *shape =
+            &tm_mixed_shapes[mesh->start[e + 1] - mesh->start[e]];
         const uint8_t *corner = shape->face[face[f] & ((1u << TM_FACE_SHIFT) - 1)];
         for (size_t i = 0; i < tm_mixed_face_nodes(corner); i++)
             where[item[corner[i]]] = true;
@@ -78,9 +79,10 @@ static tm_status find_boundary(const tm_mixed_mesh *mesh, bool *where, tm_error 
 /* Whether a value can be the place of a node that is on the boundary, or is not. */
 static bool is_place(double value, bool boundary)
 {
-    return boundary ? fabs(value) == TM_NODE_ON_PATCH || fabs(value) == TM_NODE_ON_CURVE ||
-                          fabs(value) == TM_NODE_ON_CORNER
-                    : value == TM_NODE_INSIDE;
+    return boundary
+               ? fabs(value) == TM_NODE_ON_PATCH || fabs(value) == TM_NODE_ON_CURVE ||
+                     fabs(value) == TM_NODE_ON_CORNER
+               : value == TM_NODE_INSIDE;
 }
 
 static bool are_places(const tm_block *node, const bool *where)
@@ -97,9 +99,8 @@ static void hold_all(tm_repair_state *state, const bool *where)
 {
     for (size_t v = 0; v < state->mesh.nodes; v++) {
         state->place[v] = where[v] ? TM_NODE_ON_PATCH : TM_NODE_INSIDE;
-        state->rule[v] =
-            (tm_node_rule){.where = TM_NONE,
-                           .freedom = where[v] ? TM_MOVES_NOT : TM_MOVES_FREELY};
+        state->rule[v] = (tm_node_rule){
+            .where = TM_NONE, .freedom = where[v] ? TM_MOVES_NOT : TM_MOVES_FREELY};
     }
 }
 
@@ -152,7 +153,8 @@ static bool says_none_held(const tm_block *node)
 bool tm_repair_is_needed(const tm_repair_state *state, const tm_stream *stream,
                          double threshold)
 {
-    return !says_none_held(tm_stream_find(stream, ".node")) ||
+    return (tm_stream_find(stream, "surface.node") &&
+            !says_none_held(tm_stream_find(stream, ".node"))) ||
            tm_repair_measure(state, threshold).bad > 0;
 }
 

@@ -3,7 +3,8 @@
 
 #include "../mixed/mixed_shape.h"
 
-/* The edges from x to y that close the fan of faces at the tip, and how many there are. */
+/* The edges from x to y that close the fan of faces at the tip, and how many there are.
+ */
 enum { FAN_MOST = 4 };
 typedef struct {
     unsigned count;
@@ -43,7 +44,8 @@ static bool add_face(tm_tip *to, fan *f, size_t k, const uint32_t *face, uint32_
                     middle);
 }
 
-/* The polygon that closes the fan; false where it is not closed, of three or four edges. */
+/* The polygon that closes the fan; false where it is not closed, of three or four edges.
+ */
 static bool close_fan(const fan *f, uint32_t polygon[FAN_MOST])
 {
     if (f->count < 3)

@@ -43,8 +43,8 @@ static bool has_node(const tm_mixed_mesh *mesh, size_t e, uint32_t v)
     return false;
 }
 
-/* The node inside that all elements at a node of the boundary have; TM_NONE where there is
- * none, or there are many. */
+/* The node inside that all elements at a node of the boundary have; TM_NONE where there
+ * is none, or there are many. */
 static uint32_t find_middle(const tips *t, uint32_t tip)
 {
     enum { FEW = 4 };
@@ -109,8 +109,8 @@ static tm_status allocate(tm_repair_state *to, size_t elements, size_t items,
                : tm_fail_memory(error);
 }
 
-static void copy_element(tm_repair_state *to, const tm_repair_state *from, size_t octant_of,
-                         size_t k, const uint32_t *item)
+static void copy_element(tm_repair_state *to, const tm_repair_state *from,
+                         size_t octant_of, size_t k, const uint32_t *item)
 {
     tm_mixed_mesh *mesh = &to->mesh;
     const size_t first = mesh->start[mesh->elements];

@@ -83,8 +83,8 @@ static tm_status copy_surface(const tm_surface *surface, tm_stream *stream,
                               tm_error *error)
 {
     tm_block *node = tm_stream_add(stream, "surface.node");
-    tm_status status = node ? tm_block_allocate(node, surface->nodes, 0, error)
-                            : tm_fail_memory(error);
+    tm_status status =
+        node ? tm_block_allocate(node, surface->nodes, 0, error) : tm_fail_memory(error);
     if (status != TM_OK)
         return status;
     memcpy(node->real, surface->xyz, surface->nodes * sizeof *surface->xyz);

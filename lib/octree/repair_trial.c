@@ -68,8 +68,8 @@ static tm_status add_rings(tm_trial *t, unsigned rings, tm_error *error)
     for (unsigned r = 0; r < rings; r++) {
         const size_t end = t->elements;
         for (size_t i = first; i < end; i++)
-            for (size_t j = mesh->start[t->element[i]]; j < mesh->start[t->element[i] + 1];
-                 j++) {
+            for (size_t j = mesh->start[t->element[i]];
+                 j < mesh->start[t->element[i] + 1]; j++) {
                 const uint32_t v = mesh->item[j];
                 for (size_t a = t->around->start[v];
                      a < t->around->start[v + 1] && status == TM_OK; a++)
@@ -131,7 +131,8 @@ static tm_status fill(tm_trial *t, tm_error *error)
     size_t items = 0;
     for (size_t e = 0; e < t->elements; e++) {
         p->mesh.start[e] = items;
-        for (size_t j = mesh->start[t->element[e]]; j < mesh->start[t->element[e] + 1]; j++)
+        for (size_t j = mesh->start[t->element[e]]; j < mesh->start[t->element[e] + 1];
+             j++)
             p->mesh.item[items++] = t->local[mesh->item[j]];
     }
     p->mesh.start[t->elements] = items;

@@ -21,13 +21,13 @@ void tm_node_elements_free(tm_node_elements *around);
 typedef struct tm_trial {
     tm_repair_state *whole;
     const tm_node_elements *around;
-    tm_repair_state part; /* mesh, rule, place and octant; room for elements and a node
-                             more */
+    tm_repair_state part;   /* mesh, rule, place and octant; room for elements and a node
+                               more */
     size_t nodes, elements; /* of the part as it was gathered */
-    uint32_t *node;       /* [nodes]: of the whole */
-    uint32_t *element;    /* [elements]: of the whole */
-    uint32_t *local;      /* [nodes of the whole]: TM_NONE between trials */
-    bool *taken;          /* [elements of the whole]: false between trials */
+    uint32_t *node;         /* [nodes]: of the whole */
+    uint32_t *element;      /* [elements]: of the whole */
+    uint32_t *local;        /* [nodes of the whole]: TM_NONE between trials */
+    bool *taken;            /* [elements of the whole]: false between trials */
     size_t node_room, element_room;
 } tm_trial;
 
