@@ -93,10 +93,9 @@ static void rename_surface(tm_stream *stream)
     strcpy(tm_stream_find(stream, ".face")->name, "surface.face");
 }
 
-static tm_status take_surface(tm_stream *stream, const char *name,
-                              tm_polygon_surface *surface, tm_error *error)
+tm_status surface_input_of_stream(const tm_stream *stream, const char *name,
+                                  tm_polygon_surface *surface, tm_error *error)
 {
-    rename_surface(stream);
     const tm_block *node = tm_stream_find(stream, "surface.node");
     const tm_block *face = tm_stream_find(stream, "surface.face");
     if (!node)
@@ -127,8 +126,10 @@ tm_format surface_input_read(const filter *f, tm_polygon_surface *surface,
         format = tm_format_of(bytes.byte, bytes.size, name);
     if (format == TM_FORMAT_STREAM) {
         status = read_stream(&bytes, name, stream, &error);
-        if (status == TM_OK)
-            status = take_surface(stream, name, surface, &error);
+        if (status == TM_OK) {
+            rename_surface(stream);
+            status = surface_input_of_stream(stream, name, surface, &error);
+        }
     } else if (status == TM_OK) {
         if ((format == TM_FORMAT_POLY || format == TM_FORMAT_SMESH) &&
             tm_poly_lacks_nodes(bytes.byte, bytes.size))

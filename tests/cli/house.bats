@@ -62,6 +62,7 @@ END
     { sed '$d' corner.tm; printf '%s\n' .mix '1 0' '1 4 1 2 3 4' .octant '1 0' \
         '1 0 0 0 0 1 2' .root '1 0' '1 0 0 0 1 0' surface.node '3 3 0 0' '1 0 0 0' \
         '2 1 0 0' '3 0 1 0' surface.face '1 0' '1 1 2 3' .end; } >octant.tm
+    { sed '/^surface.node/,$d' octant.tm; echo .end; } >element.tm
 }
 
 # The operands with which a filter reads the file $2; for tetgen-import, a .node file.
@@ -88,6 +89,7 @@ input() {
     m3d-import) echo corner.mvm ;;
     oct-import) echo cube.oct ;;
     oct-export) echo octant.tm ;;
+    octree-repair) echo element.tm ;;
     *) echo corner.tm ;;
     esac
 }

@@ -45,6 +45,8 @@ static const command commands[] = {
     {"tet-stats", {INPUT, INPUT}, false},
     {"jens-stats", {"-l", "--certify", INPUT}, false},
     {"jens-stats", {"--verdict", "--json", "-", "-o", "list", INPUT}, false},
+    {"octree-repair", {"-t", "0.2", "-i", "2", "-o", "out.tm", INPUT}, false},
+    {"octree-repair", {"--method", "refine", "-i", "1", "--trace", "trace", INPUT}, false},
     {"lepp-improve", {INPUT}, false},
     {"lepp-improve", {"-t", "45", "--max-growth", "0.5", INPUT}, true},
     {"lepp-improve", {"-a", "selective", "-Q", "volume", "-m", "1", INPUT}, false},

@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# octree-repair: what is good stays, what is bad is mended, nodes come to the surface; the
+# loop that refines, and its files.
+# shellcheck disable=SC2154 # run sets stderr
+
+bats_require_minimum_version 1.5.0
+
+setup() {
+    cd "$BATS_TEST_TMPDIR" || exit
+    cat >cube.off <<'END'
+OFF
+8 6 0
+0 0 0
+1 0 0
+1 1 0
+0 1 0
+0 0 1
+1 0 1
+1 1 1
+0 1 1
+4 0 3 2 1
+4 4 5 6 7
+4 0 1 5 4
+4 1 2 6 5
+4 2 3 7 6
+4 3 0 4 7
+END
+    octree-mesh --no-history -s 3 cube.off >good.tm
+    # A node inside, moved over its neighbours: elements around it are inverted.
+    awk '/^\.node/ { nodes = 1 } /^\.mix/ { nodes = 0 }
+        nodes && NF == 5 && $5 == 0 && !done { $2 += 0.15; $3 += 0.15; done = 1 }
+        { print }' good.tm >bad.tm
+    # A node that is held back before its patch.
+    awk '/^\.node/ { nodes = 1 } /^\.mix/ { nodes = 0 }
+        nodes && NF == 5 && $5 == 1 && $2 == 0 && !done {
+            $2 = 0.002; $5 = -1; done = 1 }
+        { print }' good.tm >held.tm
+}
+
+# report KEY: a number of the JSON report, of `after` where there are two.
+report() {
+    tr '{,}' '\n\n\n' <report.json | sed -n "s/.*\"$1\": *//p" | tail -n 1
+}
+
+@test "a good mesh is returned byte for byte, unknown blocks too" {
+    sed '$d' good.tm >more.tm
+    printf '%s\n' .note 'for element 1' .end >>more.tm
+    octree-repair --no-history -t 0.2 more.tm >same.tm
+    cmp more.tm same.tm
+    octree-repair --no-history --method refine -q more.tm >same.tm
+    cmp more.tm same.tm
+}
+
+@test "inverted elements are mended, and nothing else changes" {
+    run -1 jens-stats --fail-below 0.2 bad.tm
+    run -0 octree-repair -t 0.2 --json report.json -o mended.tm bad.tm
+    [ "$(report bad)" -eq 0 ]
+    run -0 jens-stats --fail-below 0.2 --certify mended.tm
+    run -0 mesh-check mended.tm
+    # The elements are the same, and so is each node of the boundary.
+    sed -n '/^\.mix/,/^\.octant/p' bad.tm >old
+    sed -n '/^\.mix/,/^\.octant/p' mended.tm >new
+    cmp old new
+    awk '/^\.node/,/^\.mix/ { if (NF == 5 && $5 > 1) print }' bad.tm >old
+    awk '/^\.node/,/^\.mix/ { if (NF == 5 && $5 > 1) print }' mended.tm >new
+    [ -s old ]
+    cmp old new
+}
+
+@test "a node that was held back is brought to the surface" {
+    run -0 octree-repair -t 0.2 --json report.json -o mended.tm held.tm
+    [ "$(report held)" -eq 0 ]
+    before=$(awk '/^\.node/,/^\.mix/ { if (NF == 5 && $5 < 0) print $1 }' held.tm)
+    [ -n "$before" ]
+    [ "$(awk -v n="$before" '/^\.node/,/^\.mix/ { if (NF == 5 && $1 == n) print $2, $5 }' \
+        mended.tm)" = "0 1" ]
+}
+
+@test "places of nodes are found where the stream does not say them" {
+    # Without the attribute; the node that is off its patch is off the surface.
+    awk '/^\.node/ { nodes = 1; print; getline; print $1, 3, 0, 0; next }
+        /^\.mix/ { nodes = 0 }
+        nodes { print $1, $2, $3, $4; next }
+        { print }' held.tm >plain.tm
+    run -0 octree-repair --json report.json -o mended.tm plain.tm
+    [ "$(report held)" -eq 0 ]
+    [ "$(awk '/^\.node/ { getline; print NF, $3; exit }' mended.tm)" = "4 0" ]
+    run -0 mesh-check mended.tm
+    run -0 jens-stats --fail-below 0.1 mended.tm
+}
+
+@test "--method refine: the loop, its lines and its files" {
+    run -0 --separate-stderr octree-repair --method refine --trace step -o mended.tm bad.tm
+    [[ "${stderr_lines[0]}" =~ ^"Octants to improve in iteration 0: "[0-9]+$ ]]
+    [ "${stderr_lines[1]}" = "No more Octants to improve in iteration 1." ]
+    for suffix in histo m3d vtk oct; do
+        [ -s step_0.$suffix ]
+        [ -s step_1.$suffix ]
+    done
+    [ "Octants to improve in iteration 0: $(wc -l <step_0.ref)" = "${stderr_lines[0]}" ]
+    [ ! -e step_1.ref ]
+    [ "$(head -n 1 step_1.histo)" = "negative 0" ]
+    run -0 mesh-check mended.tm
+    run -0 oct-import -m step_1.m3d step_1.oct
+}
+
+@test "what cannot be is left: exit 1, the best state, a line for each octant" {
+    run -1 --separate-stderr octree-repair -t 1 -i 0 -o left.tm good.tm
+    [[ "$stderr" == *": octant "*" is left to improve"* ]]
+    [[ "$stderr" == *"elements are still bad (0 of them invalid"* ]]
+    worst() { jens-stats "$1" | sed -n 's/^worst quality *//p'; }
+    awk -v a="$(worst left.tm)" -v b="$(worst good.tm)" 'BEGIN { exit !(a >= b) }'
+    run -0 mesh-check left.tm
+}
+
+@test "without a surface nodes of the boundary stay, and no octant is split" {
+    { sed '/^surface.node/,$d' bad.tm; echo .end; } >alone.tm
+    run -0 --separate-stderr octree-repair -o mended.tm alone.tm
+    [[ "$stderr" == *"there is no surface"* ]]
+    run -0 jens-stats --certify mended.tm
+    run -3 octree-repair --method refine alone.tm
+    [[ "$output" == *"no octants to refine"* ]]
+}
+
+@test "wrong use and wrong input" {
+    run -2 octree-repair -t 2 good.tm
+    run -2 octree-repair --method other good.tm
+    run -2 octree-repair --max-growth 0.5 good.tm
+    printf '%s\n' 'termesh 1' .node '0 3 0 0' .end >empty.tm
+    run -3 --separate-stderr octree-repair empty.tm
+    [[ "$stderr" == *"no elements"* ]]
+}
