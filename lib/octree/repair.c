@@ -22,6 +22,10 @@ enum {
 enum { FEW_HELD = 500 };
 static const double hopeless = 0.9;
 
+/* Elements become others only where so many are bad: each costs some milliseconds, and
+ * where most are, the threshold is too high. */
+enum { FEW_BAD = 400 };
+
 /* What became of a step. */
 typedef enum { NOT_BETTER, BETTER, TOO_LARGE } outcome;
 
@@ -57,7 +61,8 @@ static tm_status mend(const repair *r, tm_repair_state *state, tm_repair_score *
         tm_repair_free_held(state);
         status = tm_repair_move(state, r->surface, t, 0, 1, score, error);
     }
-    if (status == TM_OK && score->bad > 0)
+    const bool some = score->bad > 0 && score->bad <= FEW_BAD;
+    if (status == TM_OK && some)
         status = tm_repair_tips(state, r->surface, t, score, &r->report->tips, error);
     if (status == TM_OK && score->bad > 0)
         status =

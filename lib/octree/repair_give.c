@@ -8,6 +8,7 @@
 #include "repair_facets.h"
 #include "repair_faces.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -120,11 +121,8 @@ static bool stays(const tm_block *block, bool remade)
 static void remove_block(tm_stream *stream, tm_block *block, tm_repair_notes *notes)
 {
     const size_t used = strlen(notes->dropped);
-    if (used + strlen(block->name) + 2 < sizeof notes->dropped) {
-        if (used > 0)
-            strcat(notes->dropped, " ");
-        strcat(notes->dropped, block->name);
-    }
+    snprintf(notes->dropped + used, sizeof notes->dropped - used, "%s%s",
+             used > 0 ? " " : "", block->name);
     tm_stream_remove(stream, block);
 }
 

@@ -47,16 +47,14 @@ static tm_status copy_octants(const tm_repair_state *state, tm_stream *stream,
     uint32_t *none = calloc(octree->leaves + 1, sizeof *none);
     if (!none)
         return tm_fail_memory(error);
-    tm_status status = tm_octree_give_blocks(octree, none, stream, error);
+    const tm_status status = tm_octree_give_blocks(octree, none, stream, error);
     free(none);
     tm_block *octant = tm_stream_find(stream, ".octant");
-    uint32_t *ordered = calloc(octree->leaves * COLUMNS + 1, sizeof *ordered);
-    if (status == TM_OK && !ordered)
-        status = tm_fail_memory(error);
-    if (status != TM_OK) {
-        free(ordered);
+    if (status != TM_OK)
         return status;
-    }
+    uint32_t *ordered = calloc(octree->leaves * COLUMNS + 1, sizeof *ordered);
+    if (!ordered)
+        return tm_fail_memory(error);
     size_t rows = 0;
     for (size_t l = 0; l < octree->leaves; l++)
         if (state->row[l] < octree->leaves) {
