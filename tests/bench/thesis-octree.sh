@@ -11,7 +11,7 @@ data=${TM_DATA:-}
 limit=${ITERATIONS:-8}
 
 number() {
-    tr '{,}' '\n\n\n' <"$work/report.json" | sed -n "s/.*\"$1\": *//p" | tail -n 1
+    tr '{,}' '[\n*]' <"$work/report.json" | sed -n "s/.*\"$1\": *//p" | tail -n 1
 }
 
 # repair NAME METHOD THRESHOLD: a row about the mesh.
