@@ -2,7 +2,7 @@
 #include "fit.h"
 
 #include "../base/array.h"
-#include "../mixed/element_edges.h"
+#include "../mixed/mixed_shape.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -153,13 +153,12 @@ static void visit_edges(zone *z, const tm_mixed_mesh *mesh, size_t e,
                         void (*visit)(zone *z, uint32_t from, uint32_t to))
 {
     const uint32_t *item = mesh->item + mesh->start[e];
-    const tm_element_edges *edges =
-        tm_element_edges_of((unsigned)(mesh->start[e + 1] - mesh->start[e]));
-    for (unsigned i = 0; i < edges->count; i++)
+    const tm_mixed_shape *shape = &tm_mixed_shapes[mesh->start[e + 1] - mesh->start[e]];
+    for (unsigned i = 0; i < shape->edges; i++)
         for (unsigned end = 0; end < 2; end++) {
-            const uint32_t from = z->order[item[edges->edge[i][end]]];
+            const uint32_t from = z->order[item[shape->edge[i][end]]];
             if (from != TM_NONE)
-                visit(z, from, item[edges->edge[i][1 - end]]);
+                visit(z, from, item[shape->edge[i][1 - end]]);
         }
 }
 
