@@ -4,34 +4,11 @@
 
 #include "../lib/format/vtk_legacy.h"
 
-static const struct option long_options[] = {FILTER_OPTIONS};
-
 int main(int argc, char **argv)
 {
-    filter f = {
-        .name = "vtk-export",
-        .synopsis = "[options] [FILE]",
-        .purpose =
-            "Writes points, triangles, tetrahedra, mixed elements or polyhedra as an\n"
-            "unstructured grid in a legacy text file of VTK (.vtk).",
-        .help = "",
-        .options = long_options,
-        .letters = FILTER_LETTERS,
-    };
-    filter_start(&f, argc, argv);
-    while (filter_option(&f) != -1)
-        ;
-    filter_operands(&f);
-
-    tm_stream stream;
-    tm_text text = {0};
-    tm_error error;
-    mesh_input_read(&f, &stream);
-    if (tm_vtk_write(&text, &stream, f.threads, &error) != TM_OK)
-        mesh_input_fail(&f, &error);
-    filter_write_text(&f, &text);
-    mesh_input_report(&f, &stream);
-    tm_text_free(&text);
-    tm_stream_free(&stream);
-    return filter_finish(&f, 0);
+    return mesh_export(
+        argc, argv, "vtk-export",
+        "Writes points, triangles, tetrahedra, mixed elements or polyhedra as an\n"
+        "unstructured grid in a legacy text file of VTK (.vtk).",
+        tm_vtk_write);
 }

@@ -54,3 +54,31 @@ void mesh_input_report(filter *f, const tm_stream *stream)
     filter_write_json(f, &text);
     tm_text_free(&text);
 }
+
+int mesh_export(int argc, char **argv, const char *name, const char *purpose,
+                mesh_writer *write)
+{
+    static const struct option long_options[] = {FILTER_OPTIONS};
+    filter f = {.name = name,
+                .synopsis = "[options] [FILE]",
+                .purpose = purpose,
+                .help = "",
+                .options = long_options,
+                .letters = FILTER_LETTERS};
+    filter_start(&f, argc, argv);
+    while (filter_option(&f) != -1)
+        ;
+    filter_operands(&f);
+
+    tm_stream stream;
+    tm_text text = {0};
+    tm_error error;
+    mesh_input_read(&f, &stream);
+    if (write(&text, &stream, f.threads, &error) != TM_OK)
+        mesh_input_fail(&f, &error);
+    filter_write_text(&f, &text);
+    mesh_input_report(&f, &stream);
+    tm_text_free(&text);
+    tm_stream_free(&stream);
+    return filter_finish(&f, 0);
+}

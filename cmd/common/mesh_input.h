@@ -18,4 +18,12 @@ _Noreturn void mesh_input_fail(const filter *f, tm_error *error);
  * triangles, tetrahedra, elements or polyhedra. */
 void mesh_input_report(filter *f, const tm_stream *stream);
 
+/* Writes a stream in a foreign format to the end of a text. */
+typedef tm_status mesh_writer(tm_text *text, const tm_stream *stream, unsigned threads,
+                              tm_error *error);
+
+/* All of main() of an exporter that has no options of its own. */
+int mesh_export(int argc, char **argv, const char *name, const char *purpose,
+                mesh_writer *write);
+
 #endif
