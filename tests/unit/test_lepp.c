@@ -156,7 +156,7 @@ static void test_what_is_done(void **state)
     tm_stream stream;
     tm_tet_mesh mesh;
     tm_lepp_options o = usual;
-    make_mesh(&mesh, &stream, 3, 0.9, false);
+    make_mesh(&mesh, &stream, 5, 0.9, false);
     o.max_star = MAX_STAR;
     tm_lepp_report report = improve(&mesh, &o);
     for (int size = MAX_STAR + 1; size < TM_LEPP_SIZES; size++)
