@@ -9,7 +9,6 @@
 #include "feature_region.h"
 #include "feature_select.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,7 +20,6 @@ typedef struct {
 
 typedef struct {
     tm_path_finder path;
-    double *size;
     tm_feature_choice choice;
     uint32_t *node_of; /* [corners]: the skin node, or TM_NONE */
     size_t candidates, room;
@@ -45,12 +43,11 @@ static void consider(void *context, uint32_t s)
 {
     const double reach = 3.5; /* sides of a leaf */
     finder *find = context;
-    const tm_octree *octree = find->path.octree;
     const tm_surface *surface = find->path.surface;
     double xyz[3];
-    tm_octree_point(octree, octree->grid[find->path.skin->grid_node[s]], xyz);
+    tm_skin_place(find->path.skin, find->path.octree, s, xyz);
     const double *corner = surface->xyz[surface->corner[find->corner]];
-    const double size = find->size[s];
+    const double size = find->path.size[s];
     const double distance2 = tm_distance2(xyz, corner) / (size * size);
     if (distance2 > reach * reach)
         return;
@@ -239,34 +236,12 @@ static double *find_sizes(const tm_skin *skin, const tm_octree *octree)
     for (size_t s = 0; size && s < skin->nodes; s++)
         size[s] = octree->side;
     for (size_t f = 0; size && f < skin->faces; f++) {
-        const unsigned level = octree->leaf[skin->leaf[f]].level;
-        const double side = octree->side / (double)((uint32_t)1 << level);
+        const double side = tm_leaf_side(octree, &octree->leaf[skin->leaf[f]]);
         for (unsigned i = 0; i < tm_skin_corners(skin, f); i++)
             if (side < size[skin->face[f][i]])
                 size[skin->face[f][i]] = side;
     }
     return size;
-}
-
-/* The skin node closest to a point. */
-typedef struct {
-    const finder *find;
-    const double *point;
-    double distance2;
-    uint32_t node;
-} nearest;
-
-static void compare_nearest(void *context, uint32_t s)
-{
-    nearest *n = context;
-    const tm_octree *octree = n->find->path.octree;
-    double xyz[3];
-    tm_octree_point(octree, octree->grid[n->find->path.skin->grid_node[s]], xyz);
-    const double distance2 = tm_distance2(xyz, n->point);
-    if (distance2 < n->distance2 || (distance2 == n->distance2 && s < n->node)) {
-        n->distance2 = distance2;
-        n->node = s;
-    }
 }
 
 /* Chooses curves by the size of the leaves near the middle of each. */
@@ -278,10 +253,11 @@ static tm_status choose(finder *find, tm_error *error)
         return tm_fail_memory(error);
     for (size_t c = 0; c < surface->curves; c++) {
         const size_t begin = surface->curve_start[c], end = surface->curve_start[c + 1];
-        nearest n = {find, surface->xyz[surface->curve_node[(begin + end) / 2]], INFINITY,
-                     TM_NONE};
-        tm_skin_cells_near(find->path.cells, n.point, compare_nearest, &n);
-        size[c] = n.node == TM_NONE ? find->path.octree->side : find->size[n.node];
+        const uint32_t middle = surface->curve_node[(begin + end) / 2];
+        double distance2;
+        const uint32_t n = tm_skin_cells_nearest(find->path.cells, surface->xyz[middle],
+                                                 NULL, &distance2);
+        size[c] = n == TM_NONE ? find->path.octree->side : find->path.size[n];
     }
     const tm_status status = tm_feature_choose(&find->choice, surface, size, error);
     free(size);
@@ -302,7 +278,6 @@ static tm_status allocate(tm_feature *feature, size_t nodes, tm_error *error)
 
 static void free_finder(finder *find)
 {
-    free(find->size);
     free(find->node_of);
     tm_feature_choice_free(&find->choice);
     free(find->candidate);
@@ -329,10 +304,11 @@ tm_status tm_feature_find(tm_feature *feature, tm_skin *skin, const tm_octree *o
                             .cells = &cells,
                             .skin = skin,
                             .feature = feature}};
-    find.path.size = find.size = find_sizes(skin, octree);
+    double *size = find_sizes(skin, octree);
+    find.path.size = size;
     find.path.on_path = calloc(skin->faces + 1, 1);
     find.path.visit = calloc(skin->nodes + 1, sizeof *find.path.visit);
-    if (status == TM_OK && !(find.size && find.path.on_path && find.path.visit))
+    if (status == TM_OK && !(size && find.path.on_path && find.path.visit))
         status = tm_fail_memory(error);
     if (status == TM_OK)
         status = choose(&find, error);
@@ -345,6 +321,7 @@ tm_status tm_feature_find(tm_feature *feature, tm_skin *skin, const tm_octree *o
     if (status == TM_OK)
         tm_feature_cut_wide(feature, skin, octree, surface, find.path.on_path, at);
     free_finder(&find);
+    free(size);
     tm_skin_cells_free(&cells);
     return status;
 }

@@ -12,7 +12,7 @@ static void place_of(const tm_feature *feature, const tm_skin *skin,
                      double xyz[3])
 {
     size_t segment;
-    tm_octree_point(octree, octree->grid[skin->grid_node[s]], xyz);
+    tm_skin_place(skin, octree, s, xyz);
     if (feature->kind[s] == TM_ON_CORNER) {
         memcpy(xyz, surface->xyz[surface->corner[feature->of[s]]], 3 * sizeof *xyz);
     } else if (feature->kind[s] == TM_ON_CURVE) {

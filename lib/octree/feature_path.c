@@ -35,20 +35,11 @@ static uint32_t common_face(const tm_skin *skin, uint32_t s, uint32_t t, uint32_
     return TM_NONE;
 }
 
-/* The corner of a face that a node is. */
-static unsigned corner_in(const tm_skin *skin, size_t f, uint32_t s)
-{
-    unsigned i = 0;
-    while (skin->face[f][i] != s)
-        i++;
-    return i;
-}
-
 /* Whether two nodes of a face are not neighbours on its border. */
 static bool is_diagonal(const tm_skin *skin, size_t f, uint32_t s, uint32_t t)
 {
     return tm_skin_corners(skin, f) == 4 &&
-           (corner_in(skin, f, s) + 2) % 4 == corner_in(skin, f, t);
+           (tm_skin_corner(skin, f, s) + 2) % 4 == tm_skin_corner(skin, f, t);
 }
 
 /* Whether the path can go from s to t at once, where both are in a face with what is now
@@ -124,7 +115,7 @@ static tm_status cut_faces(tm_path_finder *p, size_t begin, tm_error *error)
             return tm_fail_memory(error);
         p->cuts = cuts;
         p->cuts[p->cut_count++] = f;
-        p->skin->cut[f] = corner_in(p->skin, f, s) % 2 ? TM_CUT_13 : TM_CUT_02;
+        p->skin->cut[f] = tm_skin_corner(p->skin, f, s) % 2 ? TM_CUT_13 : TM_CUT_02;
     }
     return TM_OK;
 }
@@ -145,7 +136,8 @@ static void mark_edge(tm_path_finder *p, uint32_t s, uint32_t t)
     for (uint32_t f = common_face(p->skin, s, t, TM_NONE); f != TM_NONE;
          f = common_face(p->skin, s, t, f)) {
         const unsigned k = tm_skin_corners(p->skin, f);
-        const unsigned i = corner_in(p->skin, f, s), j = corner_in(p->skin, f, t);
+        const unsigned i = tm_skin_corner(p->skin, f, s),
+                       j = tm_skin_corner(p->skin, f, t);
         if ((i + 1) % k == j)
             p->on_path[f] |= (uint8_t)(1u << i);
         else if ((j + 1) % k == i)
@@ -201,36 +193,16 @@ static void place_on_curve(const tm_path_finder *p, double param, double xyz[3])
         xyz[j] = a[j] + t * (b[j] - a[j]);
 }
 
-/* The free node closest to a point. */
-typedef struct {
-    const tm_path_finder *p;
-    const double *point;
-    uint32_t node;
-    double distance2;
-} nearest;
-
-static void compare_nearest(void *context, uint32_t s)
-{
-    nearest *n = context;
-    double xyz[3];
-    if (n->p->feature->kind[s] != TM_ON_PATCH)
-        return;
-    tm_path_place(n->p, s, xyz);
-    const double d = tm_distance2(n->point, xyz);
-    if (d < n->distance2 || (d == n->distance2 && s < n->node)) {
-        n->node = s;
-        n->distance2 = d;
-    }
-}
-
+/* The free node closest to a place of the curve; TM_NONE where it is out of reach. */
 static uint32_t node_near(const tm_path_finder *p, double param)
 {
     double point[3];
     place_on_curve(p, param, point);
-    nearest n = {p, point, TM_NONE, INFINITY};
-    tm_skin_cells_near(p->cells, point, compare_nearest, &n);
-    const double reach = n.node == TM_NONE ? 0 : tm_path_tube * p->size[n.node];
-    return n.distance2 <= reach * reach ? n.node : TM_NONE;
+    double distance2;
+    const uint32_t s =
+        tm_skin_cells_nearest(p->cells, point, p->feature->kind, &distance2);
+    const double reach = s == TM_NONE ? 0 : tm_path_tube * p->size[s];
+    return distance2 <= reach * reach ? s : TM_NONE;
 }
 
 /* Where the path must pass: its ends, and two or three places more where it comes back to

@@ -77,10 +77,7 @@ static void count_votes(const vote *votes, size_t count, uint32_t *winner)
 static uint32_t region_of(const regions *r, uint32_t s)
 {
     const uint32_t f = r->skin->around[r->skin->around_start[s]];
-    unsigned i = 0;
-    while (r->skin->face[f][i] != s)
-        i++;
-    return tm_set_root(r->parent, half_at(r, f, i));
+    return tm_set_root(r->parent, half_at(r, f, tm_skin_corner(r->skin, f, s)));
 }
 
 static void vote_all(const regions *r, tm_feature *feature, const tm_surface *surface,

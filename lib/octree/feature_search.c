@@ -41,11 +41,6 @@ static tm_path_step pop(tm_path_finder *p)
     return top;
 }
 
-void tm_path_place(const tm_path_finder *p, uint32_t s, double xyz[3])
-{
-    tm_octree_point(p->octree, p->octree->grid[p->skin->grid_node[s]], xyz);
-}
-
 /* The node's closest place on the curve. */
 static tm_path_visit *look_at(tm_path_finder *p, uint32_t s)
 {
@@ -56,7 +51,7 @@ static tm_path_visit *look_at(tm_path_finder *p, uint32_t s)
     double xyz[3];
     double closest[3];
     size_t segment;
-    tm_path_place(p, s, xyz);
+    tm_skin_place(p->skin, p->octree, s, xyz);
     tm_surface_closest_on_curve(p->surface, curve, xyz, closest, &segment);
     const uint32_t begin =
         p->surface->curve_node[p->surface->curve_start[curve] + segment];
@@ -92,9 +87,7 @@ static unsigned face_neighbours(const tm_skin *skin, size_t f, uint32_t s, uint3
 {
     const unsigned k = tm_skin_corners(skin, f);
     const uint32_t *face = skin->face[f];
-    unsigned i = 0;
-    while (face[i] != s)
-        i++;
+    const unsigned i = tm_skin_corner(skin, f, s);
     to[0] = face[(i + 1) % k];
     to[1] = face[(i + k - 1) % k];
     to[2] = face[(i + 2) % k];
@@ -108,8 +101,8 @@ static tm_status relax(tm_path_finder *p, uint32_t s, uint32_t to, tm_error *err
     const double nearness = 0.1; /* edges on the curve are not free */
     double here[3];
     double there[3];
-    tm_path_place(p, s, here);
-    tm_path_place(p, to, there);
+    tm_skin_place(p->skin, p->octree, s, here);
+    tm_skin_place(p->skin, p->octree, to, there);
     const double edge = sqrt(tm_distance2(here, there));
     const double size = fmin(p->size[s], p->size[to]);
     const double off = (a->distance2 + b->distance2) / (size * size);

@@ -63,9 +63,6 @@ typedef struct tm_path_finder {
  * of leaves. */
 static const double tm_path_tube = 2;
 
-/* The place of a skin node on the lattice. */
-void tm_path_place(const tm_path_finder *p, uint32_t s, double xyz[3]);
-
 /* Searches from one stop of the curve to the next; where *found, visit[].from leads back
  * from the second. O(n log n) in the nodes near the curve. TM_ERROR_SYSTEM where memory
  * is out. */

@@ -3,7 +3,6 @@
 
 #include "../base/array.h"
 #include "../base/disjoint_sets.h"
-#include "../geom/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -54,15 +53,6 @@ static void curve_box(const tm_surface *s, size_t curve, double box[6])
     }
     for (size_t i = s->curve_start[curve]; i < s->curve_start[curve + 1]; i++)
         stretch(box, s->xyz[s->curve_node[i]]);
-}
-
-static double length_of(const tm_surface *s, size_t curve)
-{
-    double length = 0;
-    for (size_t i = s->curve_start[curve]; i + 1 < s->curve_start[curve + 1]; i++)
-        length +=
-            sqrt(tm_distance2(s->xyz[s->curve_node[i]], s->xyz[s->curve_node[i + 1]]));
-    return length;
 }
 
 /* Leaves out what is small as a whole. */
@@ -116,7 +106,7 @@ static void drop_ends(chooser *c)
             const uint32_t from = end_of(c, curve, 0), to = end_of(c, curve, 1);
             if (!c->choice->curve[curve] || from == TM_NONE || to == TM_NONE ||
                 (c->degree[from] > 1 && c->degree[to] > 1) ||
-                length_of(s, curve) >= short_end * c->size[curve])
+                s->curve_length[curve] >= short_end * c->size[curve])
                 continue;
             c->choice->curve[curve] = false;
             c->degree[from]--;

@@ -22,7 +22,7 @@ static tm_status find_closest(tm_octree_mesh *m, const tm_octree *octree,
     uint32_t guess = TM_NONE;
     for (size_t s = 0; s < m->skin.nodes; s++) {
         double xyz[3];
-        tm_octree_point(octree, octree->grid[m->skin.grid_node[s]], xyz);
+        tm_skin_place(&m->skin, octree, s, xyz);
         m->at[s].triangle = guess;
         tm_surface_closest(surface, xyz, TM_NONE, &m->at[s]);
         guess = m->at[s].triangle;
@@ -122,8 +122,6 @@ static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *su
         status = tm_settle(m, octree, surface, error);
     if (status != TM_OK)
         return status;
-    r->filled = m->solid.filled;
-    r->removed = m->solid.removed;
     r->corners_lost = m->feature.corners_lost;
     r->curves_lost = m->feature.curves_lost;
     if (m->feature.lost != TM_NONE)

@@ -9,7 +9,6 @@
 
 /* What was made, and what could not be. Places are points. */
 typedef struct tm_octree_mesh_report {
-    size_t filled, removed;           /* leaves, so that the boundary is a manifold */
     size_t lost;                      /* leaves with surface but no boundary close by */
     double lost_at[3];                /* the centre of one of them */
     size_t corners_lost, curves_lost; /* of the surface */
@@ -18,7 +17,6 @@ typedef struct tm_octree_mesh_report {
     size_t invalid;    /* elements with J_ENS <= 0 */
     size_t components; /* of the boundary */
     int64_t euler;     /* of the boundary */
-    size_t below;      /* elements that had to be improved, and were */
 } tm_octree_mesh_report;
 
 typedef struct tm_octree_mesh {

@@ -30,6 +30,22 @@ static inline unsigned tm_skin_corners(const tm_skin *skin, size_t f)
     return skin->face[f][3] == TM_NONE ? 3 : 4;
 }
 
+/* The corner of a face that node s is, which it must have. */
+static inline unsigned tm_skin_corner(const tm_skin *skin, size_t f, uint32_t s)
+{
+    unsigned i = 0;
+    while (skin->face[f][i] != s)
+        i++;
+    return i;
+}
+
+/* The place of a node on the lattice. */
+static inline void tm_skin_place(const tm_skin *skin, const tm_octree *octree, size_t s,
+                                 double xyz[3])
+{
+    tm_octree_point(octree, octree->grid[skin->grid_node[s]], xyz);
+}
+
 /* The state of a chosen leaf: the middles that the mesh has. */
 tm_leaf_state tm_solid_leaf_state(const tm_solid *solid, const tm_octree *octree,
                                   size_t leaf);

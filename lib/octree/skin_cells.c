@@ -2,6 +2,7 @@
 #include "skin_cells.h"
 
 #include "../base/array.h"
+#include "../geom/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -93,4 +94,35 @@ void tm_skin_cells_near(const tm_skin_cells *cells, const double point[3],
             }
         }
     }
+}
+
+typedef struct {
+    const tm_skin_cells *cells;
+    const double *point;
+    const uint8_t *taken;
+    uint32_t node;
+    double distance2;
+} nearest;
+
+static void compare_nearest(void *context, uint32_t s)
+{
+    nearest *n = context;
+    double xyz[3];
+    if (n->taken && n->taken[s])
+        return;
+    tm_skin_place(n->cells->skin, n->cells->octree, s, xyz);
+    const double distance2 = tm_distance2(n->point, xyz);
+    if (distance2 < n->distance2 || (distance2 == n->distance2 && s < n->node)) {
+        n->node = s;
+        n->distance2 = distance2;
+    }
+}
+
+uint32_t tm_skin_cells_nearest(const tm_skin_cells *cells, const double point[3],
+                               const uint8_t *taken, double *distance2)
+{
+    nearest n = {cells, point, taken, TM_NONE, INFINITY};
+    tm_skin_cells_near(cells, point, compare_nearest, &n);
+    *distance2 = n.distance2;
+    return n.node;
 }

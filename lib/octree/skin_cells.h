@@ -23,4 +23,10 @@ void tm_skin_cells_free(tm_skin_cells *cells);
 void tm_skin_cells_near(const tm_skin_cells *cells, const double point[3],
                         void (*visit)(void *context, uint32_t node), void *context);
 
+/* The closest of these nodes, of those with taken[node] == 0 where taken is not NULL;
+ * TM_NONE where there is none. *distance2 is its squared distance on the lattice, or
+ * infinite. */
+uint32_t tm_skin_cells_nearest(const tm_skin_cells *cells, const double point[3],
+                               const uint8_t *taken, double *distance2);
+
 #endif

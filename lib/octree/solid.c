@@ -67,7 +67,6 @@ void tm_solid_flip(tm_solid *solid, const tm_octree *octree, size_t leaf)
 typedef struct {
     uint32_t node;
     uint32_t leaf;
-    tm_octant_mask octants;
 } contact;
 
 typedef struct {
@@ -104,7 +103,7 @@ static tm_status find_contacts(cleaner *c, tm_error *error)
             if (!more)
                 return tm_fail_memory(error);
             c->contact = more;
-            c->contact[c->contacts++] = (contact){node, (uint32_t)l, tm_place_octants[p]};
+            c->contact[c->contacts++] = (contact){node, (uint32_t)l};
         }
     }
     if (c->contacts > 0)
@@ -239,13 +238,12 @@ void tm_solid_free(tm_solid *solid)
 size_t tm_solid_find_lost(const tm_solid *solid, const tm_octree *octree,
                           const tm_surface *surface, uint8_t *lost)
 {
-    const tm_octant_mask full = 0xff;
     size_t count = 0;
     for (size_t l = 0; l < octree->leaves; l++) {
         bool near = !octree->leaf[l].crossed || surface->by_winding;
         for (int p = 0; !near && p < TM_LEAF_EDGE; p++) {
             const tm_octant_mask mask = solid->mask[octree->node[l][p]];
-            near = mask != 0 && mask != full;
+            near = mask != 0 && mask != TM_ALL_OCTANTS;
         }
         lost[l] = !near;
         count += !near;
