@@ -83,7 +83,8 @@ $(BUILD)/generate/powers: lib/base/generate/powers.c
 	$(CC) $(TM_CFLAGS) -o $@ $< $(LDFLAGS) $(LDLIBS)
 
 $(BUILD)/generate/transitions: $(wildcard lib/octree/generate/*.[ch]) \
-		lib/octree/face_pieces.c lib/octree/leaf_place.c lib/octree/transition.h
+		lib/octree/face_pieces.c lib/octree/leaf_place.c lib/octree/transition.h \
+		lib/quality/jens.c
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $(filter %.c,$^) $(LDFLAGS) $(LDLIBS)
 

@@ -1,97 +1,46 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "piece.h"
 
+#include "../../quality/jens.h"
 #include "../octree.h"
 
 #include <math.h>
 #include <stddef.h>
 
-enum { CORNERS = 8, POINTS = 64 };
+enum { POINTS = 64 };
 
-/* Of each kind: the faces, counter-clockwise seen from outside; the triples of edges that
- * J_ENS looks at, each with the corner that they leave, and how many of them have which
- * K. The apex of a pyramid is the only corner with another K. */
+/* The faces of each kind, counter-clockwise seen from outside; in this order, which
+ * decides between divisions that are as good. */
 typedef struct kind {
     unsigned faces;
     tm_piece face[PIECE_FACES];
-    unsigned triples;
-    uint8_t triple[CORNERS][4];
-    unsigned first; /* of them have the K of the kind, the rest that of an apex */
 } kind;
 
-static const kind tetrahedron = {
-    .faces = 4,
-    .face = {{3, {0, 2, 1}}, {3, {0, 1, 3}}, {3, {1, 2, 3}}, {3, {2, 0, 3}}},
-    .triples = 4,
-    .triple = {{0, 1, 2, 3}, {1, 2, 0, 3}, {2, 0, 1, 3}, {3, 0, 2, 1}},
-    .first = 4,
-};
-static const kind pyramid = {
-    .faces = 5,
-    .face = {{4, {0, 3, 2, 1}},
-             {3, {0, 1, 4}},
-             {3, {1, 2, 4}},
-             {3, {2, 3, 4}},
-             {3, {3, 0, 4}}},
-    .triples = 8,
-    .triple = {{0, 1, 3, 4},
-               {1, 2, 0, 4},
-               {2, 3, 1, 4},
-               {3, 0, 2, 4},
-               {4, 2, 1, 0},
-               {4, 3, 2, 1},
-               {4, 0, 3, 2},
-               {4, 1, 0, 3}},
-    .first = 4,
-};
-static const kind wedge = {
-    .faces = 5,
-    .face = {{3, {0, 1, 2}},
-             {3, {3, 5, 4}},
-             {4, {0, 3, 4, 1}},
-             {4, {1, 4, 5, 2}},
-             {4, {2, 5, 3, 0}}},
-    .triples = 6,
-    .triple = {{0, 2, 1, 3},
-               {1, 0, 2, 4},
-               {2, 1, 0, 5},
-               {3, 4, 5, 0},
-               {4, 5, 3, 1},
-               {5, 3, 4, 2}},
-    .first = 6,
-};
-static const kind hexahedron = {
-    .faces = 6,
-    .face = {{4, {0, 3, 2, 1}},
-             {4, {4, 5, 6, 7}},
-             {4, {0, 1, 5, 4}},
-             {4, {1, 2, 6, 5}},
-             {4, {2, 3, 7, 6}},
-             {4, {3, 0, 4, 7}}},
-    .triples = 8,
-    .triple = {{0, 1, 3, 4},
-               {1, 2, 0, 5},
-               {2, 3, 1, 6},
-               {3, 0, 2, 7},
-               {4, 7, 5, 0},
-               {5, 4, 6, 1},
-               {6, 5, 7, 2},
-               {7, 6, 4, 3}},
-    .first = 8,
-};
+static const kind kinds[TM_ELEMENT_NODES_MOST + 1] = {
+    [4] = {4, {{3, {0, 2, 1}}, {3, {0, 1, 3}}, {3, {1, 2, 3}}, {3, {2, 0, 3}}}},
+    [5] = {5,
+           {{4, {0, 3, 2, 1}},
+            {3, {0, 1, 4}},
+            {3, {1, 2, 4}},
+            {3, {2, 3, 4}},
+            {3, {3, 0, 4}}}},
+    [6] = {5,
+           {{3, {0, 1, 2}},
+            {3, {3, 5, 4}},
+            {4, {0, 3, 4, 1}},
+            {4, {1, 4, 5, 2}},
+            {4, {2, 5, 3, 0}}}},
+    [8] = {6,
+           {{4, {0, 3, 2, 1}},
+            {4, {4, 5, 6, 7}},
+            {4, {0, 1, 5, 4}},
+            {4, {1, 2, 6, 5}},
+            {4, {2, 3, 7, 6}},
+            {4, {3, 0, 4, 7}}}}};
 
 static const kind *kind_of(const tm_piece *piece)
 {
-    switch (piece->k) {
-    case 4:
-        return &tetrahedron;
-    case 5:
-        return &pyramid;
-    case 6:
-        return &wedge;
-    default:
-        return &hexahedron;
-    }
+    return &kinds[piece->k];
 }
 
 static void edge_of(unsigned from, unsigned to, int edge[3])
@@ -227,32 +176,23 @@ static double length_of(const int u[3])
     return sqrt((double)(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]));
 }
 
-static double normalised(const uint8_t *place, const uint8_t triple[4], double k)
-{
-    const unsigned at = place[triple[0]];
-    double length = 1;
-    for (unsigned i = 1; i < 4; i++) {
-        int u[3];
-        edge_of(at, place[triple[i]], u);
-        length *= length_of(u);
-    }
-    const int volume =
-        volume_of_four(at, place[triple[1]], place[triple[2]], place[triple[3]]);
-    const double js = volume / length;
-    return js > k ? 1 + k - js : js < -k ? -(1 + k) - js : js / k;
-}
-
 double quality_of(const tm_piece *piece)
 {
-    const kind *is = kind_of(piece);
-    const double k = is == &hexahedron ? 1
-                     : is == &wedge    ? sqrt(3) / 2
-                     : is == &pyramid  ? sqrt(6) / 3
-                                       : sqrt(2) / 2;
-    const double apex = 2 * sqrt(6) / 9;
+    const tm_element_shape *shape = &tm_element_shapes[piece->k];
     double worst = 1;
-    for (unsigned t = 0; t < is->triples; t++)
-        worst = fmin(worst,
-                     normalised(piece->place, is->triple[t], t < is->first ? k : apex));
+    for (size_t c = 0; c < shape->corners; c++) {
+        const unsigned char *corner = shape->node[c];
+        const unsigned at = piece->place[corner[0]];
+        double length = 1;
+        for (unsigned i = 1; i < 4; i++) {
+            int u[3];
+            edge_of(at, piece->place[corner[i]], u);
+            length *= length_of(u);
+        }
+        const int volume =
+            volume_of_four(at, piece->place[corner[1]], piece->place[corner[2]],
+                           piece->place[corner[3]]);
+        worst = fmin(worst, tm_jens_of(volume / length, shape->k[c]));
+    }
     return worst;
 }
