@@ -406,3 +406,41 @@ termesh 1
 .end
 END
 }
+
+# Debian's python has VTK and meshio.
+# shellcheck disable=SC2034 # for the tests
+vtk_python=/usr/bin/python3
+
+need_vtk() {
+    "$vtk_python" -c 'import vtk' 2>/dev/null || skip "there is no python3-vtk9"
+}
+
+# vtk FILE EXPRESSION: prints it, of g, the grid that VTK reads of a .vtk or .vtu file,
+# volume, the volumes of its cells by vtkCellSizeFilter, and point and cell, the arrays by
+# their names.
+vtk() {
+    "$vtk_python" - "$@" <<'END'
+import sys, vtk
+from vtk.util.numpy_support import vtk_to_numpy
+
+def arrays(data):
+    return {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i))
+            for i in range(data.GetNumberOfArrays())}
+
+if sys.argv[1].endswith('.vtu'):
+    reader = vtk.vtkXMLUnstructuredGridReader()
+else:
+    reader = vtk.vtkUnstructuredGridReader()
+    reader.ReadAllScalarsOn()
+reader.SetFileName(sys.argv[1])
+reader.Update()
+g = reader.GetOutput()
+size = vtk.vtkCellSizeFilter()
+size.SetInputData(g)
+size.Update()
+point, cell = arrays(g.GetPointData()), arrays(g.GetCellData())
+volume = arrays(size.GetOutput().GetCellData()).get('Volume')
+types = [g.GetCellType(c) for c in range(g.GetNumberOfCells())]
+print(eval(sys.argv[2]))
+END
+}

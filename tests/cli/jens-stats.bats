@@ -197,8 +197,7 @@ END
 }
 
 @test "--verdict agrees with VTK on random and degenerate elements" {
-    vtk_python=/usr/bin/python3
-    "$vtk_python" -c 'import vtk' 2>/dev/null || skip "there is no VTK"
+    need_vtk
     elements 6000 2 >random.tm
     jens-stats --verdict random.tm >list
     "$vtk_python" - random.tm list <<'END'

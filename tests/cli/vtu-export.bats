@@ -8,36 +8,6 @@ load helpers
 
 setup() {
     cd "$BATS_TEST_TMPDIR" || exit
-    vtk_python=/usr/bin/python3
-}
-
-# vtk FILE.vtu EXPRESSION: prints it, of g, the grid as VTK reads it, volume, the volumes
-# of its cells by vtkCellSizeFilter, and point and cell, the arrays by their names.
-vtk() {
-    "$vtk_python" - "$@" <<'END'
-import sys, vtk
-from vtk.util.numpy_support import vtk_to_numpy
-
-def arrays(data):
-    return {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i))
-            for i in range(data.GetNumberOfArrays())}
-
-reader = vtk.vtkXMLUnstructuredGridReader()
-reader.SetFileName(sys.argv[1])
-reader.Update()
-g = reader.GetOutput()
-size = vtk.vtkCellSizeFilter()
-size.SetInputData(g)
-size.Update()
-point, cell = arrays(g.GetPointData()), arrays(g.GetCellData())
-volume = arrays(size.GetOutput().GetCellData()).get('Volume')
-types = [g.GetCellType(c) for c in range(g.GetNumberOfCells())]
-print(eval(sys.argv[2]))
-END
-}
-
-need_vtk() {
-    "$vtk_python" -c 'import vtk' 2>/dev/null || skip "there is no python3-vtk9"
 }
 
 @test "polyhedra: VTK counts the same cells and points and measures the same volumes" {
