@@ -31,32 +31,6 @@ static int choose(const filter *f, const tm_stream *stream)
     return chosen == ELEMENT_BLOCKS ? TETRAHEDRA : chosen;
 }
 
-static tm_tet_arrays arrays_of(const tm_stream *stream)
-{
-    const tm_block *node = tm_stream_find(stream, ".node");
-    const tm_block *ele = tm_stream_find(stream, ".ele");
-    const tm_block *face = tm_stream_find(stream, ".face");
-    const tm_block *edge = tm_stream_find(stream, ".edge");
-    tm_tet_arrays mesh = {0};
-    if (node) {
-        mesh.nodes = node->count;
-        mesh.xyz = (const double(*)[3])node->real;
-    }
-    if (ele) {
-        mesh.tets = ele->count;
-        mesh.tet = (const uint32_t(*)[4])ele->integer;
-    }
-    if (face) {
-        mesh.faces = face->count;
-        mesh.face = (const uint32_t(*)[3])face->integer;
-    }
-    if (edge) {
-        mesh.edges = edge->count;
-        mesh.edge = (const uint32_t(*)[2])edge->integer;
-    }
-    return mesh;
-}
-
 static void examine(const filter *f, const tm_stream *stream, tm_examination *found)
 {
     tm_error error;
@@ -69,7 +43,7 @@ static void examine(const filter *f, const tm_stream *stream, tm_examination *fo
         const tm_mixed_arrays mesh = tm_mixed_arrays_of(stream);
         status = tm_mixed_examine(found, &mesh, f->threads, &error);
     } else {
-        const tm_tet_arrays mesh = arrays_of(stream);
+        const tm_tet_arrays mesh = tm_tet_arrays_of(stream);
         status = tm_tet_examine(found, &mesh, f->threads, &error);
     }
     if (status != TM_OK)

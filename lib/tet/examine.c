@@ -103,6 +103,32 @@ static tm_status check_size(const tm_tet_arrays *mesh, tm_error *error)
     return TM_OK;
 }
 
+tm_tet_arrays tm_tet_arrays_of(const tm_stream *stream)
+{
+    const tm_block *node = tm_stream_find(stream, ".node");
+    const tm_block *ele = tm_stream_find(stream, ".ele");
+    const tm_block *face = tm_stream_find(stream, ".face");
+    const tm_block *edge = tm_stream_find(stream, ".edge");
+    tm_tet_arrays mesh = {0};
+    if (node) {
+        mesh.nodes = node->count;
+        mesh.xyz = (const double(*)[3])node->real;
+    }
+    if (ele) {
+        mesh.tets = ele->count;
+        mesh.tet = (const uint32_t(*)[4])ele->integer;
+    }
+    if (face) {
+        mesh.faces = face->count;
+        mesh.face = (const uint32_t(*)[3])face->integer;
+    }
+    if (edge) {
+        mesh.edges = edge->count;
+        mesh.edge = (const uint32_t(*)[2])edge->integer;
+    }
+    return mesh;
+}
+
 tm_status tm_tet_examine(tm_examination *found, const tm_tet_arrays *mesh,
                          unsigned threads, tm_error *error)
 {

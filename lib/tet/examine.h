@@ -22,6 +22,10 @@ typedef struct tm_tet_arrays {
     const uint32_t (*edge)[2];
 } tm_tet_arrays;
 
+/* The blocks .node, .ele, .face and .edge of a stream; those that are not there are
+ * empty. They belong to the stream. */
+tm_tet_arrays tm_tet_arrays_of(const tm_stream *stream);
+
 /* Fills *found. A tetrahedron that names a node twice is counted as degenerate and takes
  * no part in anything else: it has no faces and no edges. Two tetrahedra at a face
  * overlap if the exact signs of their volumes say that both are on the same side of it;
