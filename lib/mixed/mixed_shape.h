@@ -14,18 +14,17 @@ enum {
 };
 
 /* Numbers are those of the element's nodes. In a positive element the nodes of a face
- * turn counter-clockwise seen from outside, and the three nodes that follow the first one
- * of a corner are those at the other ends of its edges, in the order in which their
- * vectors have a positive determinant. What is left of an array is 0. */
+ * turn counter-clockwise seen from outside. What is left of an array is 0. */
 typedef struct tm_mixed_shape {
-    uint8_t faces, edges, corners;
+    uint8_t faces, edges;
+    /* How many of the corners of tm_element_shapes (jens.h), from the first on, have
+     * determinants of their own. One of a tetrahedron: those of all four are the same.
+     * Four of a pyramid: at its apex, any three consecutive edges make the determinant of
+     * the corner of the base that the middle one leads to. */
+    uint8_t corners;
     uint8_t face[TM_MIXED_FACES][4]; /* of a triangle the fourth is the first again */
     uint8_t edge[TM_MIXED_EDGES][2];
     uint8_t edge_face[TM_MIXED_EDGES][2]; /* the two faces at an edge */
-    /* One corner of a tetrahedron: the determinants of all four are the same. Four of a
-     * pyramid: at its apex, any three consecutive edges make the determinant of the
-     * corner of the base that the middle one leads to. */
-    uint8_t corner[TM_MIXED_NODES][4];
 } tm_mixed_shape;
 
 /* By the number of nodes: 4, 5, 6, 8; the others have no faces. */

@@ -3,6 +3,7 @@
 
 #include "../geom/predicates.h"
 #include "../geom/vector.h"
+#include "../quality/jens.h"
 #include "mixed_shape.h"
 
 /* Six times the volume of the cone from the origin to a triangle. */
@@ -54,7 +55,7 @@ tm_mixed_corners tm_mixed_corners_of(const double (*xyz)[3], const uint32_t *nod
     const tm_mixed_shape *shape = &tm_mixed_shapes[k];
     tm_mixed_corners count = {0};
     for (size_t i = 0; i < shape->corners; i++) {
-        const uint8_t *n = shape->corner[i];
+        const unsigned char *n = tm_element_shapes[k].node[i];
         const int sign = tm_orient3d(xyz[node[n[0]]], xyz[node[n[1]]], xyz[node[n[2]]],
                                      xyz[node[n[3]]]);
         count.negative += sign < 0;

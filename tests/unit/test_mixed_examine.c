@@ -5,6 +5,7 @@
 #include "../../lib/geom/vector.h"
 #include "../../lib/mixed/mixed_examine.h"
 #include "../../lib/mixed/mixed_shape.h"
+#include "../../lib/quality/jens.h"
 #include "../../lib/mixed/mixed_volume.h"
 #include "random.h"
 
@@ -106,9 +107,10 @@ static void test_shapes(void **state)
             assert_int_equal(run[n[0]][n[1]] | run[n[1]][n[0]], 1 << f[0] | 1 << f[1]);
             assert_true(f[0] != f[1]);
         }
+        const unsigned char(*corner)[4] = tm_element_shapes[kinds[i]].node;
         for (size_t c = 0; c < s->corners; c++)
             for (size_t j = 1; j < 4; j++)
-                assert_true(run[s->corner[c][0]][s->corner[c][j]] != 0);
+                assert_true(run[corner[c][0]][corner[c][j]] != 0);
     }
 }
 
@@ -143,16 +145,17 @@ static void test_corners(void **state)
     for (size_t i = 0; i < 4; i++) {
         const size_t k = kinds[i];
         const tm_mixed_shape *s = &tm_mixed_shapes[k];
+        const unsigned char(*corner)[4] = tm_element_shapes[k].node;
         for (size_t c = 0; c < s->corners; c++) {
-            double xyz[8][3], middle[3], *x = xyz[s->corner[c][0]];
+            double xyz[8][3], middle[3], *x = xyz[corner[c][0]];
             memcpy(xyz, model[k], sizeof xyz);
             for (size_t j = 0; j < 3; j++)
-                middle[j] = (xyz[s->corner[c][1]][j] + xyz[s->corner[c][2]][j]) / 2;
+                middle[j] = (xyz[corner[c][1]][j] + xyz[corner[c][2]][j]) / 2;
             memcpy(x, middle, sizeof middle);
             tm_examination found = examine_one(k, (const double(*)[3])xyz);
             ASSERT_ONE(&found, TM_DEGENERATE, 0, TM_NONE);
             for (size_t j = 0; j < 3; j++)
-                x[j] = middle[j] + (middle[j] - model[k][s->corner[c][0]][j]) / 4;
+                x[j] = middle[j] + (middle[j] - model[k][corner[c][0]][j]) / 4;
             found = examine_one(k, (const double(*)[3])xyz);
             ASSERT_ONE(&found, TM_INVERTED, 0);
         }
