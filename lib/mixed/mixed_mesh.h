@@ -3,6 +3,8 @@
 #ifndef TM_MIXED_MIXED_MESH_H
 #define TM_MIXED_MIXED_MESH_H
 
+#include "../quality/jens.h"
+
 #include <stddef.h>
 #include <stdint.h>
 
@@ -19,5 +21,12 @@ typedef struct tm_mixed_mesh {
     size_t *start;
     uint32_t *item;
 } tm_mixed_mesh;
+
+/* J_ENS of element e. */
+static inline double tm_mixed_jens(const tm_mixed_mesh *mesh, size_t e)
+{
+    return tm_jens(mesh->start[e + 1] - mesh->start[e], (const double(*)[3])mesh->xyz,
+                   mesh->item + mesh->start[e]);
+}
 
 #endif

@@ -38,17 +38,6 @@ static const double untangle_gain = 0.9;
 static const double epsilon_least = 1e-6;
 enum { STAGES = sizeof sharpness / sizeof *sharpness, ITERATIONS = 25 };
 
-static const double (*places_of(const tm_mixed_mesh *mesh))[3]
-{
-    return (const double(*)[3])mesh->xyz;
-}
-
-static double measure(const tm_mixed_mesh *mesh, size_t e)
-{
-    return tm_jens(mesh->start[e + 1] - mesh->start[e], places_of(mesh),
-                   mesh->item + mesh->start[e]);
-}
-
 static void count_elements(const tm_optimise_work *w, size_t *bad, size_t *inverted,
                            double *worst)
 {
@@ -94,7 +83,7 @@ static tm_status start_work(tm_optimise_work *w, tm_error *error)
     if (!w->jens)
         return tm_fail_memory(error);
     for (size_t e = 0; e < elements; e++)
-        w->jens[e] = measure(w->mesh, e);
+        w->jens[e] = tm_mixed_jens(w->mesh, e);
     tm_optimise_report *report = w->report;
     count_elements(w, &report->bad_before, &report->inverted_before,
                    &report->worst_before);
@@ -169,7 +158,7 @@ void tm_optimise_accept(tm_optimise_work *w)
         w->moved[node] = true;
     }
     for (size_t e = 0; e < cluster->elements; e++)
-        w->jens[cluster->element[e]] = measure(w->mesh, cluster->element[e]);
+        w->jens[cluster->element[e]] = tm_mixed_jens(w->mesh, cluster->element[e]);
 }
 
 static void sharpen(tm_cluster *cluster)

@@ -3,7 +3,6 @@
 
 #include "../base/array.h"
 #include "../mixed/mixed_shape.h"
-#include "../quality/jens.h"
 #include "../stream/stream.h"
 #include "repair_faces.h"
 #include "repair_star.h"
@@ -26,12 +25,6 @@ typedef struct {
     division *division; /* by element, ascending */
     size_t divisions, room;
 } divider;
-
-static double measure(const tm_mixed_mesh *mesh, size_t e)
-{
-    return tm_jens(mesh->start[e + 1] - mesh->start[e], (const double(*)[3])mesh->xyz,
-                   mesh->item + mesh->start[e]);
-}
 
 /* The faces of an element that are on the boundary, as bits; `next` is the first boundary
  * face that may be of it. */
@@ -68,7 +61,7 @@ static tm_status find_divisions(divider *d, tm_error *error)
     size_t next = 0;
     tm_status status = tm_boundary_faces(mesh, &d->face, &d->faces, error);
     for (size_t e = 0; status == TM_OK && e < mesh->elements; e++) {
-        const double jens = measure(mesh, e);
+        const double jens = tm_mixed_jens(mesh, e);
         if (mesh->start[e + 1] - mesh->start[e] > TETRAHEDRON &&
             tm_repair_is_bad(mesh, e, jens, d->threshold))
             status = add_division(d, e, jens, find_open(d, e, &next), error);
@@ -167,7 +160,7 @@ tm_status tm_repair_divide(tm_repair_state *state, const tm_surface *surface,
     if (status == TM_OK && d.divisions > 0)
         status = apply(&d, &made, error);
     if (status == TM_OK && d.divisions > 0) {
-        tm_repair_score now = tm_repair_measure(&made, threshold);
+        tm_repair_score now = tm_repair_tm_mixed_jens(&made, threshold);
         status = tm_repair_move(&made, surface, threshold, threshold, 1, &now, error);
         if (status == TM_OK && tm_repair_better(&now, score)) {
             *score = now;

@@ -3,7 +3,6 @@
 
 #include "../base/array.h"
 #include "../mixed/optimise_surface.h"
-#include "../quality/jens.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -20,9 +19,7 @@ static void set_thresholds(const tm_repair_state *state, double threshold, doubl
     const tm_mixed_mesh *mesh = &state->mesh;
     const double least = fmax(threshold, TM_REPAIR_LEAST);
     for (size_t e = 0; e < mesh->elements; e++) {
-        const double jens =
-            tm_jens(mesh->start[e + 1] - mesh->start[e], (const double(*)[3])mesh->xyz,
-                    mesh->item + mesh->start[e]);
+        const double jens = tm_mixed_jens(mesh, e);
         const bool uncertified = jens >= least && tm_repair_is_bad(mesh, e, jens, 0);
         to[e] = uncertified ? jens + certified_step : least;
     }

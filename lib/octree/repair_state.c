@@ -3,7 +3,6 @@
 
 #include "../base/array.h"
 #include "../quality/certify.h"
-#include "../quality/jens.h"
 #include "../stream/stream.h"
 
 #include <stdlib.h>
@@ -26,9 +25,7 @@ tm_repair_score tm_repair_measure(const tm_repair_state *state, double threshold
     for (size_t v = 0; v < mesh->nodes; v++)
         score.held += state->rule[v].held;
     for (size_t e = 0; e < mesh->elements; e++) {
-        const double jens =
-            tm_jens(mesh->start[e + 1] - mesh->start[e], (const double(*)[3])mesh->xyz,
-                    mesh->item + mesh->start[e]);
+        const double jens = tm_mixed_jens(mesh, e);
         const bool invalid = tm_repair_is_bad(mesh, e, jens, 0);
         score.invalid += invalid;
         score.bad += invalid || jens < threshold;
@@ -85,9 +82,7 @@ tm_status tm_repair_bad_octants(const tm_repair_state *state, double threshold, 
     *octant = NULL;
     *count = 0;
     for (size_t e = 0; e < mesh->elements; e++) {
-        const double jens =
-            tm_jens(mesh->start[e + 1] - mesh->start[e], (const double(*)[3])mesh->xyz,
-                    mesh->item + mesh->start[e]);
+        const double jens = tm_mixed_jens(mesh, e);
         if (state->octant[e] == TM_NONE ||
             !(tm_repair_is_bad(mesh, e, jens, threshold) || (held && has_held(state, e))))
             continue;

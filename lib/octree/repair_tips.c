@@ -4,7 +4,6 @@
 
 #include "../base/array.h"
 #include "../mixed/mixed_shape.h"
-#include "../quality/jens.h"
 #include "../stream/stream.h"
 
 #include <stdlib.h>
@@ -26,9 +25,7 @@ static bool is_bad_at(const tips *t, uint32_t v)
     const tm_mixed_mesh *mesh = &t->state->mesh;
     for (size_t a = t->around.start[v]; a < t->around.start[v + 1]; a++) {
         const size_t e = t->around.element[a];
-        const double jens =
-            tm_jens(mesh->start[e + 1] - mesh->start[e], (const double(*)[3])mesh->xyz,
-                    mesh->item + mesh->start[e]);
+        const double jens = tm_mixed_jens(mesh, e);
         if (tm_repair_is_bad(mesh, e, jens, t->threshold))
             return true;
     }

@@ -3,7 +3,6 @@
 
 #include "../base/array.h"
 #include "../mixed/optimise_surface.h"
-#include "../quality/jens.h"
 #include "base_places.h"
 
 #include <stdlib.h>
@@ -60,9 +59,7 @@ static bool take_back(retreat *r)
     const tm_mixed_mesh *mesh = r->mesh;
     bool any = false;
     for (size_t e = 0; e < mesh->elements; e++) {
-        const size_t k = mesh->start[e + 1] - mesh->start[e];
-        if (!has_changed(r, e) || tm_jens(k, (const double(*)[3])mesh->xyz,
-                                          mesh->item + mesh->start[e]) >= least_valid)
+        if (!has_changed(r, e) || tm_mixed_jens(mesh, e) >= least_valid)
             continue;
         if (mark_nodes(r, e))
             any = true;
