@@ -160,7 +160,7 @@ tm_status tm_repair_divide(tm_repair_state *state, const tm_surface *surface,
     if (status == TM_OK && d.divisions > 0)
         status = apply(&d, &made, error);
     if (status == TM_OK && d.divisions > 0) {
-        tm_repair_score now = tm_repair_tm_mixed_jens(&made, threshold);
+        tm_repair_score now = tm_repair_measure(&made, threshold);
         status = tm_repair_move(&made, surface, threshold, threshold, 1, &now, error);
         if (status == TM_OK && tm_repair_better(&now, score)) {
             *score = now;
