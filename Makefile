@@ -53,9 +53,11 @@ TM_CFLAGS = -std=c17 -D_GNU_SOURCE -DTM_VERSION='"$(VERSION)"' -ffp-contract=off
 filters := $(basename $(notdir $(wildcard cmd/*.c)))
 bin := $(filters:%=$(BUILD)/bin/%)
 library := $(BUILD)/libtermesh.a
-library_objects := $(patsubst %.c,$(BUILD)/%.o,$(wildcard lib/*/*.c))
-common_objects := $(patsubst %.c,$(BUILD)/%.o,$(wildcard cmd/common/*.c))
-headers := $(wildcard lib/*/*.h)
+library_sources := $(filter-out lib/base/generate/% lib/octree/transition/generate/%, \
+	$(wildcard lib/*/*.c lib/*/*/*.c))
+library_objects := $(library_sources:%.c=$(BUILD)/%.o)
+common_objects := $(patsubst %.c,$(BUILD)/%.o,$(wildcard cmd/common/*/*.c))
+headers := $(wildcard lib/*/*.h lib/*/*/*.h)
 unit_tests := $(patsubst tests/unit/%.c,$(BUILD)/tests/%,$(wildcard tests/unit/test_*.c))
 oracles := $(patsubst tests/oracle/%.cc,$(BUILD)/tests/%,$(wildcard tests/oracle/*.cc))
 fuzzer := $(BUILD)/fuzz/fuzz
@@ -64,7 +66,7 @@ benchers := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/*
 shapes := $(BUILD)/bench/shapes
 generated := $(BUILD)/generated/powers.h $(BUILD)/generated/transitions.h
 pages := $(wildcard man/*.[157])
-sources := $(wildcard lib/*/*.[ch] lib/*/*/*.[ch] cmd/*.c cmd/common/*.[ch] tests/*/*.[ch] \
+sources := $(wildcard lib/*/*.[ch] lib/*/*/*.[ch] lib/*/*/*/*.[ch] cmd/*.c cmd/common/*/*.[ch] tests/*/*.[ch] \
 	tests/*/*.cc examples/*.c)
 
 .PHONY: all tests check benchers bench fuzz lint format install uninstall clean
@@ -82,9 +84,9 @@ $(BUILD)/generate/powers: lib/base/generate/powers.c
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $< $(LDFLAGS) $(LDLIBS)
 
-$(BUILD)/generate/transitions: $(wildcard lib/octree/generate/*.[ch]) \
-		lib/octree/face_pieces.c lib/octree/leaf_place.c lib/octree/transition.h \
-		lib/quality/jens.c
+$(BUILD)/generate/transitions: $(wildcard lib/octree/transition/generate/*.[ch]) \
+		lib/octree/transition/face_pieces.c lib/octree/transition/leaf_place.c lib/octree/transition/transition.h \
+		lib/element/jens.c
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $(filter %.c,$^) $(LDFLAGS) $(LDLIBS)
 

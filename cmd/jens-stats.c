@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* jens-stats: how good tetrahedra, pyramids, wedges and hexahedra are, by J_ENS and other
  * measures, and whether they are proved to be valid. */
-#include "common/filter.h"
-#include "common/gnuplot.h"
-#include "common/jens_list.h"
-#include "common/jens_plot.h"
+#include "common/app/filter.h"
+#include "common/plot/gnuplot.h"
+#include "common/app/jens_list.h"
+#include "common/plot/jens_plot.h"
 
 #include "../lib/format/tetgen_orient.h"
 

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* lepp-improve: tetrahedra in, better tetrahedra out. */
-#include "common/filter.h"
-#include "common/tet_input.h"
+#include "common/app/filter.h"
+#include "common/input/tet_input.h"
 
 #include "../lib/base/json.h"
-#include "../lib/quality/tet_statistics.h"
-#include "../lib/tet/improve.h"
-#include "../lib/tet/lepp.h"
+#include "../lib/examine/tet_statistics.h"
+#include "../lib/tet/improve/improve.h"
+#include "../lib/tet/lepp/lepp.h"
 
 #include <stdlib.h>
 #include <string.h>

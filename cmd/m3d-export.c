@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* m3d-export: a stream as a mesh of the mixed-element octree mesher (.m3d). */
-#include "common/mesh_input.h"
+#include "common/input/mesh_input.h"
 
 #include "../lib/format/m3d.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* m3d-import: a mesh of the mixed-element octree mesher as a stream. */
-#include "common/import_file.h"
-#include "common/mesh_input.h"
+#include "common/input/import_file.h"
+#include "common/input/mesh_input.h"
 
 #include "../lib/format/m3d.h"
 

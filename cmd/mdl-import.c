@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* mdl-import: an .mdl surface as a stream. */
-#include "common/import_file.h"
-#include "common/mesh_input.h"
+#include "common/input/import_file.h"
+#include "common/input/mesh_input.h"
 
 #include "../lib/format/mdl.h"
-#include "../lib/format/surface_stream.h"
+#include "../lib/surface/surface_stream.h"
 
 static const struct option long_options[] = {FILTER_OPTIONS};
 

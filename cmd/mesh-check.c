@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* mesh-check: what is wrong with a mesh, as exit status and as a list. */
-#include "common/filter.h"
+#include "common/app/filter.h"
 
-#include "../lib/mixed/mixed_examine.h"
-#include "../lib/poly/poly_examine.h"
-#include "../lib/tet/examine.h"
+#include "../lib/examine/mixed_examine.h"
+#include "../lib/examine/poly_examine.h"
+#include "../lib/examine/tet_examine.h"
 
 #include <string.h>
 

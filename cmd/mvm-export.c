@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* mvm-export: a stream as a mixed volume mesh (.mvm). */
-#include "common/mesh_input.h"
+#include "common/input/mesh_input.h"
 
 #include "../lib/format/m3d.h"
 

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* oct-import: the octree of a restart file of the mixed-element octree mesher, with its
  * mesh and its surface, as a stream. */
-#include "common/import_file.h"
-#include "common/mesh_input.h"
+#include "common/input/import_file.h"
+#include "common/input/mesh_input.h"
 
 #include "../lib/format/m3d.h"
 #include "../lib/format/oct.h"
 #include "../lib/format/surface_format.h"
-#include "../lib/format/surface_stream.h"
+#include "../lib/surface/surface_stream.h"
 
 static const struct option options[] = {
     {"mesh", required_argument, NULL, 'm'},

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* octree-mesh: a closed surface in, hexahedra, wedges, pyramids and tetrahedra out. */
-#include "common/filter.h"
-#include "common/octree_rules.h"
-#include "common/surface_input.h"
+#include "common/app/filter.h"
+#include "common/input/octree_rules.h"
+#include "common/input/surface_input.h"
 
 #include "../lib/base/json.h"
-#include "../lib/octree/octree_mesh_stream.h"
-#include "../lib/octree/resolve.h"
-#include "../lib/quality/jens.h"
+#include "../lib/octree/layer/octree_mesh_stream.h"
+#include "../lib/octree/layer/adaptive_refinement.h"
+#include "../lib/element/jens.h"
 #include "../lib/surface/thin_place.h"
 
 #include <stdio.h>

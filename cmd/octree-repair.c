@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* octree-repair: a mesh with its octants and its surface in, the same with valid elements
  * out. */
-#include "common/filter.h"
-#include "common/repair_files.h"
-#include "common/surface_input.h"
+#include "common/app/filter.h"
+#include "common/app/repair_files.h"
+#include "common/input/surface_input.h"
 
 #include "../lib/base/json.h"
-#include "../lib/octree/repair.h"
-#include "../lib/octree/repair_stream.h"
+#include "../lib/octree/repair/repair.h"
+#include "../lib/octree/repair/repair_stream.h"
 
 #include <stdlib.h>
 #include <time.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* off-export: the boundary of a mesh, or all its faces, as an OFF file. */
-#include "common/mesh_input.h"
+#include "common/input/mesh_input.h"
 
 #include "../lib/format/off.h"
 

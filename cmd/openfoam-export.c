@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* openfoam-export: the cells of a stream as a polyMesh folder of OpenFOAM. */
-#include "common/mesh_input.h"
-#include "common/output_files.h"
+#include "common/input/mesh_input.h"
+#include "common/app/output_files.h"
 
 #include "../lib/base/file.h"
 #include "../lib/base/json.h"

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* poly-stats: how many polyhedra are simple and star-shaped, and how good they are. */
-#include "common/filter.h"
-#include "common/gnuplot.h"
-#include "common/poly_plot.h"
+#include "common/app/filter.h"
+#include "common/plot/gnuplot.h"
+#include "common/plot/poly_plot.h"
 
-#include "../lib/poly/poly_statistics.h"
+#include "../lib/examine/poly_statistics.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* polylla3d: tetrahedra in, polyhedra out. */
-#include "common/filter.h"
-#include "common/tet_input.h"
+#include "common/app/filter.h"
+#include "common/input/tet_input.h"
 
 #include "../lib/base/json.h"
 #include "../lib/poly/facets.h"

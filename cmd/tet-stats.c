@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* tet-stats: how good the tetrahedra of a mesh are, or of two meshes side by side. */
-#include "common/filter.h"
-#include "common/gnuplot.h"
-#include "common/tet_plot.h"
+#include "common/app/filter.h"
+#include "common/plot/gnuplot.h"
+#include "common/plot/tet_plot.h"
 
 #include "../lib/geom/predicates.h"
-#include "../lib/quality/tet_quality.h"
-#include "../lib/quality/tet_statistics.h"
+#include "../lib/element/tet_quality.h"
+#include "../lib/examine/tet_statistics.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* tetgen-export: a stream as TetGen's files. */
-#include "common/filter.h"
-#include "common/output_files.h"
+#include "common/app/filter.h"
+#include "common/app/output_files.h"
 
 #include "../lib/base/json.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* tetgen-import: TetGen's files as a stream. */
-#include "common/filter.h"
+#include "common/app/filter.h"
 
 #include "../lib/base/file.h"
 #include "../lib/base/json.h"

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* tetgen-mesh: tetrahedra of a surface or of points, made by TetGen. */
-#include "common/filter.h"
-#include "common/surface_input.h"
-#include "common/tetgen_run.h"
+#include "common/app/filter.h"
+#include "common/input/surface_input.h"
+#include "common/process/tetgen_run.h"
 
 #include "../lib/base/json.h"
-#include "../lib/format/surface_defects.h"
+#include "../lib/surface/surface_defects.h"
 #include "../lib/format/tetgen_orient.h"
 
 #include <float.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* visf-export: a stream as a ViSF file. */
-#include "common/mesh_input.h"
+#include "common/input/mesh_input.h"
 
 #include "../lib/format/visf.h"
 

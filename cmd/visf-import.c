@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* visf-import: a ViSF file as a stream. */
-#include "common/mesh_input.h"
+#include "common/input/mesh_input.h"
 
 #include "../lib/base/file.h"
 #include "../lib/format/visf.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* vtk-export: a stream as an unstructured grid in a legacy text file of VTK. */
-#include "common/mesh_input.h"
+#include "common/input/mesh_input.h"
 
 #include "../lib/format/vtk_legacy.h"
 

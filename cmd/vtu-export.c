@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* vtu-export: a stream as an unstructured grid of VTK. */
-#include "common/mesh_input.h"
+#include "common/input/mesh_input.h"
 
 #include "../lib/format/vtu.h"
 

@@ -2,9 +2,9 @@
 #include "getfem.h"
 
 #include "../base/array.h"
-#include "cell_faces.h"
-#include "point_table.h"
-#include "polygon_table.h"
+#include "../mesh/cell_faces.h"
+#include "../surface/point_table.h"
+#include "../mesh/polygon_table.h"
 #include "text_rows.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 #include "m3d.h"
 
 #include "../base/array.h"
-#include "cell_faces.h"
+#include "../mesh/cell_faces.h"
 #include "scan.h"
 #include "text_rows.h"
 

@@ -4,7 +4,7 @@
 
 #include "../base/array.h"
 #include "octant_triangles.h"
-#include "point_table.h"
+#include "../surface/point_table.h"
 #include "text_rows.h"
 
 #include <math.h>

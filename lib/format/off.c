@@ -2,7 +2,7 @@
 #include "off.h"
 
 #include "../base/array.h"
-#include "cell_faces.h"
+#include "../mesh/cell_faces.h"
 #include "scan.h"
 
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #include "openfoam.h"
 
 #include "../base/array.h"
-#include "cell_faces.h"
+#include "../mesh/cell_faces.h"
 
 #include <stdlib.h>
 #include <string.h>

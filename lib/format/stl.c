@@ -2,7 +2,7 @@
 #include "stl.h"
 
 #include "binary.h"
-#include "point_table.h"
+#include "../surface/point_table.h"
 #include "scan.h"
 
 #include <math.h>

@@ -7,7 +7,7 @@
 
 #include "../base/text.h"
 #include "../stream/stream.h"
-#include "surface_file.h"
+#include "../surface/surface_file.h"
 
 typedef enum tm_poly_kind { TM_POLY_NODE, TM_POLY_POLY, TM_POLY_SMESH } tm_poly_kind;
 

@@ -3,8 +3,8 @@
 
 #include "../base/array.h"
 #include "binary.h"
-#include "cell_orient.h"
-#include "polygon_table.h"
+#include "../mesh/cell_orient.h"
+#include "../mesh/polygon_table.h"
 #include "scan.h"
 
 #include <math.h>

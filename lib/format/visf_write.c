@@ -4,8 +4,8 @@
 #include "../base/array.h"
 #include "../base/number.h"
 #include "binary.h"
-#include "cell_faces.h"
-#include "polygon_edges.h"
+#include "../mesh/cell_faces.h"
+#include "../mesh/polygon_edges.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "vtk_legacy.h"
 
-#include "cell_faces.h"
+#include "../mesh/cell_faces.h"
 #include "text_rows.h"
-#include "vtk_cell_type.h"
+#include "../element/vtk_cell_type.h"
 
 #include <stdio.h>
 

@@ -3,10 +3,10 @@
 
 #include "../base/array.h"
 #include "../base/parallel.h"
-#include "../quality/tet_quality.h"
+#include "../element/tet_quality.h"
 #include "binary.h"
-#include "cell_faces.h"
-#include "vtk_cell_type.h"
+#include "../mesh/cell_faces.h"
+#include "../element/vtk_cell_type.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -5,7 +5,7 @@
 
 #include "../base/disjoint_sets.h"
 #include "../geom/vector.h"
-#include "../tet/ball.h"
+#include "../tet/operation/ball.h"
 
 #include <stdlib.h>
 

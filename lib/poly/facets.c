@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "facets.h"
 
-#include "../tet/ball.h"
+#include "../tet/operation/ball.h"
 
 #include <string.h>
 

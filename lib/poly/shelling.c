@@ -3,8 +3,8 @@
 
 #include "../base/array.h"
 #include "../geom/vector.h"
-#include "../tet/ball.h"
-#include "kernel.h"
+#include "../tet/operation/ball.h"
+#include "../geom/kernel.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 
 #include "../base/array.h"
 #include "../base/disjoint_sets.h"
-#include "../tet/ball.h"
+#include "../tet/operation/ball.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -5,7 +5,7 @@
 #ifndef TM_SURFACE_SURFACE_H
 #define TM_SURFACE_SURFACE_H
 
-#include "../format/surface_file.h"
+#include "surface_file.h"
 
 /* Sharp edges are chained to curves that end at corners: nodes where another number than
  * two sharp edges meet, or where two meet at a sharp angle that the next node of the

@@ -3,7 +3,7 @@
 #include "surface_parts.h"
 
 #include "../base/array.h"
-#include "../format/point_table.h"
+#include "point_table.h"
 
 #include <math.h>
 #include <stdlib.h>

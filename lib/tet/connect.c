@@ -4,8 +4,8 @@
 
 #include "../base/array.h"
 #include "../geom/predicates.h"
-#include "face_order.h"
-#include "face_pairs.h"
+#include "../mesh/face_order.h"
+#include "../mesh/face_pairs.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -10,7 +10,7 @@
 
 #include "../base/error.h"
 #include "../stream/stream.h"
-#include "edge_map.h"
+#include "../mesh/edge_map.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -2,7 +2,7 @@
 #include "mesh_measure.h"
 
 #include "../geom/vector.h"
-#include "../quality/tet_four.h"
+#include "../element/tet_four.h"
 #include "star.h"
 
 static uint8_t longest_edge(const tm_tet_mesh *mesh, uint32_t t)

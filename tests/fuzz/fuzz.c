@@ -9,11 +9,11 @@
  * Every FILTER_EVERY-th case goes through the filters: no signal, no report of a
  * sanitizer, no other exit status than 0, 1 and 3. No case may take longer than SECONDS.
  * TM_SEED repeats a run. The first case that fails is kept in a file. */
-#include "../../lib/mixed/mixed_examine.h"
-#include "../../lib/poly/poly_examine.h"
-#include "../../lib/poly/poly_statistics.h"
-#include "../../lib/tet/improve.h"
-#include "../../lib/tet/lepp.h"
+#include "../../lib/examine/mixed_examine.h"
+#include "../../lib/examine/poly_examine.h"
+#include "../../lib/examine/poly_statistics.h"
+#include "../../lib/tet/improve/improve.h"
+#include "../../lib/tet/lepp/lepp.h"
 #include "../unit/random.h"
 #include "damage.h"
 

@@ -2,8 +2,8 @@
 /* Certificates of known elements, and of random ones against the determinant at many
  * points of them. */
 #include "../../lib/geom/vector.h"
-#include "../../lib/quality/certify.h"
-#include "../../lib/quality/jens.h"
+#include "../../lib/element/certify.h"
+#include "../../lib/element/jens.h"
 #include "random.h"
 
 #include <setjmp.h>

@@ -2,8 +2,8 @@
 /* The Delaunay property, and insertion that keeps it: against brute force on small
  * meshes, with cospherical nodes, regions, faces and edges that have to stay, and on
  * meshes that are not Delaunay. */
-#include "../../lib/tet/delaunay.h"
-#include "../../lib/tet/lepp.h"
+#include "../../lib/tet/operation/delaunay.h"
+#include "../../lib/tet/lepp/lepp.h"
 #include "tet_fixture.h"
 
 static bool sphere_holds(const tm_tet_mesh *mesh, const uint32_t n[4], uint32_t v)

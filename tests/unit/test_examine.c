@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Every defect on the smallest mesh that has it; meshes of known shape. */
 #include "../../lib/base/sum.h"
-#include "../../lib/tet/examine.h"
+#include "../../lib/examine/tet_examine.h"
 #include "cube_mesh.h"
 #include "random.h"
 

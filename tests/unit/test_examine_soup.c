@@ -2,7 +2,7 @@
 /* Random tetrahedra, triangles and edges on few nodes, wrong in all ways at once: every
  * count agrees with one that is made plainly from the definition. */
 #include "../../lib/geom/predicates.h"
-#include "../../lib/tet/examine.h"
+#include "../../lib/examine/tet_examine.h"
 #include "random.h"
 
 #include <setjmp.h>

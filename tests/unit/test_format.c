@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The readers of foreign surface formats: one pyramid from each, how formats are told
  * apart, and what they say of files that are wrong. */
-#include "../../lib/format/surface_defects.h"
+#include "../../lib/surface/surface_defects.h"
 #include "../../lib/format/tetgen_poly.h"
 #include "format_samples.h"
 

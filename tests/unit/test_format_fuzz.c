@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* No input makes a reader of foreign formats crash or return a surface that is not one:
  * every beginning of a good file, and good files with bytes changed. */
-#include "../../lib/format/cell_faces.h"
+#include "../../lib/mesh/cell_faces.h"
 #include "../../lib/format/m3d.h"
 #include "../../lib/format/oct.h"
 #include "../../lib/format/tetgen_rows.h"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The improver: the mesh is checked in full after each operation on small random meshes,
  * and what must not change is compared. */
-#include "../../lib/quality/tet_quality.h"
-#include "../../lib/tet/improve_engine.h"
+#include "../../lib/element/tet_quality.h"
+#include "../../lib/tet/improve/improve_engine.h"
 #include "tet_fixture.h"
 
 enum { GRID = 3 };

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Scaled Jacobians and J_ENS of elements with known ones; slopes against differences. */
 #include "../../lib/geom/vector.h"
-#include "../../lib/quality/jens.h"
+#include "../../lib/element/jens.h"
 #include "random.h"
 
 #include <setjmp.h>

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Buckets and their edges, aspect ratios and Verdict's measures of elements with known
  * ones, and the same statistics on any number of threads. */
-#include "../../lib/quality/aspect_ratio.h"
-#include "../../lib/quality/jens.h"
-#include "../../lib/quality/jens_statistics.h"
-#include "../../lib/quality/verdict.h"
+#include "../../lib/element/aspect_ratio.h"
+#include "../../lib/element/jens.h"
+#include "../../lib/examine/jens_statistics.h"
+#include "../../lib/element/verdict.h"
 #include "random.h"
 
 #include <setjmp.h>

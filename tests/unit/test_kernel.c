@@ -2,7 +2,7 @@
 /* The largest ball between planes: known ones, and random planes against all sets of
  * four; at any size and place, with planes twice and coplanar ones, and none at all. */
 #include "../../lib/geom/vector.h"
-#include "../../lib/poly/kernel.h"
+#include "../../lib/geom/kernel.h"
 #include "random.h"
 
 #include <math.h>

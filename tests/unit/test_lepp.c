@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* LEPP improvement: what no option may change, where it ends, and degenerate meshes. */
-#include "../../lib/tet/lepp.h"
+#include "../../lib/tet/lepp/lepp.h"
 #include "tet_fixture.h"
 
 static const tm_lepp_options usual = {.algorithm = TM_LEPP_SELECTIVE,

@@ -3,10 +3,10 @@
  * be; random divisions of cubes, which are good. test_mixed_soup.c has what is wrong in
  * many ways at once. */
 #include "../../lib/geom/vector.h"
-#include "../../lib/mixed/mixed_examine.h"
-#include "../../lib/mixed/mixed_shape.h"
-#include "../../lib/quality/jens.h"
-#include "../../lib/mixed/mixed_volume.h"
+#include "../../lib/examine/mixed_examine.h"
+#include "../../lib/element/shape.h"
+#include "../../lib/element/jens.h"
+#include "../../lib/examine/mixed_volume.h"
 #include "random.h"
 
 #include <math.h>

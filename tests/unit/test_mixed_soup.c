@@ -2,8 +2,8 @@
 /* Random mixed elements, triangles, facets and edges on few nodes, wrong in all ways at
  * once: every count agrees with one that is made plainly from the definition. */
 #include "../../lib/geom/predicates.h"
-#include "../../lib/mixed/mixed_examine.h"
-#include "../../lib/mixed/mixed_shape.h"
+#include "../../lib/examine/mixed_examine.h"
+#include "../../lib/element/shape.h"
 #include "random.h"
 
 #include <math.h>

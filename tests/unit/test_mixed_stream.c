@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Mixed meshes out of streams and back. */
-#include "../../lib/mixed/mixed_stream.h"
+#include "../../lib/mesh/mixed_stream.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Octrees over ellipsoids: against the leaves that plain splitting until nothing is left
  * to split gives, and against what octree.h promises. */
-#include "../../lib/octree/brick.h"
-#include "../../lib/octree/mpi_start.h"
-#include "../../lib/octree/octree.h"
-#include "../../lib/octree/octree_stream.h"
+#include "../../lib/octree/forest/brick.h"
+#include "../../lib/octree/forest/mpi_start.h"
+#include "../../lib/octree/forest/octree.h"
+#include "../../lib/octree/forest/octree_stream.h"
 #include "random.h"
 
 #include <math.h>

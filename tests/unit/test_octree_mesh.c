@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whole meshes: what is sharp at turned boxes, and whether the elements of random solids
  * are valid, fit together, and end on the surface. */
-#include "../../lib/mixed/mixed_examine.h"
-#include "../../lib/octree/resolve.h"
-#include "../../lib/quality/jens.h"
+#include "../../lib/examine/mixed_examine.h"
+#include "../../lib/octree/layer/adaptive_refinement.h"
+#include "../../lib/element/jens.h"
 #include "octree_fixture.h"
 
 #include <stdlib.h>

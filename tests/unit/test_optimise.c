@@ -2,9 +2,9 @@
 /* Grids of cubes, divided into elements of all kinds, whose nodes are thrown about: no
  * element stays inverted, none becomes bad, and nodes of the boundary stay on it. */
 #include "../../lib/geom/vector.h"
-#include "../../lib/mixed/optimise.h"
-#include "../../lib/mixed/optimise_surface.h"
-#include "../../lib/quality/jens.h"
+#include "../../lib/optimise/optimise.h"
+#include "../../lib/optimise/optimise_surface.h"
+#include "../../lib/element/jens.h"
 #include "../../lib/stream/stream.h"
 #include "random.h"
 

@@ -2,10 +2,10 @@
 /* Polyhedra out of tetrahedra: the complete test for balls against a slow one, and what
  * every partition of small random meshes promises. */
 #include "../../lib/poly/facets.h"
-#include "../../lib/poly/kernel.h"
+#include "../../lib/geom/kernel.h"
 #include "../../lib/poly/partition.h"
 #include "../../lib/poly/simple.h"
-#include "../../lib/tet/ball.h"
+#include "../../lib/tet/operation/ball.h"
 #include "../../lib/tet/mesh_order.h"
 #include "tet_fixture.h"
 

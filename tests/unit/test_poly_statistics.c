@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Volumes of kernels against what they must add up to; shapes that are known; statistics
  * of meshes of which all is known. */
-#include "../../lib/poly/kernel.h"
-#include "../../lib/poly/kernel_volume.h"
-#include "../../lib/poly/poly_shape.h"
-#include "../../lib/poly/poly_statistics.h"
+#include "../../lib/geom/kernel.h"
+#include "../../lib/geom/kernel_volume.h"
+#include "../../lib/examine/poly_shape.h"
+#include "../../lib/examine/poly_statistics.h"
 #include "random.h"
 #include "voxels.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files of boxes and of octants: good ones, wrong ones, and damaged ones. */
-#include "../../lib/octree/rule_files.h"
+#include "../../lib/octree/forest/rule_files.h"
 #include "random.h"
 
 #include <math.h>

@@ -2,9 +2,9 @@
 /* What smoothing is made of: slopes against differences, the shortest vector against a
  * slow method that cannot be wrong, and climbs to optima that are known. */
 #include "../../lib/geom/vector.h"
-#include "../../lib/quality/tet_slope.h"
-#include "../../lib/tet/shortest_vector.h"
-#include "../../lib/tet/smoothing.h"
+#include "../../lib/element/tet_slope.h"
+#include "../../lib/tet/operation/shortest_vector.h"
+#include "../../lib/tet/operation/smoothing.h"
 #include "random.h"
 
 #include <math.h>

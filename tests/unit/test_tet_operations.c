@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The mesh, stars, edge removal and insertion: the mesh is checked in full before and
  * after each of many random operations. */
-#include "../../lib/tet/edge_removal.h"
-#include "../../lib/tet/star_insertion.h"
+#include "../../lib/tet/operation/edge_removal.h"
+#include "../../lib/tet/operation/star_insertion.h"
 #include "tet_fixture.h"
 
 enum { OPERATIONS = 400, GRID = 3, EDGES = 6 };

@@ -3,9 +3,9 @@
  * ones against each other. */
 #include "../../lib/geom/predicates.h"
 #include "../../lib/geom/vector.h"
-#include "../../lib/quality/tet_four.h"
-#include "../../lib/quality/tet_gain.h"
-#include "../../lib/quality/tet_quality.h"
+#include "../../lib/element/tet_four.h"
+#include "../../lib/element/tet_gain.h"
+#include "../../lib/element/tet_quality.h"
 #include "random.h"
 
 #include <math.h>

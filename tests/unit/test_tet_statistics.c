@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Statistics of meshes with known ones; the same for every number of threads. */
 #include "../../lib/base/parallel.h"
-#include "../../lib/quality/tet_quality.h"
-#include "../../lib/quality/tet_statistics.h"
+#include "../../lib/element/tet_quality.h"
+#include "../../lib/examine/tet_statistics.h"
 #include "random.h"
 
 #include <math.h>

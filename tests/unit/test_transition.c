@@ -2,8 +2,8 @@
 /* The division of a leaf in every state that occurs: the elements fill the cube and
  * nothing else, face to face, their faces on its sides are those of the face rule, none
  * is inverted anywhere, and none is worse than J_ENS 0.36 or the star's worst. */
-#include "../../lib/octree/octree.h"
-#include "../../lib/octree/transition.h"
+#include "../../lib/octree/forest/octree.h"
+#include "../../lib/octree/transition/transition.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -4,7 +4,7 @@
 #ifndef TESTS_UNIT_VOXELS_H
 #define TESTS_UNIT_VOXELS_H
 
-#include "../../lib/poly/poly_arrays.h"
+#include "../../lib/mesh/poly_arrays.h"
 
 #include <stdlib.h>
 #include <string.h>

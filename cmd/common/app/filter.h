@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What every filter does alike: the shared options, input and output, messages, exit
+ * statuses. A filter's main() reads:
+ *
+ *     filter_start(&filter, argc, argv);
+ *     while ((c = filter_option(&filter)) != -1)   the filter's own options, if any
+ *         switch (c) { … default: filter_usage_error(&filter, …); }
+ *     filter_operands(&filter);
+ *     filter_read(&filter, &stream);               exits on failure
+ *     …
+ *     filter_write(&filter, &stream, "what was done");
+ *     return filter_finish(&filter, 0);
+ *
+ * Functions that fail print one line on stderr and exit with the status of cli.md. */
+#ifndef CMD_COMMON_FILTER_H
+#define CMD_COMMON_FILTER_H
+
+#include "../../../lib/base/error.h"
+#include "../../../lib/base/text.h"
+#include "../../../lib/stream/stream.h"
+#include "output_files.h"
+
+#include <getopt.h>
+#include <stdbool.h>
+#include <stdio.h>
+
+enum { EXIT_GOAL = 1, EXIT_USAGE = 2 };
+
+/* The long options of every filter and their letters; a filter's table ends with it. */
+/* clang-format off */
+#define FILTER_OPTIONS \
+    {"help", no_argument, NULL, 'h'}, \
+    {"version", no_argument, NULL, 'V'}, \
+    {"output", required_argument, NULL, 'o'}, \
+    {"quiet", no_argument, NULL, FILTER_QUIET}, \
+    {"verbose", no_argument, NULL, 'v'}, \
+    {"json", required_argument, NULL, FILTER_JSON}, \
+    {"no-history", no_argument, NULL, FILTER_NO_HISTORY}, \
+    {"threads", required_argument, NULL, FILTER_THREADS}, \
+    {NULL, 0, NULL, 0}
+/* clang-format on */
+#define FILTER_LETTERS       "hVo:vqj:"
+#define FILTER_LETTERS_NOT_J "hVo:vq" /* where j_is_own */
+
+enum {
+    FILTER_JSON = 256,
+    FILTER_QUIET,
+    FILTER_NO_HISTORY,
+    FILTER_THREADS,
+    FILTER_OWN = 512 /* a filter numbers its own long-only options from here */
+};
+
+typedef struct filter {
+    /* set by the filter */
+    const char *name;             /* "lepp-improve" */
+    const char *synopsis;         /* "[-m FACTOR] … [FILE]" */
+    const char *purpose;          /* one line for --help */
+    const char *help;             /* the filter's own options, a line each, for --help */
+    const struct option *options; /* its own, then FILTER_OPTIONS */
+    const char *letters;          /* getopt's, its own + FILTER_LETTERS */
+    bool json_is_output;          /* --json - is stdout: the *-stats and mesh-check */
+    bool q_is_own;                /* -q is the filter's; quiet is --quiet only */
+    bool j_is_own;                /* -j is the filter's; threads are --threads only */
+    /* set from the command line */
+    int argc;
+    char **argv;
+    const char *input;  /* NULL: standard input */
+    const char *output; /* NULL: standard output */
+    const char *json;   /* NULL: none */
+    int verbosity;      /* -1 quiet, 0, 1 verbose */
+    bool history;
+    unsigned threads;
+    tm_text command;     /* the options as given, for the history */
+    output_files *files; /* -o FILE in the making */
+} filter;
+
+void filter_start(filter *f, int argc, char **argv);
+
+/* The next option that is the filter's own, or -1 after the last. */
+int filter_option(filter *f);
+
+/* Takes the rest of the command line: at most one FILE. With no FILE (or "-") standard
+ * input is read; if that is a terminal: usage, exit 2. */
+void filter_operands(filter *f);
+
+/* Option arguments as numbers in lo..hi, else a usage error that names the option. */
+double filter_number(const filter *f, const char *option, const char *text, double lo,
+                     double hi);
+long filter_integer(const filter *f, const char *option, const char *text, long lo,
+                    long hi);
+
+/* An option argument as its place in a list of words, else a usage error. */
+int filter_word(const filter *f, const char *option, const char *const *word, int count,
+                const char *given);
+
+/* "name: message", then exit 2, pointing to --help. */
+_Noreturn void filter_usage_error(const filter *f, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/* "name: file:line: block: what", then exit with error->status. */
+_Noreturn void filter_fail(const filter *f, const tm_error *error);
+
+/* One line on stderr, "name: …": note() unless -q, verbose() with -v only. */
+void filter_note(const filter *f, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+void filter_verbose(const filter *f, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/* The input's name for messages: the file, or "<stdin>". */
+const char *filter_input_name(const filter *f);
+
+/* Opens FILE or standard input; the descriptor is the caller's to close. */
+int filter_open_input(const filter *f);
+
+/* Opens where the output goes: standard output, or a temporary file beside -o FILE
+ * that filter_finish() renames, so that FILE is whole or not there. */
+int filter_open_output(filter *f);
+
+/* Reads the stream from FILE or standard input. */
+void filter_read(const filter *f, tm_stream *stream);
+
+/* Adds the history line "name version options: summary" (unless --no-history) and
+ * writes the stream to the output. summary is a printf format. */
+void filter_write(filter *f, tm_stream *stream, const char *summary, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* Writes a text (a table, JSON) to the output, or JSON to where --json says. */
+void filter_write_text(filter *f, const tm_text *text);
+void filter_write_json(filter *f, const tm_text *text);
+
+/* Ends the program after text on standard output, which must have arrived. */
+_Noreturn void filter_exit_after_text(const filter *f);
+
+/* Closes and checks standard output, puts -o FILE in place. Returns status for main(). */
+int filter_finish(filter *f, int status);
+
+#endif

@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "output_files.h"
+
+#include "../../../lib/base/file.h"
+#include "../process/private_signals.h"
+
+#include <errno.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <fcntl.h>
+#include <unistd.h>
+
+static tm_status fail_file(const char *name, tm_error *error)
+{
+    return tm_fail_at(error, TM_ERROR_SYSTEM, name, 0, NULL, "cannot write: %s",
+                      strerror(errno));
+}
+
+static void free_file(output_file *file)
+{
+    free(file->name);
+    free(file->temporary);
+}
+
+/* Makes NAME.XXXXXX; -1 with errno where that fails. */
+static int make_temporary(output_file *file, const struct stat *old)
+{
+    tm_text text = {0};
+    tm_text_format(&text, "%s.XXXXXX", file->name);
+    file->temporary = text.byte;
+    errno = ENOMEM;
+    int fd = text.failed ? -1 : mkostemp(file->temporary, O_CLOEXEC);
+    if (fd < 0)
+        return -1;
+    const mode_t everyone = S_IRUSR | S_IWUSR | S_IRGRP | S_IWGRP | S_IROTH | S_IWOTH;
+    mode_t mask = umask(0);
+    umask(mask);
+    fchmod(fd, old ? old->st_mode & everyone : everyone & ~mask);
+    return fd;
+}
+
+static int open_file(output_file *file)
+{
+    struct stat old;
+    bool exists = stat(file->name, &old) == 0;
+    if (exists && !S_ISREG(old.st_mode))
+        return open(file->name, O_WRONLY | O_CLOEXEC);
+    return make_temporary(file, exists ? &old : NULL);
+}
+
+tm_status output_files_make_folder(output_files *files, const char *name, tm_error *error)
+{
+    const mode_t everyone = S_IRWXU | S_IRWXG | S_IRWXO;
+    char *folder = strdup(name);
+    if (!folder)
+        return tm_fail_memory(error);
+    private_signals_hold();
+    if (mkdir(name, everyone) == 0) {
+        files->folder = folder;
+        return TM_OK;
+    }
+    tm_status status = TM_OK;
+    if (errno != EEXIST)
+        status = tm_fail_at(error, TM_ERROR_SYSTEM, name, 0, NULL,
+                            "cannot make the folder: %s", strerror(errno));
+    free(folder);
+    private_signals_release();
+    return status;
+}
+
+tm_status output_files_open(output_files *files, const char *name, int *fd,
+                            tm_error *error)
+{
+    output_file *grown = realloc(files->file, (files->count + 1) * sizeof *files->file);
+    if (!grown)
+        return tm_fail_memory(error);
+    files->file = grown;
+    output_file file = {strdup(name), NULL, -1};
+    if (!file.name)
+        return tm_fail_memory(error);
+    if (files->count == 0)
+        private_signals_hold();
+    file.fd = open_file(&file);
+    if (file.fd < 0) {
+        tm_status status = fail_file(name, error);
+        free_file(&file);
+        if (files->count == 0)
+            private_signals_release();
+        return status;
+    }
+    *fd = file.fd;
+    files->file[files->count++] = file;
+    return TM_OK;
+}
+
+/* Forgets the files; a signal that waited takes its course. */
+static void release(output_files *files)
+{
+    for (size_t i = 0; i < files->count; i++)
+        free_file(&files->file[i]);
+    free(files->file);
+    const int held = (files->count > 0) + (files->folder != NULL);
+    free(files->folder);
+    *files = (output_files){0};
+    for (int i = 0; i < held; i++)
+        private_signals_release();
+}
+
+void output_files_abandon(output_files *files)
+{
+    for (size_t i = 0; i < files->count; i++) {
+        if (files->file[i].fd >= 0)
+            close(files->file[i].fd);
+        if (files->file[i].temporary)
+            unlink(files->file[i].temporary);
+        if (files->folder)
+            unlink(files->file[i].name);
+    }
+    if (files->folder)
+        rmdir(files->folder);
+    release(files);
+}
+
+static tm_status close_all(output_files *files, tm_error *error)
+{
+    tm_status status = TM_OK;
+    for (size_t i = 0; i < files->count; i++) {
+        if (close(files->file[i].fd) != 0 && status == TM_OK)
+            status = fail_file(files->file[i].name, error);
+        files->file[i].fd = -1;
+    }
+    return status;
+}
+
+tm_status output_files_finish(output_files *files, tm_error *error)
+{
+    tm_status status = close_all(files, error);
+    if (status == TM_OK && private_signals_came())
+        status = tm_fail(error, TM_ERROR_SYSTEM, "interrupted");
+    for (size_t i = 0; i < files->count && status == TM_OK; i++)
+        if (files->file[i].temporary &&
+            rename(files->file[i].temporary, files->file[i].name) != 0)
+            status = fail_file(files->file[i].name, error);
+    if (status == TM_OK)
+        release(files);
+    else
+        output_files_abandon(files);
+    return status;
+}
+
+tm_status output_file_write(const char *name, const tm_text *text, tm_error *error)
+{
+    output_files files = {0};
+    int fd = -1;
+    tm_status status = text->failed ? tm_fail_memory(error)
+                                    : output_files_open(&files, name, &fd, error);
+    if (status == TM_OK) {
+        status = tm_write_all(fd, text->byte ? text->byte : "", text->size, error);
+        if (status == TM_OK)
+            return output_files_finish(&files, error);
+        snprintf(error->file, sizeof error->file, "%s", name);
+    }
+    output_files_abandon(&files);
+    return status;
+}

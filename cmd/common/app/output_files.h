@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Files as the output of a filter: each is written beside its name first, with the mode
+ * that the shell would give, and they get their names when all are whole. Before that an
+ * error, or SIGINT, SIGTERM or SIGHUP, leaves none. What is there already and is no
+ * regular file, a device or a named pipe, is written directly. */
+#ifndef CMD_COMMON_OUTPUT_FILES_H
+#define CMD_COMMON_OUTPUT_FILES_H
+
+#include "../../../lib/base/error.h"
+#include "../../../lib/base/text.h"
+
+#include <stddef.h>
+
+typedef struct output_file {
+    char *name;
+    char *temporary; /* NULL: written directly */
+    int fd;
+} output_file;
+
+/* Begins as {0}. */
+typedef struct output_files {
+    size_t count;
+    output_file *file;
+    char *folder; /* that was made for them, or NULL */
+} output_files;
+
+/* Makes the folder that the files will be in, unless it is there. One for a set, before
+ * its files. Where the set is abandoned, a folder that was made is gone, too. */
+tm_status output_files_make_folder(output_files *files, const char *name,
+                                   tm_error *error);
+
+/* Begins a file; *fd is for writing. */
+tm_status output_files_open(output_files *files, const char *name, int *fd,
+                            tm_error *error);
+
+/* Closes all and gives them their names. */
+tm_status output_files_finish(output_files *files, tm_error *error);
+
+/* Removes all that was begun. */
+void output_files_abandon(output_files *files);
+
+/* A text as one file. */
+tm_status output_file_write(const char *name, const tm_text *text, tm_error *error);
+
+#endif

@@ -1,0 +1,191 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "surface_input.h"
+
+#include "../../../lib/base/file.h"
+#include "../../../lib/mesh/cell_faces.h"
+#include "../../../lib/format/tetgen_poly.h"
+#include "import_file.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+/* The name with .node for its suffix. */
+static void node_file(const char *name, tm_text *file)
+{
+    const char *dot = strrchr(name, '.');
+    tm_text_append(file, name, dot ? (size_t)(dot - name) : strlen(name));
+    tm_text_string(file, ".node");
+}
+
+/* The nodes of a .poly or .smesh file that has none itself. */
+static tm_status read_nodes_beside(const filter *f, tm_polygon_surface *surface,
+                                   tm_error *error)
+{
+    if (!f->input)
+        return tm_fail_at(error, TM_ERROR_INPUT, filter_input_name(f), 0, NULL,
+                          "has no nodes: they are in a .node file beside it, which is "
+                          "looked for when the file is named as an operand");
+    tm_text file = {0}, bytes = {0};
+    node_file(f->input, &file);
+    tm_status status =
+        file.failed ? tm_fail_memory(error) : import_file(file.byte, &bytes, error);
+    if (status == TM_OK)
+        status =
+            tm_poly_read(surface, TM_POLY_NODE, bytes.byte, bytes.size, file.byte, error);
+    tm_text_free(&file);
+    tm_text_free(&bytes);
+    return status;
+}
+
+/* The stream in these bytes: they are put where tm_stream_read() can read them. */
+static tm_status read_stream(const tm_text *bytes, const char *name, tm_stream *stream,
+                             tm_error *error)
+{
+    int fd = memfd_create("stream", MFD_CLOEXEC);
+    if (fd < 0)
+        return tm_fail(error, TM_ERROR_SYSTEM, "cannot hold the input: %s",
+                       strerror(errno));
+    tm_status status = tm_write_all(fd, bytes->byte, bytes->size, error);
+    if (status == TM_OK && lseek(fd, 0, SEEK_SET) != 0)
+        status =
+            tm_fail(error, TM_ERROR_SYSTEM, "cannot hold the input: %s", strerror(errno));
+    if (status == TM_OK)
+        status = tm_stream_read(stream, fd, name, error);
+    close(fd);
+    return status;
+}
+
+static tm_status copy_nodes(const tm_block *node, tm_polygon_surface *surface,
+                            tm_error *error)
+{
+    tm_stream copy;
+    tm_stream_init(&copy);
+    tm_block *block = tm_stream_add(&copy, node->name);
+    if (!block)
+        return tm_fail_memory(error);
+    block->attributes = node->attributes;
+    block->markers = node->markers;
+    tm_status status = tm_block_allocate(block, node->count, 0, error);
+    if (status == TM_OK) {
+        memcpy(block->real, node->real, node->count * 3 * sizeof *node->real);
+        if (node->attribute)
+            memcpy(block->attribute, node->attribute,
+                   node->count * node->attributes * sizeof *node->attribute);
+        if (node->marker)
+            memcpy(block->marker, node->marker, node->count * sizeof *node->marker);
+        status = tm_polygon_surface_take_nodes(surface, block, error);
+    }
+    tm_stream_free(&copy);
+    return status;
+}
+
+/* A main mesh that is triangles alone becomes the part `surface`, unless there is one. */
+static void rename_surface(tm_stream *stream)
+{
+    if (tm_stream_find(stream, "surface.node") ||
+        tm_stream_find(stream, "surface.face") ||
+        tm_content_of(stream) != TM_CONTENT_SURFACE)
+        return;
+    strcpy(tm_stream_find(stream, ".node")->name, "surface.node");
+    strcpy(tm_stream_find(stream, ".face")->name, "surface.face");
+}
+
+tm_status surface_input_of_stream(const tm_stream *stream, const char *name,
+                                  tm_polygon_surface *surface, tm_error *error)
+{
+    const tm_block *node = tm_stream_find(stream, "surface.node");
+    const tm_block *face = tm_stream_find(stream, "surface.face");
+    if (!node)
+        return tm_fail_at(error, TM_ERROR_INPUT, name, 0, "surface.node",
+                          "the stream has no such block (the surface would be in it and "
+                          "surface.face, or in .node and .face alone)");
+    surface->base = stream->base;
+    tm_status status = copy_nodes(node, surface, error);
+    if (status == TM_OK && face)
+        status = tm_polygon_surface_add_faces(surface, face, error);
+    return status;
+}
+
+tm_format surface_input_read(const filter *f, tm_polygon_surface *surface,
+                             tm_stream *stream)
+{
+    tm_error error;
+    tm_text bytes = {0};
+    const char *name = filter_input_name(f);
+    tm_polygon_surface_init(surface);
+    tm_stream_init(stream);
+    int fd = filter_open_input(f);
+    tm_status status = tm_read_all(fd, name, &bytes, &error);
+    if (f->input)
+        close(fd);
+    tm_format format = TM_FORMAT_UNKNOWN;
+    if (status == TM_OK)
+        format = tm_format_of(bytes.byte, bytes.size, name);
+    if (format == TM_FORMAT_STREAM) {
+        status = read_stream(&bytes, name, stream, &error);
+        if (status == TM_OK) {
+            rename_surface(stream);
+            status = surface_input_of_stream(stream, name, surface, &error);
+        }
+    } else if (status == TM_OK) {
+        if ((format == TM_FORMAT_POLY || format == TM_FORMAT_SMESH) &&
+            tm_poly_lacks_nodes(bytes.byte, bytes.size))
+            status = read_nodes_beside(f, surface, &error);
+        if (status == TM_OK)
+            status =
+                tm_format_read(surface, format, bytes.byte, bytes.size, name, &error);
+    }
+    tm_text_free(&bytes);
+    if (status != TM_OK)
+        filter_fail(f, &error);
+    filter_verbose(f, "%s: %s, %zu nodes, %zu faces", name, tm_format_name(format),
+                   surface->nodes, surface->facets);
+    return format;
+}
+
+/* What was found and mended in the surface. */
+static void note_mending(const filter *f, const tm_surface *s)
+{
+    const char *name = filter_input_name(f);
+    if (s->turned)
+        filter_note(f, "%s: triangles were turned, so that all look outward", name);
+    if (s->duplicates)
+        filter_note(f, "%s: %zu triangles were there twice and are dropped", name,
+                    s->duplicates);
+    if (s->flat)
+        filter_note(f, "%s: %zu triangles without area are dropped", name, s->flat);
+    if (s->open_edges)
+        filter_note(f, "%s: the surface is open at %zu edges", name, s->open_edges);
+    if (s->rough)
+        filter_note(
+            f, "%s: the surface is rough all over: no edge of it is kept as sharp", name);
+    if (s->crossings)
+        filter_note(f, "%s: the surface crosses itself at %zu pairs of triangles", name,
+                    s->crossings);
+}
+
+void surface_input_build(const filter *f, const tm_surface_options *options,
+                         tm_surface *surface, tm_stream *history)
+{
+    tm_polygon_surface polygons;
+    tm_stream stream;
+    tm_error error;
+    surface_input_read(f, &polygons, &stream);
+    if (tm_surface_build(surface, &polygons, options, &error) != TM_OK) {
+        if (!error.file[0])
+            snprintf(error.file, sizeof error.file, "%s", filter_input_name(f));
+        filter_fail(f, &error);
+    }
+    tm_polygon_surface_free(&polygons);
+    if (history) {
+        tm_stream_init(history);
+        history->base = stream.base;
+        history->history = stream.history;
+        stream.history = (tm_text){0};
+    }
+    tm_stream_free(&stream);
+    note_mending(f, surface);
+}

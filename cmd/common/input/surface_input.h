@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A filter's input where that is a surface: a foreign file of any format that is read,
+ * or the part `surface` of a stream, or a stream whose main mesh is a surface. */
+#ifndef CMD_COMMON_SURFACE_INPUT_H
+#define CMD_COMMON_SURFACE_INPUT_H
+
+#include "../../../lib/format/surface_format.h"
+#include "../../../lib/surface/surface.h"
+#include "../app/filter.h"
+
+/* Reads FILE or standard input; exits on failure. Of a stream, its blocks and history
+ * are in *stream, and surface.node and surface.face in *surface as well; where it has
+ * none of them and is .node and .face alone, these have become they. Else *stream is
+ * empty. The nodes of a .poly or .smesh file may be in the .node file beside it. */
+tm_format surface_input_read(const filter *f, tm_polygon_surface *surface,
+                             tm_stream *stream);
+
+/* Reads it and makes a closed surface of it, with a note about what had to be mended;
+ * exits on failure. Of a stream, *history gets its history; history may be NULL. */
+void surface_input_build(const filter *f, const tm_surface_options *options,
+                         tm_surface *surface, tm_stream *history);
+
+/* Copies surface.node and surface.face of a stream to *surface, which is initialised.
+ * TM_ERROR_INPUT where there is no surface.node. */
+tm_status surface_input_of_stream(const tm_stream *stream, const char *name,
+                                  tm_polygon_surface *surface, tm_error *error);
+
+#endif

@@ -1,0 +1,144 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "run_program.h"
+
+#include "../../../lib/base/file.h"
+#include "private_signals.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <termios.h>
+#include <unistd.h>
+
+/* A pair of descriptors: what is written to `write` can be read from `read`. */
+typedef struct {
+    int read;
+    int write;
+} channel;
+
+static bool open_pipe(channel *c)
+{
+    int fd[2];
+    if (pipe2(fd, O_CLOEXEC) != 0)
+        return false;
+    *c = (channel){fd[0], fd[1]};
+    return true;
+}
+
+/* A terminal that passes bytes on as they are. */
+static bool open_terminal(channel *c)
+{
+    enum { NAME = 128 };
+    char name[NAME];
+    struct termios mode;
+    c->write = -1;
+    c->read = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+    if (c->read < 0)
+        return false;
+    if (grantpt(c->read) == 0 && unlockpt(c->read) == 0 &&
+        ptsname_r(c->read, name, sizeof name) == 0)
+        c->write = open(name, O_RDWR | O_NOCTTY | O_CLOEXEC);
+    if (c->write >= 0 && tcgetattr(c->write, &mode) == 0) {
+        cfmakeraw(&mode);
+        if (tcsetattr(c->write, TCSANOW, &mode) == 0)
+            return true;
+    }
+    if (c->write >= 0)
+        close(c->write);
+    close(c->read);
+    return false;
+}
+
+/* In the new process: never returns. */
+_Noreturn static void become(char *const argv[], int output, int failure)
+{
+    setpgid(0, 0);
+    int nothing = open("/dev/null", O_RDONLY);
+    if (nothing >= 0 && dup2(nothing, STDIN_FILENO) >= 0 &&
+        dup2(output, STDOUT_FILENO) >= 0 && dup2(output, STDERR_FILENO) >= 0) {
+        private_signals_unblock();
+        execvp(argv[0], argv);
+    }
+    int cause = errno;
+    (void)!write(failure, &cause, sizeof cause);
+    _exit(EXIT_FAILURE);
+}
+
+/* Reads until no process can write any more; a terminal says so by EIO. */
+static tm_status listen_to(int fd, tm_text *output, tm_error *error)
+{
+    enum { STEP = 4096 };
+    char bytes[STEP];
+    for (;;) {
+        ptrdiff_t got = tm_read_some(fd, bytes, sizeof bytes);
+        if (got == 0 || (got < 0 && errno == EIO))
+            return TM_OK;
+        if (got < 0)
+            return tm_fail(error, TM_ERROR_SYSTEM, "cannot read from a program: %s",
+                           strerror(errno));
+        tm_text_append(output, bytes, (size_t)got);
+    }
+}
+
+static tm_status wait_for(pid_t child, program_end *end, tm_error *error)
+{
+    int status;
+    while (waitpid(child, &status, 0) < 0)
+        if (errno != EINTR)
+            return tm_fail(error, TM_ERROR_SYSTEM, "cannot wait for a program: %s",
+                           strerror(errno));
+    if (WIFSIGNALED(status))
+        end->signal = WTERMSIG(status);
+    else
+        end->exit_status = WEXITSTATUS(status);
+    return TM_OK;
+}
+
+static pid_t start(char *const argv[], const channel *output, const channel *failure)
+{
+    private_signals_block();
+    pid_t child = private_signals_came() ? -1 : fork();
+    if (child == 0)
+        become(argv, output->write, failure->write);
+    int cause = errno;
+    if (child > 0) {
+        setpgid(child, child);
+        private_signals_kill(child);
+    }
+    private_signals_unblock();
+    errno = cause;
+    return child;
+}
+
+tm_status run_program(char *const argv[], program_end *end, tm_error *error)
+{
+    channel output, failure;
+    *end = (program_end){0};
+    if (!open_pipe(&failure))
+        return tm_fail(error, TM_ERROR_SYSTEM, "cannot make a pipe: %s", strerror(errno));
+    if (!open_terminal(&output) && !open_pipe(&output)) {
+        close(failure.read);
+        close(failure.write);
+        return tm_fail(error, TM_ERROR_SYSTEM, "cannot make a pipe: %s", strerror(errno));
+    }
+    pid_t child = start(argv, &output, &failure);
+    int cause = errno;
+    close(output.write);
+    close(failure.write);
+    tm_status status = TM_OK;
+    if (child < 0) {
+        status = tm_fail(error, TM_ERROR_SYSTEM, "cannot start %s: %s", argv[0],
+                         private_signals_came() ? "interrupted" : strerror(cause));
+    } else {
+        tm_read_some(failure.read, (char *)&end->cannot_start, sizeof end->cannot_start);
+        status = listen_to(output.read, &end->output, error);
+        tm_status waited = wait_for(child, end, error);
+        private_signals_kill(0);
+        status = status == TM_OK ? waited : status;
+    }
+    close(output.read);
+    close(failure.read);
+    return status;
+}

@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Another program, run to its end, with all that it says. */
+#ifndef CMD_COMMON_RUN_PROGRAM_H
+#define CMD_COMMON_RUN_PROGRAM_H
+
+#include "../../../lib/base/error.h"
+#include "../../../lib/base/text.h"
+
+typedef struct program_end {
+    int cannot_start; /* errno, or 0 */
+    int exit_status;  /* where no signal ended it */
+    int signal;       /* or 0 */
+    tm_text output;   /* what it wrote on stdout and stderr, in that order */
+} program_end;
+
+/* Runs argv[0], which is looked up in PATH, without a shell and with nothing on stdin.
+ * It has a terminal on stdout, so that what it says is not lost in a buffer when it
+ * aborts. While signals are held (private_signals.h) they kill it and its children. */
+tm_status run_program(char *const argv[], program_end *end, tm_error *error);
+
+#endif

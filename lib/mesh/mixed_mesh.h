@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Tetrahedra, pyramids, wedges and hexahedra in one mesh, as .mix has them. */
+#ifndef TM_MESH_MIXED_MESH_H
+#define TM_MESH_MIXED_MESH_H
+
+#include "../element/jens.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* Element e has the nodes item[start[e]] … item[start[e + 1] - 1]: 4 of a tetrahedron, 5
+ * of a pyramid, 6 of a wedge, 8 of a hexahedron, in the order of .mix, which is VTK's:
+ * the base 0 1 2 3 of a hexahedron turns counter-clockwise seen from the top 4 5 6 7,
+ * that of a pyramid seen from its apex 4, the triangle 0 1 2 of a tetrahedron seen from
+ * 3, but that of a wedge seen from outside, away from the triangle 3 4 5, where 3 is over
+ * 0. */
+typedef struct tm_mixed_mesh {
+    size_t nodes;
+    double (*xyz)[3];
+    size_t elements;
+    size_t *start;
+    uint32_t *item;
+} tm_mixed_mesh;
+
+/* J_ENS of element e. */
+static inline double tm_mixed_jens(const tm_mixed_mesh *mesh, size_t e)
+{
+    return tm_jens(mesh->start[e + 1] - mesh->start[e], (const double(*)[3])mesh->xyz,
+                   mesh->item + mesh->start[e]);
+}
+
+#endif

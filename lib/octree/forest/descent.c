@@ -1,0 +1,255 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "descent.h"
+
+#include "../../base/array.h"
+
+#include <stdlib.h>
+
+enum { CHILDREN = 8, BATCH = 4, SHIFTS = 32 };
+
+typedef enum side { UNKNOWN, INSIDE, OUTSIDE } side;
+
+/* What of one surface meets an octant: a part of the source's stack of triangles. Where
+ * it is empty, `where` says on which side of the surface the octant is. */
+typedef struct part {
+    size_t start;
+    size_t count;
+    side where;
+} part;
+
+/* A cube of 2^shift units: of the octree, or of several roots. */
+typedef struct octant {
+    uint32_t anchor[3];
+    unsigned shift;
+    double low[3], high[3];
+    part *part; /* [sources] */
+} octant;
+
+/* A surface that rules ask about: source 0 is the octree's, the others are regions. */
+typedef struct source {
+    const tm_surface *surface;
+    size_t room;
+    uint32_t
+        *triangle; /* stack: of the octants on the way down, each behind its parent's */
+} source;
+
+typedef struct descent {
+    const tm_octree *octree;
+    const tm_octree_rule *rule;
+    size_t rules;
+    size_t *source_of; /* [rules] */
+    size_t sources;
+    source *source;
+    unsigned shift;       /* of the deepest octants that may be */
+    part *part;           /* [SHIFTS][sources]: of the octants on the way down */
+    tm_leaf_list *leaves; /* that are made, or NULL: */
+    tm_leaf *given;       /* the leaves that are there, from the next one on */
+    tm_error *error;
+} descent;
+
+/* The triangles that meet the octant, of those that meet its parent. */
+static tm_status cull(descent *d, octant *o, size_t s, const part *parent)
+{
+    part *own = &o->part[s];
+    *own = (part){.start = parent->start + parent->count, .where = parent->where};
+    if (parent->count == 0)
+        return TM_OK;
+    source *from = &d->source[s];
+    const size_t needed = own->start + parent->count;
+    if (needed > from->room) {
+        uint32_t *grown =
+            tm_grow(from->triangle, &from->room, needed, sizeof *from->triangle);
+        if (!grown)
+            return tm_fail_memory(d->error);
+        from->triangle = grown;
+    }
+    const uint32_t *given = from->triangle + parent->start;
+    uint32_t *kept = from->triangle + own->start;
+    /* Of the deepest all that is asked is whether there are any. */
+    const size_t batch = o->shift <= d->shift ? (size_t)BATCH : parent->count;
+    for (size_t i = 0; i < parent->count && own->count == 0; i += batch)
+        own->count = tm_surface_cull(
+            from->surface, given + i,
+            batch < parent->count - i ? batch : parent->count - i, o->low, o->high, kept);
+    return TM_OK;
+}
+
+static bool meets_or_inside(const descent *d, octant *o, size_t s)
+{
+    part *own = &o->part[s];
+    if (own->count > 0)
+        return true;
+    if (own->where == UNKNOWN) {
+        double centre[3];
+        for (int i = 0; i < 3; i++)
+            centre[i] = (o->low[i] + o->high[i]) / 2;
+        own->where =
+            tm_surface_has_inside(d->source[s].surface, centre) ? INSIDE : OUTSIDE;
+    }
+    return own->where == INSIDE;
+}
+
+static bool meets_box(const octant *o, const tm_octree_rule *box)
+{
+    for (int i = 0; i < 3; i++)
+        if (o->high[i] < box->low[i] || box->high[i] < o->low[i])
+            return false;
+    return true;
+}
+
+static bool holds(const descent *d, octant *o, size_t r)
+{
+    switch (d->rule[r].kind) {
+    case TM_RULE_EVERYTHING:
+        return true;
+    case TM_RULE_SURFACE:
+        return o->part[0].count > 0;
+    case TM_RULE_BOX:
+        return meets_box(o, &d->rule[r]);
+    case TM_RULE_REGION:
+        return meets_or_inside(d, o, d->source_of[r]);
+    default:
+        return false;
+    }
+}
+
+static bool rules_split(const descent *d, octant *o)
+{
+    if (o->shift <= d->shift)
+        return false;
+    const unsigned level = TM_OCTREE_FINEST - o->shift;
+    for (size_t r = 0; r < d->rules; r++)
+        if (level < d->rule[r].level && holds(d, o, r))
+            return meets_or_inside(d, o, 0);
+    return false;
+}
+
+static bool is_split(const descent *d, octant *o)
+{
+    if (o->shift > TM_OCTREE_FINEST)
+        return true;
+    return d->leaves ? rules_split(d, o) : o->shift > tm_leaf_shift(d->given);
+}
+
+static tm_status take_leaf(descent *d, const octant *o)
+{
+    const bool crossed = o->part[0].count > 0;
+    if (d->leaves)
+        return tm_leaf_list_add(d->leaves, o->anchor, TM_OCTREE_FINEST - o->shift,
+                                crossed, d->error);
+    d->given->crossed = crossed;
+    d->given++;
+    return TM_OK;
+}
+
+static bool outside_brick(const descent *d, const octant *o)
+{
+    for (int i = 0; i < 3; i++)
+        if (o->anchor[i] >> TM_OCTREE_FINEST >= d->octree->roots[i])
+            return true;
+    return false;
+}
+
+static tm_status visit(descent *d, octant *o)
+{
+    if (!is_split(d, o))
+        return take_leaf(d, o);
+    octant child = {.shift = o->shift - 1, .part = o->part + d->sources};
+    tm_status status = TM_OK;
+    for (unsigned c = 0; c < CHILDREN && status == TM_OK; c++) {
+        tm_octree_child(o->anchor, o->shift, c, child.anchor);
+        if (outside_brick(d, &child))
+            continue;
+        tm_octree_box(d->octree, child.anchor, child.shift, child.low, child.high);
+        for (size_t s = 0; s < d->sources && status == TM_OK; s++)
+            status = cull(d, &child, s, &o->part[s]);
+        if (status == TM_OK)
+            status = visit(d, &child);
+    }
+    return status;
+}
+
+/* A cube that has all roots is met by all triangles. p4est has the roots in Z order too.
+ */
+static tm_status visit_brick(descent *d)
+{
+    octant o = {.shift = tm_octree_shift(d->octree), .part = d->part};
+    tm_octree_box(d->octree, o.anchor, o.shift, o.low, o.high);
+    for (size_t s = 0; s < d->sources; s++)
+        o.part[s] = (part){.count = d->source[s].surface->triangles};
+    return visit(d, &o);
+}
+
+static tm_status start_source(descent *d, const tm_surface *surface, size_t *number)
+{
+    source *next = &d->source[d->sources];
+    *number = d->sources++;
+    *next = (source){.surface = surface, .room = surface->triangles};
+    next->triangle = tm_new(surface->triangles, sizeof *next->triangle);
+    if (!next->triangle)
+        return tm_fail_memory(d->error);
+    for (uint32_t t = 0; t < surface->triangles; t++)
+        next->triangle[t] = t;
+    return TM_OK;
+}
+
+static tm_status start_rule(descent *d, size_t r)
+{
+    const tm_octree_rule *rule = &d->rule[r];
+    if (rule->kind == TM_RULE_LEAVES)
+        return TM_OK;
+    if (rule->level > TM_OCTREE_LEVEL_MAX)
+        return tm_fail(d->error, TM_ERROR_INPUT, "level %u is too deep (0..%d)",
+                       rule->level, TM_OCTREE_LEVEL_MAX);
+    if (TM_OCTREE_FINEST - rule->level < d->shift)
+        d->shift = TM_OCTREE_FINEST - rule->level;
+    if (rule->kind != TM_RULE_REGION)
+        return TM_OK;
+    return start_source(d, rule->region, &d->source_of[r]);
+}
+
+static tm_status start(descent *d, const tm_surface *surface)
+{
+    d->source = calloc(d->rules + 1, sizeof *d->source);
+    d->source_of = calloc(d->rules + 1, sizeof *d->source_of);
+    d->part = tm_new(SHIFTS * (d->rules + 1), sizeof *d->part);
+    if (!d->source || !d->source_of || !d->part)
+        return tm_fail_memory(d->error);
+    size_t number = 0;
+    tm_status status = start_source(d, surface, &number);
+    for (size_t r = 0; r < d->rules && status == TM_OK; r++)
+        status = start_rule(d, r);
+    return status;
+}
+
+static tm_status descend(descent *d, const tm_surface *surface)
+{
+    tm_status status = start(d, surface);
+    if (status == TM_OK)
+        status = visit_brick(d);
+    for (size_t s = 0; s < d->sources; s++)
+        free(d->source[s].triangle);
+    free(d->source);
+    free(d->source_of);
+    free(d->part);
+    return status;
+}
+
+tm_status tm_octree_descend(tm_leaf_list *leaves, const tm_octree *octree,
+                            const tm_surface *surface, const tm_octree_rule *rule,
+                            size_t rules, tm_error *error)
+{
+    descent d = {.octree = octree,
+                 .rule = rule,
+                 .rules = rules,
+                 .shift = TM_OCTREE_FINEST,
+                 .leaves = leaves,
+                 .error = error};
+    return descend(&d, surface);
+}
+
+tm_status tm_octree_cross(tm_octree *octree, const tm_surface *surface, tm_error *error)
+{
+    descent d = {.octree = octree, .given = octree->leaf, .error = error};
+    return descend(&d, surface);
+}

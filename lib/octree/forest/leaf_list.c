@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "leaf_list.h"
+
+#include "../../base/array.h"
+
+#include <unistd.h>
+
+/* Of an octree, at least, while its nodes are numbered. */
+enum { BYTES_PER_LEAF = 140 };
+
+/* How many leaves an octree in the machine's memory can have: as the system gives more
+ * than there is, nobody else would say so. */
+static size_t leaves_in_memory(void)
+{
+    const long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
+    if (pages <= 0 || page <= 0)
+        return TM_LEAVES_MAX;
+    return (size_t)pages / BYTES_PER_LEAF * (size_t)page;
+}
+
+static tm_status grow(tm_leaf_list *list, tm_error *error)
+{
+    if (list->count >= TM_LEAVES_MAX)
+        return tm_fail(error, TM_ERROR_INPUT,
+                       "the octree has more than %zu leaves (ask for lower levels)",
+                       TM_LEAVES_MAX);
+    if (list->count > leaves_in_memory())
+        return tm_fail(error, TM_ERROR_SYSTEM,
+                       "the octree has more than %zu leaves: the machine's memory does "
+                       "not hold it (ask for lower levels)",
+                       list->count);
+    tm_leaf *grown =
+        tm_grow(list->leaf, &list->room, list->count + 1, sizeof *list->leaf);
+    if (!grown)
+        return tm_fail_memory(error);
+    list->leaf = grown;
+    return TM_OK;
+}
+
+tm_status tm_leaf_list_add(tm_leaf_list *list, const uint32_t anchor[3], unsigned level,
+                           bool crossed, tm_error *error)
+{
+    if (list->count == list->room) {
+        const tm_status status = grow(list, error);
+        if (status != TM_OK)
+            return status;
+    }
+    list->leaf[list->count++] = (tm_leaf){.anchor = {anchor[0], anchor[1], anchor[2]},
+                                          .level = (uint8_t)level,
+                                          .crossed = crossed};
+    return TM_OK;
+}

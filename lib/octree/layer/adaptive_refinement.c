@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "adaptive_refinement.h"
+
+#include "../../base/array.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Unmarks leaves that are as deep as they may be; returns how many are left. */
+static size_t keep_shallow(const tm_octree *octree, unsigned deepest, uint8_t *split)
+{
+    size_t count = 0;
+    for (size_t l = 0; l < octree->leaves; l++) {
+        split[l] = split[l] && octree->leaf[l].level < deepest;
+        count += split[l];
+    }
+    return count;
+}
+
+/* Splits leaves with surface but no boundary close by, until there are none; then makes
+ * the mesh. */
+static tm_status make_without_loss(tm_octree_mesh *mesh, tm_octree *octree,
+                                   tm_surface *surface, unsigned deepest, tm_error *error)
+{
+    tm_solid solid = {0};
+    tm_status status = TM_OK;
+    for (bool more = true; status == TM_OK && more;) {
+        uint8_t *lost = tm_new(octree->leaves, sizeof *lost);
+        tm_solid_free(&solid);
+        status = lost ? tm_solid_choose(&solid, octree, surface, error)
+                      : tm_fail_memory(error);
+        if (status == TM_OK) {
+            tm_solid_find_lost(&solid, octree, surface, lost);
+            more = keep_shallow(octree, deepest, lost) > 0;
+        }
+        if (status == TM_OK && more)
+            status = tm_octree_refine(octree, surface, lost, error);
+        free(lost);
+    }
+    if (status == TM_OK)
+        return tm_octree_mesh_make_of(mesh, octree, &solid, surface, error);
+    tm_solid_free(&solid);
+    return status;
+}
+
+/* The leaves at boundary nodes that are held back, and their neighbours that the surface
+ * crosses. NULL where memory is out or there is none. */
+static uint8_t *mark_held(const tm_octree_mesh *mesh, const tm_octree *octree,
+                          unsigned deepest)
+{
+    uint8_t *split = tm_new(octree->leaves, sizeof *split);
+    bool *near = calloc(octree->nodes + 1, sizeof *near);
+    for (size_t s = 0; near && s < mesh->skin.nodes; s++)
+        near[mesh->skin.grid_node[s]] = mesh->held[s];
+    for (int ring = 0; split && near && ring < 2; ring++) {
+        for (size_t l = 0; l < octree->leaves; l++) {
+            split[l] = 0;
+            for (int p = 0; octree->leaf[l].crossed && p < TM_LEAF_EDGE; p++)
+                split[l] |= near[octree->node[l][p]];
+        }
+        for (size_t l = 0; l < octree->leaves; l++)
+            for (int p = 0; split[l] && p < TM_LEAF_EDGE; p++)
+                near[octree->node[l][p]] = true;
+    }
+    const bool any = split && near && keep_shallow(octree, deepest, split) > 0;
+    free(near);
+    if (!any)
+        free(split);
+    return any ? split : NULL;
+}
+
+/* The mesh of a copy of the octree with leaves split; *octree becomes the copy if fewer
+ * nodes are held back, else the mesh is made of it again. Meshes are large: there is only
+ * one at a time. */
+static tm_status try_split(tm_octree_mesh *mesh, tm_octree *octree, tm_surface *surface,
+                           unsigned deepest, const uint8_t *split, bool *better,
+                           tm_error *error)
+{
+    const size_t held = mesh->report.held_back;
+    tm_octree finer;
+    tm_octree_mesh_free(mesh);
+    tm_status status = tm_octree_copy(&finer, octree, error);
+    if (status == TM_OK)
+        status = tm_octree_refine(&finer, surface, split, error);
+    if (status == TM_OK)
+        status = make_without_loss(mesh, &finer, surface, deepest, error);
+    *better = status == TM_OK && mesh->report.held_back < held;
+    if (*better) {
+        tm_octree_free(octree);
+        *octree = finer;
+        return TM_OK;
+    }
+    tm_octree_free(&finer);
+    if (status == TM_OK) {
+        tm_octree_mesh_free(mesh);
+        status = tm_octree_mesh_make(mesh, octree, surface, error);
+    }
+    return status;
+}
+
+tm_status tm_octree_mesh_resolve(tm_octree_mesh *mesh, tm_octree *octree,
+                                 tm_surface *surface, unsigned levels, tm_error *error)
+{
+    unsigned deepest = 0;
+    *mesh = (tm_octree_mesh){0};
+    for (size_t l = 0; l < octree->leaves; l++)
+        if (octree->leaf[l].level > deepest)
+            deepest = octree->leaf[l].level;
+    deepest += levels;
+    if (deepest > TM_OCTREE_LEVEL_MAX)
+        deepest = TM_OCTREE_LEVEL_MAX;
+    tm_status status = levels > 0
+                           ? make_without_loss(mesh, octree, surface, deepest, error)
+                           : tm_octree_mesh_make(mesh, octree, surface, error);
+    for (bool better = levels > 0; status == TM_OK && better;) {
+        uint8_t *split =
+            mesh->report.held_back > 0 ? mark_held(mesh, octree, deepest) : NULL;
+        if (!split)
+            break;
+        status = try_split(mesh, octree, surface, deepest, split, &better, error);
+        free(split);
+    }
+    return status;
+}

@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The elements: the chosen leaves, divided, and a layer between their boundary and the
+ * surface. */
+#ifndef TM_LAYER_ASSEMBLE_H
+#define TM_LAYER_ASSEMBLE_H
+
+#include "../../mesh/mixed_mesh.h"
+#include "interior_boundary.h"
+
+/* The triangles of a cut face, as its corners. Indexed by tm_cut. */
+extern const uint8_t tm_cut_triangles[3][2][3];
+
+/* Node s of the skin is there twice: inner[s] belongs to the leaves, outer + s to the
+ * boundary. Between a face of the skin and its copy is a wedge or a hexahedron, or, where
+ * the face is cut, two wedges. A leaf with a cut face is divided from its centre. */
+typedef struct tm_assembly {
+    tm_mixed_mesh mesh;
+    uint32_t *first; /* [leaves + 1]: leaf l has the elements first[l] … first[l + 1) */
+    uint32_t *layer; /* [faces of the skin]: the element under it; of a cut face the first
+                        of the two */
+    uint32_t *inner; /* [nodes of the skin] */
+    uint32_t outer;
+    size_t core; /* nodes of the octree come first, then the outer ones, then middles */
+    size_t middles;
+    uint32_t *middle_leaf; /* [middles]: the leaf that it is the centre of */
+    uint32_t *core_node;   /* [nodes of the octree]: of the mesh, or TM_NONE */
+    uint32_t *grid_node;   /* [core]: of the octree */
+} tm_assembly;
+
+/* Makes them. All nodes are on the lattice, where the layer has no height yet; for places
+ * at which every element is valid see lattice_points.h. TM_ERROR_SYSTEM where memory or
+ * 32-bit ids are out. *assembly is to be freed, after an error too. O(leaves + elements).
+ */
+tm_status tm_assemble(tm_assembly *assembly, const tm_octree *octree,
+                      const tm_solid *solid, const tm_skin *skin, tm_error *error);
+void tm_assembly_free(tm_assembly *assembly);
+
+#endif

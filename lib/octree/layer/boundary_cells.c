@@ -1,0 +1,128 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "boundary_cells.h"
+
+#include "../../base/array.h"
+#include "../../geom/vector.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { KEY_BITS = 21 };
+
+typedef struct tm_skin_cell {
+    uint64_t key;
+    uint32_t node;
+} tm_skin_cell;
+
+static uint64_t key_of(int64_t x, int64_t y, int64_t z)
+{
+    return (uint64_t)x << 2 * KEY_BITS | (uint64_t)y << KEY_BITS | (uint64_t)z;
+}
+
+static int compare(const void *a, const void *b)
+{
+    const tm_skin_cell *ca = a;
+    const tm_skin_cell *cb = b;
+    if (ca->key != cb->key)
+        return ca->key < cb->key ? -1 : 1;
+    return (ca->node > cb->node) - (ca->node < cb->node);
+}
+
+tm_status tm_skin_cells_sort(tm_skin_cells *cells, const tm_octree *octree,
+                             const tm_skin *skin, tm_error *error)
+{
+    *cells = (tm_skin_cells){.octree = octree, .skin = skin};
+    cells->cell = tm_new(skin->nodes, sizeof *cells->cell);
+    if (!cells->cell)
+        return tm_fail_memory(error);
+    unsigned coarsest = octree->finest;
+    for (size_t f = 0; f < skin->faces; f++) {
+        const unsigned level = octree->leaf[skin->leaf[f]].level;
+        coarsest = level < coarsest ? level : coarsest;
+    }
+    cells->shift = octree->finest - coarsest + 1;
+    for (size_t s = 0; s < skin->nodes; s++) {
+        const uint32_t *grid = octree->grid[skin->grid_node[s]];
+        cells->cell[s] =
+            (tm_skin_cell){key_of(grid[0] >> cells->shift, grid[1] >> cells->shift,
+                                  grid[2] >> cells->shift),
+                           (uint32_t)s};
+    }
+    if (skin->nodes > 0)
+        qsort(cells->cell, skin->nodes, sizeof *cells->cell, compare);
+    return TM_OK;
+}
+
+void tm_skin_cells_free(tm_skin_cells *cells)
+{
+    free(cells->cell);
+    *cells = (tm_skin_cells){0};
+}
+
+/* The first entry whose key is not below. */
+static size_t lower_bound(const tm_skin_cells *cells, uint64_t key)
+{
+    size_t begin = 0, end = cells->skin->nodes;
+    while (begin < end) {
+        const size_t middle = begin + (end - begin) / 2;
+        if (cells->cell[middle].key < key)
+            begin = middle + 1;
+        else
+            end = middle;
+    }
+    return begin;
+}
+
+void tm_skin_cells_near(const tm_skin_cells *cells, const double point[3],
+                        void (*visit)(void *context, uint32_t node), void *context)
+{
+    const tm_octree *octree = cells->octree;
+    const double unit = octree->side / (double)((uint32_t)1 << octree->finest);
+    const double side = unit * (double)((uint64_t)1 << cells->shift);
+    int64_t at[3];
+    for (int i = 0; i < 3; i++)
+        at[i] = (int64_t)floor((point[i] - octree->low[i]) / side);
+    for (int64_t x = at[0] - 1; x <= at[0] + 1; x++) {
+        for (int64_t y = at[1] - 1; y <= at[1] + 1; y++) {
+            for (int64_t z = at[2] - 1; z <= at[2] + 1; z++) {
+                if (x < 0 || y < 0 || z < 0)
+                    continue;
+                const uint64_t key = key_of(x, y, z);
+                for (size_t i = lower_bound(cells, key);
+                     i < cells->skin->nodes && cells->cell[i].key == key; i++)
+                    visit(context, cells->cell[i].node);
+            }
+        }
+    }
+}
+
+typedef struct {
+    const tm_skin_cells *cells;
+    const double *point;
+    const uint8_t *taken;
+    uint32_t node;
+    double distance2;
+} nearest;
+
+static void compare_nearest(void *context, uint32_t s)
+{
+    nearest *n = context;
+    double xyz[3];
+    if (n->taken && n->taken[s])
+        return;
+    tm_skin_place(n->cells->skin, n->cells->octree, s, xyz);
+    const double distance2 = tm_distance2(n->point, xyz);
+    if (distance2 < n->distance2 || (distance2 == n->distance2 && s < n->node)) {
+        n->node = s;
+        n->distance2 = distance2;
+    }
+}
+
+uint32_t tm_skin_cells_nearest(const tm_skin_cells *cells, const double point[3],
+                               const uint8_t *taken, double *distance2)
+{
+    nearest n = {cells, point, taken, TM_NONE, INFINITY};
+    tm_skin_cells_near(cells, point, compare_nearest, &n);
+    *distance2 = n.distance2;
+    return n.node;
+}

@@ -1,0 +1,252 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "interior_leaves.h"
+
+#include "../../base/array.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* After so many rounds of adding and taking away leaves are only taken away, which ends.
+ */
+enum { FREE_ROUNDS = 24 };
+
+/* Whether two leaves' closed cubes have a point in common. */
+static bool touch(const tm_octree *octree, const tm_leaf *a, const tm_leaf *b)
+{
+    const uint32_t side_a = (uint32_t)1 << (octree->finest - a->level);
+    const uint32_t side_b = (uint32_t)1 << (octree->finest - b->level);
+    for (int i = 0; i < 3; i++)
+        if (a->anchor[i] > b->anchor[i] + side_b || b->anchor[i] > a->anchor[i] + side_a)
+            return false;
+    return true;
+}
+
+/* Between two leaves that touch and that the surface does not meet there is none of it,
+ * so the second needs no test. */
+static void classify(tm_solid *solid, const tm_octree *octree, const tm_surface *surface)
+{
+    for (size_t l = 0; l < octree->leaves; l++) {
+        const tm_leaf *leaf = &octree->leaf[l];
+        if (l > 0 && !leaf->crossed && !leaf[-1].crossed &&
+            touch(octree, leaf, leaf - 1)) {
+            solid->chosen[l] = solid->chosen[l - 1];
+            continue;
+        }
+        double centre[3];
+        tm_leaf_centre(octree, leaf, centre);
+        solid->chosen[l] = tm_surface_has_inside(surface, centre);
+    }
+}
+
+/* Sets the octants of a leaf's nodes to whether it is chosen. */
+static void put_in_masks(tm_solid *solid, const tm_octree *octree, size_t l)
+{
+    for (int p = 0; p < TM_LEAF_NODES; p++) {
+        const uint32_t node = octree->node[l][p];
+        if (node == TM_NONE)
+            continue;
+        if (solid->chosen[l])
+            solid->mask[node] |= tm_place_octants[p];
+        else
+            solid->mask[node] &= (tm_octant_mask)~tm_place_octants[p];
+    }
+}
+
+void tm_solid_flip(tm_solid *solid, const tm_octree *octree, size_t leaf)
+{
+    solid->chosen[leaf] = !solid->chosen[leaf];
+    if (solid->chosen[leaf])
+        solid->filled++;
+    else
+        solid->removed++;
+    put_in_masks(solid, octree, leaf);
+}
+
+/* A leaf at a node whose mask is bad. */
+typedef struct {
+    uint32_t node;
+    uint32_t leaf;
+} contact;
+
+typedef struct {
+    const tm_octree *octree;
+    const tm_surface *surface;
+    tm_solid *solid;
+    bool *bad; /* [nodes] */
+    size_t contacts, room;
+    contact *contact;
+} cleaner;
+
+static int compare_contacts(const void *a, const void *b)
+{
+    const contact *ca = a;
+    const contact *cb = b;
+    if (ca->node != cb->node)
+        return ca->node < cb->node ? -1 : 1;
+    return (ca->leaf > cb->leaf) - (ca->leaf < cb->leaf);
+}
+
+/* Lists the leaves at bad nodes, node by node. */
+static tm_status find_contacts(cleaner *c, tm_error *error)
+{
+    c->contacts = 0;
+    for (size_t n = 0; n < c->octree->nodes; n++)
+        c->bad[n] = !tm_octant_mask_is_good(c->solid->mask[n]);
+    for (size_t l = 0; l < c->octree->leaves; l++) {
+        for (int p = 0; p < TM_LEAF_NODES; p++) {
+            const uint32_t node = c->octree->node[l][p];
+            if (node == TM_NONE || !c->bad[node])
+                continue;
+            void *more =
+                tm_grow(c->contact, &c->room, c->contacts + 1, sizeof *c->contact);
+            if (!more)
+                return tm_fail_memory(error);
+            c->contact = more;
+            c->contact[c->contacts++] = (contact){node, (uint32_t)l};
+        }
+    }
+    if (c->contacts > 0)
+        qsort(c->contact, c->contacts, sizeof *c->contact, compare_contacts);
+    return TM_OK;
+}
+
+/* How far the surface is from a leaf's centre, in its sides; those that it does not cross
+ * are farther than any that it does. */
+static double depth(const cleaner *c, size_t l)
+{
+    const tm_leaf *leaf = &c->octree->leaf[l];
+    const double farther_than_crossed = 1;
+    if (!leaf->crossed)
+        return farther_than_crossed;
+    double centre[3];
+    tm_leaf_centre(c->octree, leaf, centre);
+    tm_surface_point at = {.triangle = TM_NONE};
+    tm_surface_closest(c->surface, centre, TM_NONE, &at);
+    return sqrt(at.distance2) / tm_leaf_side(c->octree, leaf);
+}
+
+/* How many of a leaf's nodes would have a bad mask if it changed, less those that have
+ * one now. */
+static int harm(const cleaner *c, size_t l)
+{
+    int more = 0;
+    for (int p = 0; p < TM_LEAF_NODES; p++) {
+        const uint32_t node = c->octree->node[l][p];
+        if (node == TM_NONE)
+            continue;
+        const tm_octant_mask now = c->solid->mask[node];
+        const tm_octant_mask then = now ^ tm_place_octants[p];
+        more += !tm_octant_mask_is_good(then) - !tm_octant_mask_is_good(now);
+    }
+    return more;
+}
+
+/* Changes one of the leaves contact[0 … count) around a node that is still bad: the one
+ * that does most good, of these the one closest to the surface. */
+static void mend(cleaner *c, const contact *around, size_t count, bool only_remove)
+{
+    const double good = 1; /* a bad node less is worth a side of a leaf */
+    size_t best = count;
+    double least = INFINITY;
+    for (size_t i = 0; i < count; i++) {
+        const size_t l = around[i].leaf;
+        if (only_remove && !c->solid->chosen[l])
+            continue;
+        const double cost = depth(c, l) + good * harm(c, l);
+        if (cost < least) {
+            least = cost;
+            best = i;
+        }
+    }
+    if (best < count)
+        tm_solid_flip(c->solid, c->octree, around[best].leaf);
+}
+
+static tm_status clean(cleaner *c, tm_error *error)
+{
+    for (int round = 0;; round++) {
+        tm_status status = find_contacts(c, error);
+        if (status != TM_OK || c->contacts == 0)
+            return status;
+        for (size_t i = 0, next; i < c->contacts; i = next) {
+            const uint32_t node = c->contact[i].node;
+            for (next = i; next < c->contacts && c->contact[next].node == node;)
+                next++;
+            if (!tm_octant_mask_is_good(c->solid->mask[node]))
+                mend(c, &c->contact[i], next - i, round >= FREE_ROUNDS);
+        }
+    }
+}
+
+/* The nodes that the mesh has. A face of which a part is shared with a smaller chosen
+ * leaf has its centre, and is then divided in four. */
+void tm_solid_find_used(tm_solid *solid, const tm_octree *octree)
+{
+    solid->count = 0;
+    memset(solid->used, false, octree->nodes);
+    for (size_t l = 0; l < octree->leaves; l++) {
+        solid->count += solid->chosen[l];
+        for (int p = 0; solid->chosen[l] && p < TM_LEAF_EDGE; p++)
+            solid->used[octree->node[l][p]] = true;
+    }
+    for (size_t l = 0; l < octree->leaves; l++) {
+        for (int f = 0; solid->chosen[l] && f < 6; f++) {
+            const uint32_t centre = octree->node[l][TM_LEAF_FACE + f];
+            if (centre == TM_NONE || !solid->used[centre])
+                continue;
+            for (int i = 0; i < 4; i++)
+                solid->used[octree->node[l][TM_LEAF_EDGE + tm_face_edge[f][i]]] = true;
+        }
+    }
+}
+
+tm_status tm_solid_choose(tm_solid *solid, const tm_octree *octree,
+                          const tm_surface *surface, tm_error *error)
+{
+    *solid = (tm_solid){
+        .chosen = calloc(octree->leaves, sizeof *solid->chosen),
+        .mask = calloc(octree->nodes, sizeof *solid->mask),
+        .used = calloc(octree->nodes, sizeof *solid->used),
+    };
+    if (!solid->chosen || !solid->mask || !solid->used)
+        return tm_fail_memory(error);
+    classify(solid, octree, surface);
+    for (size_t l = 0; l < octree->leaves; l++)
+        if (solid->chosen[l])
+            put_in_masks(solid, octree, l);
+    cleaner c = {.octree = octree,
+                 .surface = surface,
+                 .solid = solid,
+                 .bad = malloc(octree->nodes)};
+    tm_status status = c.bad ? clean(&c, error) : tm_fail_memory(error);
+    free(c.bad);
+    free(c.contact);
+    if (status == TM_OK)
+        tm_solid_find_used(solid, octree);
+    return status;
+}
+
+void tm_solid_free(tm_solid *solid)
+{
+    free(solid->chosen);
+    free(solid->mask);
+    free(solid->used);
+    *solid = (tm_solid){0};
+}
+
+size_t tm_solid_find_lost(const tm_solid *solid, const tm_octree *octree,
+                          const tm_surface *surface, uint8_t *lost)
+{
+    size_t count = 0;
+    for (size_t l = 0; l < octree->leaves; l++) {
+        bool near = !octree->leaf[l].crossed || surface->by_winding;
+        for (int p = 0; !near && p < TM_LEAF_EDGE; p++) {
+            const tm_octant_mask mask = solid->mask[octree->node[l][p]];
+            near = mask != 0 && mask != TM_ALL_OCTANTS;
+        }
+        lost[l] = !near;
+        count += !near;
+    }
+    return count;
+}

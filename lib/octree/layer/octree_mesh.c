@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "octree_mesh.h"
+
+#include "../../base/array.h"
+#include "../../base/disjoint_sets.h"
+#include "projection.h"
+#include "spurious_components.h"
+#include "untangling.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Where the skin's nodes are closest to the surface. Neighbours in number are mostly
+ * close to each other, so that each begins where the last one ended. */
+static tm_status find_closest(tm_octree_mesh *m, const tm_octree *octree,
+                              const tm_surface *surface, tm_error *error)
+{
+    m->at = tm_new(m->skin.nodes, sizeof *m->at);
+    m->held = calloc(m->skin.nodes + 1, sizeof *m->held);
+    if (!m->at || !m->held)
+        return tm_fail_memory(error);
+    uint32_t guess = TM_NONE;
+    for (size_t s = 0; s < m->skin.nodes; s++) {
+        double xyz[3];
+        tm_skin_place(&m->skin, octree, s, xyz);
+        m->at[s].triangle = guess;
+        tm_surface_closest(surface, xyz, TM_NONE, &m->at[s]);
+        guess = m->at[s].triangle;
+    }
+    return TM_OK;
+}
+
+/* The pieces of the boundary, and its Euler number. */
+static tm_status measure_boundary(tm_octree_mesh *m, tm_error *error)
+{
+    const tm_skin *skin = &m->skin;
+    uint32_t *parent = tm_new(skin->nodes, sizeof *parent);
+    if (!parent)
+        return tm_fail_memory(error);
+    for (size_t s = 0; s < skin->nodes; s++)
+        parent[s] = (uint32_t)s;
+    int64_t half_edges = 0;
+    for (size_t f = 0; f < skin->faces; f++) {
+        const unsigned k = tm_skin_corners(skin, f);
+        half_edges += k;
+        for (unsigned i = 1; i < k; i++)
+            tm_set_unite(parent, skin->face[f][0], skin->face[f][i]);
+    }
+    for (size_t s = 0; s < skin->nodes; s++)
+        m->report.components += tm_set_root(parent, (uint32_t)s) == s;
+    m->report.euler = (int64_t)skin->nodes - half_edges / 2 + (int64_t)skin->faces;
+    free(parent);
+    return TM_OK;
+}
+
+static tm_status count_lost(tm_octree_mesh *m, const tm_octree *octree,
+                            const tm_surface *surface, tm_error *error)
+{
+    uint8_t *lost = tm_new(octree->leaves, sizeof *lost);
+    if (!lost)
+        return tm_fail_memory(error);
+    m->report.lost = tm_solid_find_lost(&m->solid, octree, surface, lost);
+    for (size_t l = 0; m->report.lost > 0 && l < octree->leaves; l++)
+        if (lost[l]) {
+            tm_leaf_centre(octree, &octree->leaf[l], m->report.lost_at);
+            break;
+        }
+    free(lost);
+    return TM_OK;
+}
+
+static tm_status find_skin_once(tm_octree_mesh *m, const tm_octree *octree,
+                                const tm_surface *surface, tm_error *error)
+{
+    tm_skin_free(&m->skin);
+    free(m->at);
+    free(m->held);
+    m->at = NULL;
+    m->held = NULL;
+    m->report.components = 0;
+    tm_status status = tm_skin_find(&m->skin, octree, &m->solid, error);
+    if (status == TM_OK)
+        status = measure_boundary(m, error);
+    if (status == TM_OK)
+        status = find_closest(m, octree, surface, error);
+    return status;
+}
+
+/* The skin, without pieces that the surface does not have. */
+static tm_status find_skin(tm_octree_mesh *m, const tm_octree *octree,
+                           const tm_surface *surface, tm_error *error)
+{
+    bool changed = false;
+    tm_status status = find_skin_once(m, octree, surface, error);
+    if (status == TM_OK && m->report.components > surface->components)
+        status = tm_islands_remove(&m->solid, octree, &m->skin, surface, m->at, &changed,
+                                   error);
+    if (status == TM_OK && changed)
+        status = find_skin_once(m, octree, surface, error);
+    return status;
+}
+
+static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *surface,
+                      tm_error *error)
+{
+    tm_octree_mesh_report *r = &m->report;
+    tm_status status = TM_OK;
+    if (m->solid.count == 0)
+        status = tm_fail(error, TM_ERROR_INPUT,
+                         "no leaf is inside the surface: it needs a finer level");
+    if (status == TM_OK)
+        status = find_skin(m, octree, surface, error);
+    if (status == TM_OK)
+        status = count_lost(m, octree, surface, error);
+    if (status == TM_OK)
+        status = tm_feature_find(&m->feature, &m->skin, octree, surface, m->at, error);
+    if (status == TM_OK)
+        status = tm_assemble(&m->assembly, octree, &m->solid, &m->skin, error);
+    if (status == TM_OK)
+        status = tm_fit(&m->assembly, &m->skin, &m->feature, surface, m->at, error);
+    if (status == TM_OK)
+        status = tm_settle(m, octree, surface, error);
+    if (status != TM_OK)
+        return status;
+    r->corners_lost = m->feature.corners_lost;
+    r->curves_lost = m->feature.curves_lost;
+    if (m->feature.lost != TM_NONE)
+        memcpy(r->feature_lost_at, surface->xyz[m->feature.lost],
+               sizeof r->feature_lost_at);
+    return TM_OK;
+}
+
+tm_status tm_octree_mesh_make(tm_octree_mesh *mesh, const tm_octree *octree,
+                              tm_surface *surface, tm_error *error)
+{
+    tm_solid solid;
+    tm_status status = tm_solid_choose(&solid, octree, surface, error);
+    *mesh = (tm_octree_mesh){.solid = solid};
+    if (status == TM_OK)
+        status = tm_octree_mesh_make_of(mesh, octree, &solid, surface, error);
+    return status;
+}
+
+tm_status tm_octree_mesh_make_of(tm_octree_mesh *mesh, const tm_octree *octree,
+                                 tm_solid *solid, tm_surface *surface, tm_error *error)
+{
+    *mesh = (tm_octree_mesh){.solid = *solid};
+    *solid = (tm_solid){0};
+    const size_t bytes = surface->triangles * sizeof *surface->patch;
+    uint32_t *patch = tm_new(surface->triangles, sizeof *patch);
+    if (!patch)
+        return tm_fail_memory(error);
+    memcpy(patch, surface->patch, bytes);
+    const tm_status status = make(mesh, octree, surface, error);
+    memcpy(surface->patch, patch, bytes);
+    free(patch);
+    return status;
+}
+
+void tm_octree_mesh_free(tm_octree_mesh *mesh)
+{
+    tm_solid_free(&mesh->solid);
+    tm_skin_free(&mesh->skin);
+    tm_feature_free(&mesh->feature);
+    tm_assembly_free(&mesh->assembly);
+    free(mesh->at);
+    free(mesh->held);
+    *mesh = (tm_octree_mesh){0};
+}

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* From a surface and an octree over it to a mesh: the leaves inside, a layer of elements
+ * around them whose outer nodes are on the surface. */
+#ifndef TM_LAYER_OCTREE_MESH_H
+#define TM_LAYER_OCTREE_MESH_H
+
+#include "assemble.h"
+#include "feature.h"
+
+/* What was made, and what could not be. Places are points. */
+typedef struct tm_octree_mesh_report {
+    size_t lost;                      /* leaves with surface but no boundary close by */
+    double lost_at[3];                /* the centre of one of them */
+    size_t corners_lost, curves_lost; /* of the surface */
+    double feature_lost_at[3];
+    size_t held_back;  /* boundary nodes that are not on the surface */
+    size_t invalid;    /* elements with J_ENS <= 0 */
+    size_t components; /* of the boundary */
+    int64_t euler;     /* of the boundary */
+} tm_octree_mesh_report;
+
+typedef struct tm_octree_mesh {
+    tm_solid solid;
+    tm_skin skin;
+    tm_feature feature;
+    tm_assembly assembly;
+    tm_surface_point *at; /* [nodes of the skin]: where they are on the surface */
+    bool *held;           /* [nodes of the skin]: it is not there */
+    tm_octree_mesh_report report;
+} tm_octree_mesh;
+
+/* Makes the mesh of an octree. The surface's patches are joined for a while where one of
+ * its curves is too fine, and are as they were after. TM_ERROR_INPUT where no leaf is
+ * inside; TM_ERROR_SYSTEM where memory or 32-bit ids are out. *mesh is to be freed, after
+ * an error too. */
+tm_status tm_octree_mesh_make(tm_octree_mesh *mesh, const tm_octree *octree,
+                              tm_surface *surface, tm_error *error);
+/* The same where the leaves are chosen already: tm_solid_choose() filled *solid, which
+ * becomes the mesh's and is empty then. */
+tm_status tm_octree_mesh_make_of(tm_octree_mesh *mesh, const tm_octree *octree,
+                                 tm_solid *solid, tm_surface *surface, tm_error *error);
+void tm_octree_mesh_free(tm_octree_mesh *mesh);
+
+#endif

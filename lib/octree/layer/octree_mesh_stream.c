@@ -1,0 +1,167 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "octree_mesh_stream.h"
+
+#include "../../base/array.h"
+#include "../forest/octree_stream.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* An empty block. */
+static tm_block *add(tm_stream *stream, const char *name, tm_error *error)
+{
+    tm_block *block = tm_stream_add(stream, name);
+    if (!block)
+        tm_fail_memory(error);
+    return block;
+}
+
+static tm_status give_nodes(tm_octree_mesh *m, tm_stream *stream, tm_error *error)
+{
+    tm_block *node = tm_stream_find(stream, ".node");
+    const tm_assembly *a = &m->assembly;
+    node->attribute = calloc(a->mesh.nodes, sizeof *node->attribute);
+    if (!node->attribute)
+        return tm_fail_memory(error);
+    for (size_t s = 0; s < m->skin.nodes; s++) {
+        const double place = TM_NODE_ON_PATCH + m->feature.kind[s];
+        node->attribute[a->outer + s] = m->held[s] ? -place : place;
+    }
+    node->count = a->mesh.nodes;
+    node->attributes = 1;
+    node->real = (double *)m->assembly.mesh.xyz;
+    m->assembly.mesh.xyz = NULL;
+    return TM_OK;
+}
+
+static tm_status give_elements(tm_octree_mesh *m, const tm_octree *octree, bool levels,
+                               tm_stream *stream, tm_error *error)
+{
+    tm_block *mix = add(stream, ".mix", error);
+    if (!mix)
+        return error->status;
+    tm_mixed_mesh *mesh = &m->assembly.mesh;
+    mix->count = mesh->elements;
+    if (levels) {
+        mix->attributes = 1;
+        mix->attribute = tm_new(mesh->elements, sizeof *mix->attribute);
+        if (!mix->attribute)
+            return tm_fail_memory(error);
+        for (size_t l = 0; l < octree->leaves; l++)
+            for (size_t e = m->assembly.first[l]; e < m->assembly.first[l + 1]; e++)
+                mix->attribute[e] = octree->leaf[l].level;
+    }
+    mix->start = mesh->start;
+    mix->item = mesh->item;
+    mesh->start = NULL;
+    mesh->item = NULL;
+    return TM_OK;
+}
+
+/* Where rows of .facet go. */
+typedef struct {
+    tm_block *block;
+    size_t facets, items;
+} facet_writer;
+
+static void add_facet(facet_writer *w, const tm_octree_mesh *m, uint32_t element,
+                      int32_t marker, unsigned k, const uint32_t *corner)
+{
+    w->block->integer[2 * w->facets] = element;
+    w->block->integer[2 * w->facets + 1] = TM_NONE;
+    w->block->marker[w->facets] = marker;
+    w->block->start[w->facets++] = w->items;
+    for (unsigned i = 0; i < k; i++)
+        w->block->item[w->items++] = m->assembly.outer + corner[i];
+}
+
+/* The marker of a face: that of the triangle closest to its middle. */
+static int32_t marker_of(const tm_octree_mesh *m, const tm_surface *surface, size_t f)
+{
+    const double(*xyz)[3] = (const double(*)[3])m->assembly.mesh.xyz + m->assembly.outer;
+    const unsigned k = tm_skin_corners(&m->skin, f);
+    const uint32_t *face = m->skin.face[f];
+    double middle[3] = {0, 0, 0};
+    for (unsigned c = 0; c < k; c++)
+        for (int i = 0; i < 3; i++)
+            middle[i] += xyz[face[c]][i] / k;
+    tm_surface_point at = {.triangle = m->at[face[0]].triangle};
+    tm_surface_closest(surface, middle, TM_NONE, &at);
+    return surface->marker[at.triangle];
+}
+
+/* The boundary faces as rows of .facet: a quadrilateral, a triangle, or two triangles. */
+static tm_status give_facets(const tm_octree_mesh *m, const tm_surface *surface,
+                             tm_stream *stream, tm_error *error)
+{
+    const tm_skin *skin = &m->skin;
+    size_t facets = 0, items = 0;
+    for (size_t f = 0; f < skin->faces; f++) {
+        const bool cut = skin->cut[f] != TM_UNCUT;
+        facets += cut ? 2 : 1;
+        items += cut ? 2 * 3 : tm_skin_corners(skin, f);
+    }
+    tm_block *facet = add(stream, ".facet", error);
+    if (!facet)
+        return error->status;
+    facet->markers = true;
+    const tm_status status = tm_block_allocate(facet, facets, items, error);
+    if (status != TM_OK)
+        return status;
+    facet_writer w = {.block = facet};
+    for (size_t f = 0; f < skin->faces; f++) {
+        const uint32_t *face = skin->face[f];
+        const int32_t marker = marker_of(m, surface, f);
+        const uint32_t element = m->assembly.layer[f];
+        if (skin->cut[f] == TM_UNCUT) {
+            add_facet(&w, m, element, marker, tm_skin_corners(skin, f), face);
+            continue;
+        }
+        for (uint32_t t = 0; t < 2; t++) {
+            const uint8_t *corner = tm_cut_triangles[skin->cut[f]][t];
+            add_facet(&w, m, element + t, marker, 3,
+                      (uint32_t[]){face[corner[0]], face[corner[1]], face[corner[2]]});
+        }
+    }
+    facet->start[w.facets] = w.items;
+    return TM_OK;
+}
+
+static tm_status give_surface(tm_surface *surface, tm_stream *stream, tm_error *error)
+{
+    tm_block *node = add(stream, "surface.node", error);
+    if (!node)
+        return error->status;
+    node->count = surface->nodes;
+    node->real = (double *)surface->xyz;
+    surface->xyz = NULL;
+    tm_block *face = add(stream, "surface.face", error);
+    if (!face)
+        return error->status;
+    face->count = surface->triangles;
+    face->integer = (uint32_t *)surface->triangle;
+    surface->triangle = NULL;
+    face->markers = surface->marker != NULL;
+    face->marker = surface->marker;
+    surface->marker = NULL;
+    return TM_OK;
+}
+
+tm_status tm_octree_mesh_give(tm_octree_mesh *mesh, const tm_octree *octree,
+                              tm_surface *surface, bool levels, tm_stream *stream,
+                              tm_error *error)
+{
+    /* Nodes come first, but facets look at them before they are given away. */
+    tm_status status = add(stream, ".node", error) ? TM_OK : error->status;
+    if (status == TM_OK && surface->marker)
+        status = give_facets(mesh, surface, stream, error);
+    if (status == TM_OK)
+        status = give_nodes(mesh, stream, error);
+    if (status == TM_OK)
+        status = give_elements(mesh, octree, levels, stream, error);
+    if (status == TM_OK)
+        status = tm_octree_give_blocks(octree, mesh->assembly.first, stream, error);
+    if (status == TM_OK)
+        status = give_surface(surface, stream, error);
+    return status;
+}

@@ -1,0 +1,151 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "untangling.h"
+
+#include "../../base/array.h"
+#include "../../optimise/optimise_surface.h"
+#include "lattice_points.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Half of the way so many times, then all of it. */
+enum { HALVES = 5 };
+
+/* An element below is not taken for valid: it must be so in other programs too. */
+static const double least_valid = 1e-6;
+
+typedef struct {
+    tm_mixed_mesh *mesh;
+    const double (*base)[3];
+    uint8_t *steps;  /* [nodes]: how often it went half of its way back */
+    bool *changed;   /* [nodes]: in the last round */
+    bool *to_change; /* [nodes]: in this one */
+    size_t invalid;  /* elements whose nodes are all on the lattice */
+} retreat;
+
+static bool has_changed(const retreat *r, size_t e)
+{
+    for (size_t i = r->mesh->start[e]; i < r->mesh->start[e + 1]; i++)
+        if (r->changed[r->mesh->item[i]])
+            return true;
+    return false;
+}
+
+/* Marks the nodes of an invalid element that can go back; false where none can. */
+static bool mark_nodes(retreat *r, size_t e)
+{
+    bool any = false;
+    for (size_t i = r->mesh->start[e]; i < r->mesh->start[e + 1]; i++) {
+        const uint32_t n = r->mesh->item[i];
+        if (r->steps[n] <= HALVES) {
+            r->to_change[n] = true;
+            any = true;
+        }
+    }
+    return any;
+}
+
+static void go_back(retreat *r, size_t n)
+{
+    double *xyz = r->mesh->xyz[n];
+    r->steps[n]++;
+    for (int i = 0; i < 3; i++)
+        xyz[i] = r->steps[n] > HALVES ? r->base[n][i] : (xyz[i] + r->base[n][i]) / 2;
+}
+
+/* One round over the elements at nodes that changed; false when all are valid. */
+static bool take_back(retreat *r)
+{
+    const tm_mixed_mesh *mesh = r->mesh;
+    bool any = false;
+    for (size_t e = 0; e < mesh->elements; e++) {
+        if (!has_changed(r, e) || tm_mixed_jens(mesh, e) >= least_valid)
+            continue;
+        if (mark_nodes(r, e))
+            any = true;
+        else
+            r->invalid++;
+    }
+    for (size_t n = 0; n < mesh->nodes; n++) {
+        r->changed[n] = r->to_change[n];
+        if (r->to_change[n])
+            go_back(r, n);
+        r->to_change[n] = false;
+    }
+    return any;
+}
+
+static void retreat_all(tm_octree_mesh *m, retreat *r)
+{
+    memset(r->changed, true, r->mesh->nodes);
+    while (take_back(r))
+        ;
+    m->report.invalid = r->invalid;
+    for (size_t s = 0; s < m->skin.nodes; s++) {
+        m->held[s] = r->steps[m->assembly.outer + s] > 0;
+        m->report.held_back += m->held[s];
+    }
+}
+
+static tm_status hold_back(tm_octree_mesh *m, const tm_octree *octree, tm_error *error)
+{
+    const size_t nodes = m->assembly.mesh.nodes;
+    double(*base)[3] = tm_new(nodes, sizeof *base);
+    retreat r = {.mesh = &m->assembly.mesh,
+                 .base = (const double(*)[3])base,
+                 .steps = calloc(nodes + 1, 1),
+                 .changed = malloc(nodes + 1),
+                 .to_change = calloc(nodes + 1, 1)};
+    tm_status status =
+        base && r.steps && r.changed && r.to_change ? TM_OK : tm_fail_memory(error);
+    if (status == TM_OK)
+        status = tm_base_places(&m->assembly, octree, &m->solid, &m->skin, base, error);
+    if (status == TM_OK)
+        retreat_all(m, &r);
+    free(base);
+    free(r.steps);
+    free(r.changed);
+    free(r.to_change);
+    return status;
+}
+
+/* What each node may do while elements are improved. */
+static tm_node_rule *find_rules(const tm_octree_mesh *m)
+{
+    static const uint8_t freedom[] = {[TM_ON_PATCH] = TM_MOVES_ON_SURFACE,
+                                      [TM_ON_CURVE] = TM_MOVES_ON_CURVE,
+                                      [TM_ON_CORNER] = TM_MOVES_AT_CORNER};
+    const tm_assembly *a = &m->assembly;
+    tm_node_rule *rule = tm_new(a->mesh.nodes, sizeof *rule);
+    for (size_t n = 0; rule && n < a->mesh.nodes; n++)
+        rule[n] = (tm_node_rule){.where = TM_NONE, .freedom = TM_MOVES_FREELY};
+    for (size_t s = 0; rule && s < m->skin.nodes; s++)
+        rule[a->outer + s] = (tm_node_rule){.where = m->feature.of[s],
+                                            .freedom = freedom[m->feature.kind[s]]};
+    return rule;
+}
+
+tm_status tm_settle(tm_octree_mesh *mesh, const tm_octree *octree,
+                    const tm_surface *surface, tm_error *error)
+{
+    const double threshold = 0.2;
+    const tm_boundary boundary = tm_boundary_of_surface(surface);
+    /* What can be mended takes few measurements of elements; where the surface is
+     * too fine for the leaves there would be no end. */
+    const size_t few = 1, at_least = 1500000;
+    const tm_optimise_options options = {
+        .threshold = threshold,
+        .held_threshold = threshold,
+        .effort = 1,
+        .most_measured = at_least + few * mesh->assembly.mesh.elements};
+    tm_optimise_report report;
+    tm_node_rule *rule = find_rules(mesh);
+    if (!rule)
+        return tm_fail_memory(error);
+    tm_status status = tm_mixed_optimise(&mesh->assembly.mesh, rule, &boundary, &options,
+                                         &report, error);
+    free(rule);
+    if (status == TM_OK && report.worst_after < least_valid)
+        status = hold_back(mesh, octree, error);
+    return status;
+}

@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "repair_steps.h"
+
+#include "../../base/array.h"
+#include "../../element/shape.h"
+#include "../../stream/stream.h"
+#include "repair_faces.h"
+#include "repair_vicinity.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* An element and its parts. */
+typedef struct {
+    uint32_t element;
+    tm_star star;
+} division;
+
+typedef struct {
+    tm_repair_state *state;
+    double threshold;
+    uint32_t *face; /* those of the boundary */
+    size_t faces;
+    division *division; /* by element, ascending */
+    size_t divisions, room;
+} divider;
+
+/* The faces of an element that are on the boundary, as bits; `next` is the first boundary
+ * face that may be of it. */
+static unsigned find_open(const divider *d, size_t e, size_t *next)
+{
+    unsigned open = 0;
+    while (*next < d->faces && d->face[*next] >> TM_FACE_SHIFT < e)
+        (*next)++;
+    for (; *next < d->faces && d->face[*next] >> TM_FACE_SHIFT == e; (*next)++)
+        open |= 1U << (d->face[*next] & ((1U << TM_FACE_SHIFT) - 1));
+    return open;
+}
+
+static tm_status add_division(divider *d, size_t e, double jens, unsigned open,
+                              tm_error *error)
+{
+    division *grown = tm_grow(d->division, &d->room, d->divisions + 1, sizeof *grown);
+    if (!grown)
+        return tm_fail_memory(error);
+    d->division = grown;
+    division *here = &grown[d->divisions];
+    here->element = (uint32_t)e;
+    const tm_status status = tm_star_find(&here->star, &d->state->mesh, e, open,
+                                          fmax(d->threshold, TM_REPAIR_LEAST), error);
+    const bool invalid = tm_repair_is_bad(&d->state->mesh, e, jens, 0);
+    d->divisions += here->star.worst > (invalid ? fmin(jens, 0) : jens);
+    return status;
+}
+
+static tm_status find_divisions(divider *d, tm_error *error)
+{
+    enum { TETRAHEDRON = 4 };
+    const tm_mixed_mesh *mesh = &d->state->mesh;
+    size_t next = 0;
+    tm_status status = tm_boundary_faces(mesh, &d->face, &d->faces, error);
+    for (size_t e = 0; status == TM_OK && e < mesh->elements; e++) {
+        const double jens = tm_mixed_jens(mesh, e);
+        if (mesh->start[e + 1] - mesh->start[e] > TETRAHEDRON &&
+            tm_repair_is_bad(mesh, e, jens, d->threshold))
+            status = add_division(d, e, jens, find_open(d, e, &next), error);
+    }
+    return status;
+}
+
+static tm_status allocate(tm_repair_state *to, size_t items, tm_error *error)
+{
+    to->mesh.xyz = tm_new(to->mesh.nodes, sizeof *to->mesh.xyz);
+    to->rule = tm_new(to->mesh.nodes, sizeof *to->rule);
+    to->place = tm_new(to->mesh.nodes, sizeof *to->place);
+    to->mesh.start = tm_new(to->mesh.elements + 1, sizeof *to->mesh.start);
+    to->mesh.item = tm_new(items, sizeof *to->mesh.item);
+    to->octant = tm_new(to->mesh.elements, sizeof *to->octant);
+    to->origin = tm_new(to->mesh.elements, sizeof *to->origin);
+    return to->mesh.xyz && to->rule && to->place && to->mesh.start && to->mesh.item &&
+                   to->octant && to->origin
+               ? TM_OK
+               : tm_fail_memory(error);
+}
+
+static void add_element(tm_repair_state *to, size_t k, const uint32_t *item,
+                        uint32_t middle, const tm_repair_state *from, size_t e)
+{
+    tm_mixed_mesh *mesh = &to->mesh;
+    size_t end = mesh->start[mesh->elements];
+    for (size_t i = 0; i < k; i++)
+        mesh->item[end++] = item[i] == TM_NONE ? middle : item[i];
+    to->octant[mesh->elements] = from->octant[e];
+    to->origin[mesh->elements] = from->origin[e];
+    mesh->start[++mesh->elements] = end;
+}
+
+/* The mesh with the divisions; octree and rows are not copied. */
+static tm_status apply(const divider *d, tm_repair_state *to, tm_error *error)
+{
+    const tm_repair_state *from = d->state;
+    const tm_mixed_mesh *mesh = &from->mesh;
+    size_t items = mesh->start[mesh->elements];
+    to->mesh.nodes = mesh->nodes + d->divisions;
+    to->mesh.elements = mesh->elements;
+    for (size_t i = 0; i < d->divisions; i++) {
+        to->mesh.elements += d->division[i].star.parts;
+        items += d->division[i].star.start[d->division[i].star.parts];
+    }
+    if (to->mesh.nodes >= TM_NONE || to->mesh.elements >= TM_NONE)
+        return tm_fail(error, TM_ERROR_SYSTEM, "the mesh has too many elements");
+    const tm_status status = allocate(to, items, error);
+    if (status != TM_OK)
+        return status;
+    memcpy(to->mesh.xyz, mesh->xyz, mesh->nodes * sizeof *mesh->xyz);
+    memcpy(to->rule, from->rule, mesh->nodes * sizeof *from->rule);
+    memcpy(to->place, from->place, mesh->nodes * sizeof *from->place);
+    to->mesh.elements = 0;
+    to->mesh.start[0] = 0;
+    for (size_t e = 0, i = 0; e < mesh->elements; e++) {
+        if (i == d->divisions || d->division[i].element != e) {
+            add_element(to, mesh->start[e + 1] - mesh->start[e],
+                        mesh->item + mesh->start[e], TM_NONE, from, e);
+            continue;
+        }
+        const tm_star *star = &d->division[i].star;
+        const size_t middle = mesh->nodes + i++;
+        memcpy(to->mesh.xyz[middle], star->middle, sizeof star->middle);
+        to->rule[middle] = (tm_node_rule){.where = TM_NONE, .freedom = TM_MOVES_FREELY};
+        to->place[middle] = 0;
+        for (size_t p = 0; p < star->parts; p++)
+            add_element(to, star->start[p + 1] - star->start[p],
+                        star->item + star->start[p], (uint32_t)middle, from, e);
+    }
+    return TM_OK;
+}
+
+/* Takes the mesh of another state. */
+static void take(tm_repair_state *state, tm_repair_state *by)
+{
+    by->octree = state->octree;
+    by->row = state->row;
+    by->remade = state->remade;
+    by->divided = true;
+    state->octree = (tm_octree){.leaves = 0};
+    state->row = NULL;
+    tm_repair_state_free(state);
+    *state = *by;
+    *by = (tm_repair_state){0};
+}
+
+tm_status tm_repair_divide(tm_repair_state *state, const tm_surface *surface,
+                           double threshold, tm_repair_score *score, size_t *divided,
+                           tm_error *error)
+{
+    divider d = {.state = state, .threshold = threshold};
+    tm_repair_state made = {0};
+    tm_status status = find_divisions(&d, error);
+    if (status == TM_OK && d.divisions > 0)
+        status = apply(&d, &made, error);
+    if (status == TM_OK && d.divisions > 0) {
+        tm_repair_score now = tm_repair_measure(&made, threshold);
+        status = tm_repair_move(&made, surface, threshold, threshold, 1, &now, error);
+        if (status == TM_OK && tm_repair_better(&now, score)) {
+            *score = now;
+            *divided += d.divisions;
+            take(state, &made);
+        }
+    }
+    tm_repair_state_free(&made);
+    free(d.face);
+    free(d.division);
+    return status;
+}

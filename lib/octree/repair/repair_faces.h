@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The faces of a mixed mesh that belong to one element. */
+#ifndef TM_REPAIR_REPAIR_FACES_H
+#define TM_REPAIR_REPAIR_FACES_H
+
+#include "../../base/error.h"
+#include "../../mesh/mixed_mesh.h"
+
+enum { TM_FACE_SHIFT = 3 };
+
+/* *face = element << TM_FACE_SHIFT | its face (shape.h), ascending; malloc'ed.
+ * TM_ERROR_SYSTEM: memory, or 2^28 elements. O(elements). */
+tm_status tm_boundary_faces(const tm_mixed_mesh *mesh, uint32_t **face, size_t *faces,
+                            tm_error *error);
+
+#endif

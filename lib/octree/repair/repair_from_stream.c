@@ -1,0 +1,170 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "repair_stream.h"
+
+#include "../../base/array.h"
+#include "../../geom/vector.h"
+#include "../../element/shape.h"
+#include "../../mesh/mixed_stream.h"
+#include "../layer/octree_mesh_stream.h"
+#include "../forest/octree_stream.h"
+#include "repair_boundary.h"
+#include "repair_faces.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static tm_status allocate(tm_repair_state *state, tm_error *error)
+{
+    const size_t nodes = state->mesh.nodes, elements = state->mesh.elements;
+    state->rule = calloc(nodes + 1, sizeof *state->rule);
+    state->place = calloc(nodes + 1, sizeof *state->place);
+    state->octant = tm_new(elements, sizeof *state->octant);
+    state->origin = tm_new(elements, sizeof *state->origin);
+    if (!state->rule || !state->place || !state->octant || !state->origin)
+        return tm_fail_memory(error);
+    for (size_t e = 0; e < elements; e++) {
+        state->octant[e] = TM_NONE;
+        state->origin[e] = (uint32_t)e;
+    }
+    return TM_OK;
+}
+
+static void find_octants(tm_repair_state *state, const tm_block *octant)
+{
+    enum { FIRST = 4, PAST, COLUMNS };
+    for (size_t o = 0; octant && o < octant->count; o++) {
+        const uint32_t *row = octant->integer + o * COLUMNS;
+        for (uint32_t e = row[FIRST]; e < row[PAST]; e++)
+            state->octant[e] = (uint32_t)o;
+    }
+}
+
+/* Without the octree the mesh can be optimised still. */
+static tm_status find_octree(tm_repair_state *state, const tm_stream *stream,
+                             const tm_surface *surface, tm_repair_notes *notes,
+                             tm_error *error)
+{
+    notes->no_octree.what[0] = '\0';
+    if (!surface)
+        return TM_OK;
+    tm_status status =
+        tm_octree_read_blocks(&state->octree, stream, surface, &state->row, error);
+    if (status == TM_ERROR_INPUT) {
+        notes->no_octree = *error;
+        return TM_OK;
+    }
+    return status;
+}
+
+/* Marks the nodes of the boundary. */
+static tm_status find_boundary(const tm_mixed_mesh *mesh, bool *where, tm_error *error)
+{
+    uint32_t *face;
+    size_t faces;
+    const tm_status status = tm_boundary_faces(mesh, &face, &faces, error);
+    for (size_t f = 0; status == TM_OK && f < faces; f++) {
+        const size_t e = face[f] >> TM_FACE_SHIFT;
+        const uint32_t *item = mesh->item + mesh->start[e];
+        const tm_mixed_shape *shape =
+            &tm_mixed_shapes[mesh->start[e + 1] - mesh->start[e]];
+        const uint8_t *corner = shape->face[face[f] & ((1u << TM_FACE_SHIFT) - 1)];
+        for (size_t i = 0; i < tm_mixed_face_nodes(corner); i++)
+            where[item[corner[i]]] = true;
+    }
+    free(face);
+    return status;
+}
+
+/* Whether a value can be the place of a node that is on the boundary, or is not. */
+static bool is_place(double value, bool boundary)
+{
+    return boundary
+               ? fabs(value) == TM_NODE_ON_PATCH || fabs(value) == TM_NODE_ON_CURVE ||
+                     fabs(value) == TM_NODE_ON_CORNER
+               : value == TM_NODE_INSIDE;
+}
+
+static bool are_places(const tm_block *node, const bool *where)
+{
+    if (node->attributes != 1)
+        return false;
+    for (size_t v = 0; v < node->count; v++)
+        if (!is_place(node->attribute[v], where[v]))
+            return false;
+    return true;
+}
+
+static void hold_all(tm_repair_state *state, const bool *where)
+{
+    for (size_t v = 0; v < state->mesh.nodes; v++) {
+        state->place[v] = where[v] ? TM_NODE_ON_PATCH : TM_NODE_INSIDE;
+        state->rule[v] = (tm_node_rule){
+            .where = TM_NONE, .freedom = where[v] ? TM_MOVES_NOT : TM_MOVES_FREELY};
+    }
+}
+
+static tm_status find_rules(tm_repair_state *state, const tm_block *node,
+                            const tm_surface *surface, tm_repair_notes *notes,
+                            tm_error *error)
+{
+    bool *where = calloc(state->mesh.nodes + 1, sizeof *where);
+    if (!where)
+        return tm_fail_memory(error);
+    tm_status status = find_boundary(&state->mesh, where, error);
+    if (status == TM_OK)
+        notes->attributed = are_places(node, where);
+    if (status == TM_OK && surface)
+        status = tm_repair_find_rules(surface, state->mesh.nodes,
+                                      (const double(*)[3])state->mesh.xyz,
+                                      notes->attributed ? node->attribute : NULL, where,
+                                      state->rule, state->place, error);
+    else
+        hold_all(state, where);
+    free(where);
+    return status;
+}
+
+tm_status tm_repair_take(tm_repair_state *state, tm_stream *stream, tm_error *error)
+{
+    *state = (tm_repair_state){0};
+    tm_status status = tm_mixed_mesh_take(&state->mesh, stream, error);
+    if (status == TM_OK && state->mesh.elements == 0)
+        status = tm_fail(error, TM_ERROR_INPUT,
+                         "the stream has no elements (the blocks .node and .mix)");
+    if (status == TM_OK)
+        status = allocate(state, error);
+    if (status == TM_OK)
+        find_octants(state, tm_stream_find(stream, ".octant"));
+    return status;
+}
+
+static bool says_none_held(const tm_block *node)
+{
+    if (node->attributes != 1)
+        return false;
+    for (size_t v = 0; v < node->count; v++)
+        if (!is_place(node->attribute[v], node->attribute[v] != 0) ||
+            node->attribute[v] < 0)
+            return false;
+    return true;
+}
+
+bool tm_repair_is_needed(const tm_repair_state *state, const tm_stream *stream,
+                         double threshold)
+{
+    return (tm_stream_find(stream, "surface.node") &&
+            !says_none_held(tm_stream_find(stream, ".node"))) ||
+           tm_repair_measure(state, threshold).bad > 0;
+}
+
+tm_status tm_repair_prepare(tm_repair_state *state, const tm_stream *stream,
+                            const tm_surface *surface, tm_repair_notes *notes,
+                            tm_error *error)
+{
+    *notes = (tm_repair_notes){0};
+    const tm_status status = find_octree(state, stream, surface, notes, error);
+    if (status != TM_OK)
+        return status;
+    return find_rules(state, tm_stream_find(stream, ".node"), surface, notes, error);
+}

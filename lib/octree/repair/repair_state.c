@@ -1,0 +1,178 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "repair_state.h"
+
+#include "../../base/array.h"
+#include "../../element/certify.h"
+#include "../../stream/stream.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+bool tm_repair_is_bad(const tm_mixed_mesh *mesh, size_t e, double jens, double threshold)
+{
+    const size_t k = mesh->start[e + 1] - mesh->start[e];
+    if (jens < threshold || jens <= 0)
+        return true;
+    return tm_certify(k, (const double(*)[3])mesh->xyz, mesh->item + mesh->start[e]) !=
+           TM_POSITIVE;
+}
+
+tm_repair_score tm_repair_measure(const tm_repair_state *state, double threshold)
+{
+    const tm_mixed_mesh *mesh = &state->mesh;
+    tm_repair_score score = {.worst = 1};
+    double sum = 0;
+    for (size_t v = 0; v < mesh->nodes; v++)
+        score.held += state->rule[v].held;
+    for (size_t e = 0; e < mesh->elements; e++) {
+        const double jens = tm_mixed_jens(mesh, e);
+        const bool invalid = tm_repair_is_bad(mesh, e, jens, 0);
+        score.invalid += invalid;
+        score.bad += invalid || jens < threshold;
+        score.worst = jens < score.worst ? jens : score.worst;
+        sum += jens;
+    }
+    if (mesh->elements > 0)
+        score.average = sum / (double)mesh->elements;
+    return score;
+}
+
+bool tm_repair_better(const tm_repair_score *a, const tm_repair_score *b)
+{
+    if (a->invalid != b->invalid)
+        return a->invalid < b->invalid;
+    if (a->held != b->held)
+        return a->held < b->held;
+    if (a->bad != b->bad)
+        return a->bad < b->bad;
+    return a->worst > b->worst;
+}
+
+int tm_repair_compare_octants(const void *a, const void *b)
+{
+    const uint32_t *p = a, *q = b;
+    return (*p > *q) - (*p < *q);
+}
+
+/* Sorts octants and drops repeats; returns how many are left. */
+static size_t sort_once(uint32_t *octant, size_t count)
+{
+    size_t kept = 0;
+    if (count > 0)
+        qsort(octant, count, sizeof *octant, tm_repair_compare_octants);
+    for (size_t i = 0; i < count; i++)
+        if (i == 0 || octant[i] != octant[i - 1])
+            octant[kept++] = octant[i];
+    return kept;
+}
+
+static bool has_held(const tm_repair_state *state, size_t e)
+{
+    for (size_t i = state->mesh.start[e]; i < state->mesh.start[e + 1]; i++)
+        if (state->rule[state->mesh.item[i]].held)
+            return true;
+    return false;
+}
+
+tm_status tm_repair_bad_octants(const tm_repair_state *state, double threshold, bool held,
+                                uint32_t **octant, size_t *count, tm_error *error)
+{
+    const tm_mixed_mesh *mesh = &state->mesh;
+    size_t room = 0;
+    *octant = NULL;
+    *count = 0;
+    for (size_t e = 0; e < mesh->elements; e++) {
+        const double jens = tm_mixed_jens(mesh, e);
+        if (state->octant[e] == TM_NONE ||
+            !(tm_repair_is_bad(mesh, e, jens, threshold) || (held && has_held(state, e))))
+            continue;
+        uint32_t *grown = tm_grow(*octant, &room, *count + 1, sizeof *grown);
+        if (!grown)
+            return tm_fail_memory(error);
+        *octant = grown;
+        grown[(*count)++] = state->octant[e];
+    }
+    *count = sort_once(*octant, *count);
+    return TM_OK;
+}
+
+tm_status tm_repair_widen(const tm_repair_state *state, uint32_t **octant, size_t *count,
+                          tm_error *error)
+{
+    const tm_mixed_mesh *mesh = &state->mesh;
+    const size_t old = *count;
+    size_t room = old;
+    bool *marked = calloc(mesh->nodes + 1, sizeof *marked);
+    if (!marked)
+        return tm_fail_memory(error);
+    for (size_t e = 0; e < mesh->elements; e++)
+        if (bsearch(&state->octant[e], *octant, old, sizeof **octant,
+                    tm_repair_compare_octants))
+            for (size_t i = mesh->start[e]; i < mesh->start[e + 1]; i++)
+                marked[mesh->item[i]] = true;
+    for (size_t e = 0; e < mesh->elements; e++) {
+        bool near = false;
+        for (size_t i = mesh->start[e]; i < mesh->start[e + 1] && !near; i++)
+            near = marked[mesh->item[i]];
+        if (!near || state->octant[e] == TM_NONE)
+            continue;
+        uint32_t *grown = tm_grow(*octant, &room, *count + 1, sizeof *grown);
+        if (!grown) {
+            free(marked);
+            return tm_fail_memory(error);
+        }
+        *octant = grown;
+        grown[(*count)++] = state->octant[e];
+    }
+    free(marked);
+    *count = sort_once(*octant, *count);
+    return TM_OK;
+}
+
+void tm_repair_free_held(tm_repair_state *state)
+{
+    for (size_t v = 0; v < state->mesh.nodes; v++)
+        if (state->rule[v].held && state->rule[v].freedom == TM_MOVES_ON_SURFACE)
+            state->rule[v].where = TM_NONE;
+}
+
+tm_status tm_repair_save(tm_repair_places *places, const tm_repair_state *state,
+                         tm_error *error)
+{
+    const size_t nodes = state->mesh.nodes;
+    places->xyz = tm_new(nodes, sizeof *places->xyz);
+    places->rule = tm_new(nodes, sizeof *places->rule);
+    if (!places->xyz || !places->rule)
+        return tm_fail_memory(error);
+    memcpy(places->xyz, state->mesh.xyz, nodes * sizeof *places->xyz);
+    memcpy(places->rule, state->rule, nodes * sizeof *places->rule);
+    return TM_OK;
+}
+
+void tm_repair_restore(const tm_repair_places *places, tm_repair_state *state)
+{
+    const size_t nodes = state->mesh.nodes;
+    memcpy(state->mesh.xyz, places->xyz, nodes * sizeof *places->xyz);
+    memcpy(state->rule, places->rule, nodes * sizeof *places->rule);
+}
+
+void tm_repair_places_free(tm_repair_places *places)
+{
+    free(places->xyz);
+    free(places->rule);
+    *places = (tm_repair_places){0};
+}
+
+void tm_repair_state_free(tm_repair_state *state)
+{
+    free(state->mesh.xyz);
+    free(state->mesh.start);
+    free(state->mesh.item);
+    free(state->rule);
+    free(state->place);
+    free(state->octant);
+    free(state->origin);
+    tm_octree_free(&state->octree);
+    free(state->row);
+    *state = (tm_repair_state){0};
+}

@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A mesh on its way through the repair: elements with their octants, and what each node
+ * may do. */
+#ifndef TM_REPAIR_REPAIR_STATE_H
+#define TM_REPAIR_REPAIR_STATE_H
+
+#include "../../optimise/optimise.h"
+#include "../forest/octree.h"
+
+/* An element whose J_ENS is below is not taken for valid, whatever the threshold: it must
+ * be so in other programs too. */
+#define TM_REPAIR_LEAST 1e-6
+
+/* Numbers of octants are those of rows of .octant. */
+typedef struct tm_repair_state {
+    tm_mixed_mesh mesh;
+    tm_node_rule *rule; /* [nodes]; of repair_boundary.h */
+    uint8_t *place;     /* [nodes]: tm_node_place */
+    uint32_t *octant;   /* [elements]: TM_NONE where it is in none */
+    uint32_t *origin;   /* [elements]: of which it is a part, ascending, until `remade` */
+    tm_octree octree;   /* no leaves: there is none */
+    uint32_t *row;      /* [leaves]: of the octant */
+    bool divided;       /* some elements are parts of what they were; nodes were added */
+    bool remade;        /* from another octree: all of it is new */
+} tm_repair_state;
+
+/* How good it is. */
+typedef struct tm_repair_score {
+    size_t held;    /* nodes that are not on the surface yet */
+    size_t invalid; /* elements with J_ENS <= 0, or not certified (certify.h) */
+    size_t bad;     /* these and all below the threshold */
+    double worst;   /* J_ENS; 1 of no elements */
+    double average; /* 0 of no elements */
+} tm_repair_score;
+
+/* Whether an element, whose J_ENS is given, is bad. */
+bool tm_repair_is_bad(const tm_mixed_mesh *mesh, size_t e, double jens, double threshold);
+
+/* Measures all elements. O(elements). */
+tm_repair_score tm_repair_measure(const tm_repair_state *state, double threshold);
+
+/* Fewer invalid elements, else fewer nodes that are held back, else fewer bad elements,
+ * else a better worst one. */
+bool tm_repair_better(const tm_repair_score *a, const tm_repair_score *b);
+
+/* The octants that hold a bad element, or, with `held`, one at a node that is held back:
+ * ascending, malloc'ed. */
+tm_status tm_repair_bad_octants(const tm_repair_state *state, double threshold, bool held,
+                                uint32_t **octant, size_t *count, tm_error *error);
+
+/* Adds the octants that have a node in common with the elements of those listed. */
+tm_status tm_repair_widen(const tm_repair_state *state, uint32_t **octant, size_t *count,
+                          tm_error *error);
+
+/* Lets nodes that are held back before one patch go to any. */
+void tm_repair_free_held(tm_repair_state *state);
+
+/* For qsort() and bsearch(). */
+int tm_repair_compare_octants(const void *a, const void *b);
+
+/* A copy without the octree: what tm_repair_restore() needs to take back moves of nodes,
+ * as long as there are the same. */
+typedef struct tm_repair_places {
+    double (*xyz)[3];
+    tm_node_rule *rule;
+} tm_repair_places;
+
+tm_status tm_repair_save(tm_repair_places *places, const tm_repair_state *state,
+                         tm_error *error);
+void tm_repair_restore(const tm_repair_places *places, tm_repair_state *state);
+void tm_repair_places_free(tm_repair_places *places);
+
+void tm_repair_state_free(tm_repair_state *state);
+
+#endif

@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "repair_vicinity.h"
+
+#include "../../element/shape.h"
+#include "../../optimise/optimise.h"
+#include "../../element/jens.h"
+#include "../../stream/stream.h"
+
+#include <string.h>
+
+/* A star as a mesh of its own: the element's nodes, then the middle. */
+typedef struct {
+    size_t k;
+    double xyz[TM_MIXED_NODES + 1][3];
+    size_t parts;
+    size_t start[TM_STAR_PARTS + 1];
+    uint32_t item[TM_STAR_ITEMS];
+} small;
+
+static void add_part(small *s, size_t corners, const uint8_t *face)
+{
+    size_t items = s->start[s->parts];
+    for (size_t i = 0; i < corners; i++)
+        s->item[items++] = face[corners - 1 - i]; /* as seen from the middle */
+    s->item[items++] = (uint32_t)s->k;
+    s->start[++s->parts] = items;
+}
+
+/* The parts, each quadrilateral uncut (0) or cut from its corner 0 or 1 (1, 2). */
+static void add_parts(small *s, const uint8_t cut[TM_MIXED_FACES])
+{
+    const tm_mixed_shape *shape = &tm_mixed_shapes[s->k];
+    s->parts = 0;
+    s->start[0] = 0;
+    for (size_t f = 0; f < shape->faces; f++) {
+        const uint8_t *c = shape->face[f];
+        if (cut[f] == 0) {
+            add_part(s, tm_mixed_face_nodes(c), c);
+            continue;
+        }
+        const size_t o = cut[f] - 1U;
+        add_part(s, 3, (const uint8_t[]){c[o], c[o + 1], c[o + 2]});
+        add_part(s, 3, (const uint8_t[]){c[o + 2], c[(o + 3) % 4], c[o]});
+    }
+}
+
+static double measure(const small *s)
+{
+    double worst = 1;
+    for (size_t e = 0; e < s->parts; e++) {
+        const double jens = tm_jens(s->start[e + 1] - s->start[e],
+                                    (const double(*)[3])s->xyz, s->item + s->start[e]);
+        worst = jens < worst ? jens : worst;
+    }
+    return worst;
+}
+
+/* Moves the middle alone, from the mean of the corners. */
+static tm_status place_middle(small *s, double threshold, tm_error *error)
+{
+    tm_node_rule rule[TM_MIXED_NODES + 1];
+    for (size_t i = 0; i <= s->k; i++)
+        rule[i] = (tm_node_rule){.where = TM_NONE,
+                                 .freedom = i == s->k ? TM_MOVES_FREELY : TM_MOVES_NOT};
+    for (int j = 0; j < 3; j++) {
+        double sum = 0;
+        for (size_t i = 0; i < s->k; i++)
+            sum += s->xyz[i][j];
+        s->xyz[s->k][j] = sum / (double)s->k;
+    }
+    tm_mixed_mesh mesh = {.nodes = s->k + 1,
+                          .xyz = s->xyz,
+                          .elements = s->parts,
+                          .start = s->start,
+                          .item = s->item};
+    const tm_optimise_options options = {.threshold = threshold,
+                                         .held_threshold = threshold};
+    tm_optimise_report report;
+    return tm_mixed_optimise(&mesh, rule, NULL, &options, &report, error);
+}
+
+/* Tries one way to cut the faces; it becomes *star if it is better. */
+static tm_status try_cut(tm_star *star, small *s, const uint8_t cut[TM_MIXED_FACES],
+                         const uint32_t *node, double threshold, tm_error *error)
+{
+    add_parts(s, cut);
+    const tm_status status = place_middle(s, threshold, error);
+    const double worst = measure(s);
+    if (status != TM_OK || (star->parts > 0 && worst <= star->worst))
+        return status;
+    *star = (tm_star){.parts = s->parts, .worst = worst};
+    memcpy(star->start, s->start, sizeof star->start);
+    memcpy(star->middle, s->xyz[s->k], sizeof star->middle);
+    for (size_t i = 0; i < s->start[s->parts]; i++)
+        star->item[i] = s->item[i] == s->k ? TM_NONE : node[s->item[i]];
+    return TM_OK;
+}
+
+tm_status tm_star_find(tm_star *star, const tm_mixed_mesh *mesh, size_t e, unsigned open,
+                       double threshold, tm_error *error)
+{
+    const uint32_t *node = mesh->item + mesh->start[e];
+    small s = {.k = mesh->start[e + 1] - mesh->start[e]};
+    const tm_mixed_shape *shape = &tm_mixed_shapes[s.k];
+    for (size_t i = 0; i < s.k; i++)
+        memcpy(s.xyz[i], mesh->xyz[node[i]], sizeof s.xyz[i]);
+    *star = (tm_star){.parts = 0};
+    uint8_t best[TM_MIXED_FACES] = {0};
+    tm_status status = try_cut(star, &s, best, node, threshold, error);
+    for (size_t f = 0; f < shape->faces; f++) {
+        if (!(open >> f & 1) || tm_mixed_face_nodes(shape->face[f]) == 3)
+            continue;
+        uint8_t cut[TM_MIXED_FACES];
+        memcpy(cut, best, sizeof cut);
+        for (uint8_t way = 1; way <= 2 && status == TM_OK; way++) {
+            const double before = star->worst;
+            cut[f] = way;
+            status = try_cut(star, &s, cut, node, threshold, error);
+            if (star->worst > before)
+                best[f] = way;
+        }
+    }
+    return status;
+}

@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The elements at a sharp tip of the surface, made anew with one element on the tip. */
+#ifndef TM_REPAIR_SHARP_CORNER_H
+#define TM_REPAIR_SHARP_CORNER_H
+
+#include "repair_trial.h"
+
+enum { TM_TIP_PARTS = 48, TM_TIP_ITEMS = 5 * TM_TIP_PARTS };
+
+typedef struct tm_tip {
+    size_t parts;
+    size_t start[TM_TIP_PARTS + 1];
+    uint32_t item[TM_TIP_ITEMS];
+} tm_tip;
+
+/* `tip` is a node of the boundary, all of whose elements have an edge to the node
+ * `middle` inside. The boundary at the tip is three or four faces; the ends of its edges
+ * there become the base of a tetrahedron or a pyramid on the tip, and what else is of the
+ * `count` elements, which are all at the middle, is divided from the middle: where
+ * an element had the dihedral angle of a third of the tip, this one has all of it.
+ * Quadrilaterals of the boundary at the tip are cut. False where that cannot be. */
+bool tm_tip_divide(tm_tip *parts, const tm_mixed_mesh *mesh, const uint32_t *element,
+                   size_t count, uint32_t tip, uint32_t middle);
+
+#endif

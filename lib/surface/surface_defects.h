@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What is wrong with a surface, as far as counting shows it: before a mesher is run on
+ * it, or to explain why that failed. */
+#ifndef TM_SURFACE_SURFACE_DEFECTS_H
+#define TM_SURFACE_SURFACE_DEFECTS_H
+
+#include "surface_file.h"
+
+typedef struct tm_surface_defects {
+    size_t duplicate_nodes;  /* nodes at the place of an earlier one */
+    size_t unused_nodes;     /* places that no polygon has as a corner */
+    size_t repeated_corners; /* polygons with a place twice */
+    size_t open_edges;       /* with one polygon only */
+    size_t crowded_edges;    /* with more than two polygons */
+    uint32_t open_edge[2];   /* the nodes of one of the open edges */
+    bool flat;               /* all nodes are in one plane, exactly */
+} tm_surface_defects;
+
+/* Counts them. Nodes with equal coordinates are taken as one node. Polygons of one node
+ * or two have no edges. O(n log n) in the number of corners. */
+tm_status tm_surface_find_defects(const tm_polygon_surface *surface,
+                                  tm_surface_defects *defects, tm_error *error);
+
+#endif

@@ -1,0 +1,292 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* When the improver tries what. */
+#include "improve_engine.h"
+
+#include "../../base/array.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Prices of a tetrahedron: those at which insertions begin, and at which a kick ends. */
+static const double insertion_price = 0.1, kick_price = -1, kick_price_most = -4;
+
+/* Passes and kicks go on while each leaves this share of the bad tetrahedra less; to
+ * converge, this least one. */
+static const double enough_gain = 0.05, least_gain = 0.002;
+
+enum { PASSES_MAX = 8, KICKS_MAX = 1000, FEW = 100, MANY = 1000 };
+
+/* Kicks that fail one after the other differ within a cycle; `wider_by` is in degrees. */
+enum { CYCLE = 12, FAILS_MAX = 3 * CYCLE };
+static const double wider_by = 1.5;
+
+/* What a pass tries, in this order, on each tetrahedron until something is done. */
+enum { SWAP = 1, SMOOTH = 2, CONTRACT = 4, INSERT = 8 };
+enum { MOVE = SWAP | SMOOTH, SHRINK = MOVE | CONTRACT, ALL = SHRINK | INSERT };
+
+static bool is_bad(const tm_improver *m, uint32_t t)
+{
+    return tm_tet_lives(m->mesh, t) && m->quality[t] < m->cost.target;
+}
+
+static size_t count_bad(const tm_improver *m)
+{
+    size_t bad = 0;
+    for (uint32_t t = 0; t < m->mesh->slots; t++)
+        bad += is_bad(m, t);
+    return bad;
+}
+
+/* Whether anything around t has changed since it was tried. */
+static bool is_due(const tm_improver *m, uint32_t t)
+{
+    const uint32_t *n = m->mesh->tet[t];
+    uint32_t tried = m->tried[t];
+    return tried == 0 || m->changed[n[0]] > tried || m->changed[n[1]] > tried ||
+           m->changed[n[2]] > tried || m->changed[n[3]] > tried;
+}
+
+/* The bad tetrahedra that are due, along a space-filling curve; false where memory is
+ * out. */
+static bool find_targets(tm_improver *m)
+{
+    const tm_tet_mesh *mesh = m->mesh;
+    size_t bad = count_bad(m), count = 0;
+    tm_placed *placed = tm_new(bad, sizeof *placed);
+    uint32_t *target = tm_grow(m->target, &m->target_room, bad + 1, sizeof *target);
+    m->target = target ? target : m->target;
+    for (uint32_t t = 0; t < mesh->slots && placed; t++)
+        if (is_bad(m, t) && is_due(m, t))
+            placed[count++] =
+                (tm_placed){tm_space_place(&m->space, mesh->xyz[mesh->tet[t][0]]), t};
+    bool done = placed && target && tm_space_sort(placed, count);
+    for (size_t k = 0; k < count && done; k++)
+        target[k] = placed[k].item;
+    m->targets = count;
+    free(placed);
+    return done || tm_improve_no_memory(m);
+}
+
+static bool try_on(tm_improver *m, uint32_t t, int what)
+{
+    return ((what & SWAP) && tm_improve_swap(m, t)) ||
+           ((what & SMOOTH) && tm_improve_has(m, TM_OP_SMOOTHING) &&
+            tm_improve_smooth(m, t)) ||
+           ((what & CONTRACT) && tm_improve_has(m, TM_OP_CONTRACTION) &&
+            tm_improve_contract(m, t)) ||
+           ((what & INSERT) && tm_improve_has(m, TM_OP_INSERTION) &&
+            tm_improve_insert(m, t));
+}
+
+/* Whether no pass is left. */
+static bool is_over(const tm_improver *m)
+{
+    return m->status != TM_OK ||
+           (m->options->passes > 0 && m->report->passes >= m->options->passes);
+}
+
+/* Tries all bad tetrahedra once. */
+static void run_pass(tm_improver *m, int what)
+{
+    if (is_over(m) || !find_targets(m))
+        return;
+    for (size_t k = 0; k < m->targets && m->status == TM_OK; k++) {
+        uint32_t t = m->target[k];
+        if (is_bad(m, t) && is_due(m, t) && !try_on(m, t, what))
+            m->tried[t] = m->change + 1;
+    }
+    m->report->passes++;
+}
+
+/* Whether so many bad ones are enough less than before. */
+static bool is_gain(size_t before, size_t after, double share)
+{
+    return (double)after < (1 - share) * (double)before;
+}
+
+/* Passes until one gains too little. */
+static void settle(tm_improver *m, int what, double price)
+{
+    size_t before, after = count_bad(m);
+    tm_improve_set_price(m, price);
+    for (int k = 0; k < PASSES_MAX && after > 0 && !is_over(m); k++) {
+        before = after;
+        run_pass(m, what);
+        after = count_bad(m);
+        if (!is_gain(before, after, enough_gain))
+            break;
+    }
+}
+
+/* Contracts at all nodes, once. */
+static void coarsen_once(tm_improver *m)
+{
+    for (uint32_t v = 0; v < m->mesh->nodes; v++) {
+        if (m->mesh->tets <= m->most_tets || m->status != TM_OK)
+            return;
+        if (tm_node_lives(m->mesh, v) && m->tet_at[v] != TM_NONE)
+            tm_improve_contract_node(m, m->tet_at[v], v);
+    }
+}
+
+/* Makes the mesh as small as is asked for, by a price that rises. */
+static void coarsen(tm_improver *m)
+{
+    enum { DOUBLINGS = 14 };
+    double price = insertion_price;
+    for (int k = 0; k < DOUBLINGS; k++, price *= 2) {
+        if (m->mesh->tets <= m->most_tets || !tm_improve_has(m, TM_OP_CONTRACTION))
+            break;
+        tm_improve_set_price(m, price);
+        coarsen_once(m);
+        run_pass(m, SHRINK);
+    }
+    settle(m, SHRINK, 0);
+}
+
+/* Keeps the mesh if it is the best so far, or goes back to that. Returns how many are
+ * bad. */
+static size_t keep_best(tm_improver *m)
+{
+    size_t bad = count_bad(m);
+    if (bad > m->best.bad)
+        tm_improve_go_back(m, &m->best);
+    if (bad < m->best.bad)
+        tm_improve_keep(m, &m->best, bad);
+    return m->best.bad;
+}
+
+/* Growth that costs less than nothing. Where a cycle of kicks has failed, what is nearly
+ * bad is kicked too; false where that is too many. */
+static bool kick_once(tm_improver *m, double price)
+{
+    unsigned cycle = m->fails / CYCLE;
+    double target = m->cost.target;
+    tm_improve_set_price(m, price);
+    m->cost.target = tm_improve_target(m, m->degrees + wider_by * cycle);
+    bool cheap = cycle == 0 || m->options->converge || count_bad(m) <= MANY;
+    if (cheap)
+        run_pass(m, ALL);
+    m->cost.target = target;
+    return cheap;
+}
+
+/* Kicks, and after each what is good for the mesh again; as long as that leaves fewer bad
+ * ones. For few of them it is cheap to insist. */
+static void kick(tm_improver *m)
+{
+    bool converge = m->options->converge;
+    double price = kick_price;
+    size_t after = keep_best(m);
+    for (int k = 0; k < KICKS_MAX && after > 0 && !is_over(m); k++) {
+        size_t before = after;
+        if (!kick_once(m, price))
+            break;
+        if (m->fails % 2 == 0)
+            settle(m, MOVE, 0);
+        settle(m, ALL, 0);
+        after = keep_best(m);
+        m->report->kicks++;
+        if (is_gain(before, after, converge ? least_gain : enough_gain)) {
+            m->fails = 0;
+            continue;
+        }
+        if ((after > FEW && !converge) || ++m->fails == FAILS_MAX)
+            break;
+        price = price > kick_price_most ? price * 2 : kick_price;
+    }
+    m->fails = 0;
+}
+
+/* Everything for one target. */
+static void reach(tm_improver *m)
+{
+    m->best.bad = SIZE_MAX;
+    if (m->mesh->tets <= m->most_tets)
+        keep_best(m);
+    settle(m, MOVE, 0);
+    settle(m, SHRINK, 0);
+    if (m->mesh->tets > m->most_tets)
+        coarsen(m);
+    if (tm_improve_has(m, TM_OP_INSERTION)) {
+        settle(m, ALL, insertion_price);
+        settle(m, ALL, 0);
+        kick(m);
+    }
+    keep_best(m);
+}
+
+/* Targets above the first one, step by step, as long as nothing is left behind; then the
+ * last one, without giving up what was reached. */
+static void climb(tm_improver *m, double first, double last)
+{
+    const double step = 1;
+    double reached = first;
+    while (reached < last && count_bad(m) == 0 && !is_over(m)) {
+        double degrees = fmin(reached + step, last);
+        tm_improve_keep(m, &m->reached, 0);
+        tm_improve_set_target(m, degrees);
+        reach(m);
+        if (count_bad(m) > 0) {
+            tm_improve_go_back(m, &m->reached);
+            tm_improve_forbid(m, reached);
+            break;
+        }
+        reached = degrees;
+    }
+    if (reached == last)
+        return;
+    tm_improve_set_target(m, last);
+    reach(m);
+}
+
+/* The target; one above 30 degrees in steps. */
+static void run(tm_improver *m)
+{
+    const double first = 30, last = m->options->angle;
+    m->input.bad = SIZE_MAX;
+    if (first < last && m->mesh->tets <= m->most_tets)
+        tm_improve_keep(m, &m->input, count_bad(m));
+    tm_improve_set_target(m, fmin(first, last));
+    reach(m);
+    if (first >= last)
+        return;
+    climb(m, first, last);
+    tm_improve_set_target(m, last);
+    if (count_bad(m) > m->input.bad)
+        tm_improve_go_back(m, &m->input);
+}
+
+/* Those that the report calls bad: by their angles. */
+static size_t count_bad_angles(const tm_improver *m)
+{
+    const tm_tet_mesh *mesh = m->mesh;
+    const double(*x)[3] = (const double(*)[3])mesh->xyz;
+    double limit = tm_bad_sine2(m->options->angle);
+    size_t bad = 0;
+    for (uint32_t t = 0; t < mesh->slots; t++) {
+        const uint32_t *n = mesh->tet[t];
+        bad += tm_tet_lives(mesh, t) &&
+               tm_tet_sine2(x[n[0]], x[n[1]], x[n[2]], x[n[3]]) < limit;
+    }
+    return bad;
+}
+
+tm_status tm_improve(tm_tet_mesh *mesh, const tm_improve_options *options,
+                     tm_improve_report *report, tm_error *error)
+{
+    tm_improver *m = malloc(sizeof *m);
+    if (!m)
+        return tm_fail_memory(error);
+    tm_status status = tm_improve_start(m, mesh, options, report, error);
+    if (status == TM_OK) {
+        report->bad_before = count_bad_angles(m);
+        run(m);
+        status = m->status;
+        report->bad_after = count_bad_angles(m);
+        report->too_large = mesh->tets > m->most_tets;
+    }
+    tm_improve_finish(m);
+    free(m);
+    return status;
+}

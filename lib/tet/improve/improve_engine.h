@@ -1,0 +1,135 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the files of the improver share: improve.c (when what is tried), improve_engine.c,
+ * and one for each kind of operation; for these only. */
+#ifndef TM_IMPROVE_IMPROVE_ENGINE_H
+#define TM_IMPROVE_IMPROVE_ENGINE_H
+
+#include "improve.h"
+
+#include "../../geom/space_order.h"
+#include "../operation/ball.h"
+#include "../operation/cavity.h"
+#include "../operation/edge_removal.h"
+#include "../operation/face_removal.h"
+#include "../operation/features.h"
+#include "../operation/replacement.h"
+#include "../star.h"
+
+/* Every operation has to lower the cost by this. */
+#define TM_IMPROVE_GAIN 1e-6
+
+/* A mesh to come back to. */
+typedef struct tm_improve_state {
+    tm_tet_mesh mesh;
+    tm_features features;
+    tm_improve_counts done;
+    size_t bad; /* tetrahedra; SIZE_MAX: nothing is kept */
+} tm_improve_state;
+
+typedef struct tm_improver {
+    tm_tet_mesh *mesh;
+    const tm_improve_options *options;
+    tm_improve_report *report;
+    tm_error *error;
+    tm_status status; /* of what failed: nothing more is done then */
+
+    tm_cost cost;
+    double degrees;   /* the target, by the angle or, for volume, a hundredth of it */
+    double price;     /* of one more tetrahedron; negative to kick */
+    unsigned fails;   /* kicks without success, since one had it */
+    size_t most_tets; /* the mesh never grows beyond */
+
+    /* By tetrahedron: its quality by cost.measure; the change after which it was tried.
+     */
+    double *quality;
+    uint32_t *tried;
+    size_t tet_room;
+    /* By node: a tetrahedron that has it; the last change around it; the changes after
+     * which it was tried; a mark: == look. */
+    uint32_t *tet_at, *changed, *smoothed, *contracted, *seen;
+    size_t node_room;
+    uint32_t change, look; /* counters */
+
+    tm_improve_state best;    /* for this target, so far */
+    tm_improve_state reached; /* the last target that left nothing bad */
+    tm_improve_state input;   /* where there are several targets */
+
+    tm_space space; /* around the mesh */
+    tm_features features;
+    tm_tet_marks marks;
+    tm_star star;
+    tm_ball ball;
+    tm_cavity cavity;
+    tm_edge_removal removal[2]; /* for the two sides of a facet */
+    tm_face_removal face_removal;
+    tm_replacement_table table;
+    uint32_t (*node)[4]; /* of tetrahedra to be made */
+    uint32_t *created;
+    uint32_t *swallowed; /* nodes */
+    size_t made_room;
+    uint32_t *target;
+    size_t targets, target_room;
+} tm_improver;
+
+/* What is known of a mesh that is to be improved. tm_improve_finish() in any case. */
+tm_status tm_improve_start(tm_improver *m, tm_tet_mesh *mesh,
+                           const tm_improve_options *options, tm_improve_report *report,
+                           tm_error *error);
+void tm_improve_finish(tm_improver *m);
+
+/* What is not bad, by the measure, for a target in degrees. */
+double tm_improve_target(const tm_improver *m, double degrees);
+
+/* Sets the target; the price is 0 then. */
+void tm_improve_set_target(tm_improver *m, double degrees);
+
+/* Keeps the mesh, which has so many bad tetrahedra. */
+void tm_improve_keep(tm_improver *m, tm_improve_state *state, size_t bad);
+
+/* Goes back to the mesh that was kept. */
+void tm_improve_go_back(tm_improver *m, const tm_improve_state *state);
+
+/* From here on no operation makes an angle below so many degrees, or above 180 less
+ * that. */
+void tm_improve_forbid(tm_improver *m, double degrees);
+
+/* The price of a tetrahedron; all may be tried again. */
+void tm_improve_set_price(tm_improver *m, double price);
+
+/* Try an operation on tetrahedron t, or at its nodes, if it is in the palette; whether
+ * one was done. */
+bool tm_improve_swap(tm_improver *m, uint32_t t);
+bool tm_improve_smooth(tm_improver *m, uint32_t t);
+bool tm_improve_contract(tm_improver *m, uint32_t t);
+bool tm_improve_insert(tm_improver *m, uint32_t t);
+
+/* Tries to contract one of the edges of node a, a corner of t. */
+bool tm_improve_contract_node(tm_improver *m, uint32_t t, uint32_t a);
+
+/* Room for an operation that makes so many tetrahedra and nodes; false, with m->status
+ * set, where memory is out. */
+bool tm_improve_reserve(tm_improver *m, size_t tets, size_t nodes);
+
+/* Measures the tetrahedra that an operation made. */
+void tm_improve_note(tm_improver *m, const uint32_t *created, size_t count);
+
+/* What some tetrahedra cost, and in *least how good those have to be that replace them.
+ */
+double tm_improve_old_cost(const tm_improver *m, const uint32_t *old, size_t count,
+                           double *least);
+
+/* False, with m->status set: memory is out. */
+bool tm_improve_no_memory(tm_improver *m);
+
+static inline bool tm_improve_has(const tm_improver *m, tm_improve_op op)
+{
+    return (m->options->ops >> op & 1) != 0;
+}
+
+/* Whether the mesh may have so many tetrahedra more. */
+static inline bool tm_improve_may_grow(const tm_improver *m, ptrdiff_t growth)
+{
+    return growth <= 0 || m->mesh->tets + (size_t)growth <= m->most_tets;
+}
+
+#endif

@@ -1,0 +1,95 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The improver's smoothing: a node goes to the mean of its neighbours, and from there or
+ * from where it is to where the worst tetrahedron around it is best. */
+#include "improve_engine.h"
+
+#include "../../geom/vector.h"
+#include "../operation/interpolation.h"
+
+#include <string.h>
+
+/* Good enough is a little better than the target, so that rounding and the next
+ * operation do not undo it. */
+static const double beyond_target = 1.1;
+
+/* The mean of the neighbours, as far as the node may go there. */
+static void go_to_centre(const tm_hull *hull, const tm_freedom *freedom, double p[3])
+{
+    double centre[3], way[3];
+    tm_hull_centre(hull, centre);
+    tm_subtract(way, centre, p);
+    tm_freedom_restrict(freedom, way);
+    for (int x = 0; x < 3; x++)
+        p[x] += way[x];
+}
+
+/* Moves the ball's node; attributes stay a field. */
+static void move(tm_improver *m, const double p[3])
+{
+    tm_tet_mesh *mesh = m->mesh;
+    uint32_t v = m->ball.node;
+    size_t width = mesh->node_attributes;
+    if (width > 0) {
+        double *value = mesh->node_attribute + mesh->nodes * width; /* room of one more */
+        tm_tet_interpolate(mesh, m->ball.tet, m->ball.size, p, value);
+        memcpy(mesh->node_attribute + v * width, value, width * sizeof *value);
+    }
+    memcpy(mesh->xyz[v], p, sizeof mesh->xyz[v]);
+    tm_improve_note(m, m->ball.tet, m->ball.size);
+    m->report->done.op[TM_OP_SMOOTHING]++;
+}
+
+/* The place with the least cost, below `most`; false where there is none. */
+static bool find_place(const tm_improver *m, const tm_hull *hull,
+                       const tm_freedom *freedom, double least, double most,
+                       double place[3])
+{
+    enum { STEPS = 2 };
+    double p[3], from[3];
+    bool found = false;
+    memcpy(from, m->mesh->xyz[m->ball.node], sizeof from);
+    for (int way = 0; way < 2 && !found; way++) {
+        memcpy(p, found ? place : from, sizeof p);
+        if (way == 0)
+            go_to_centre(hull, freedom, p);
+        else
+            tm_hull_climb(hull, m->cost.measure, freedom, m->cost.target * beyond_target,
+                          STEPS, p);
+        double cost = tm_hull_cost(hull, &m->cost, p, least, most);
+        if (!(cost < most) || !tm_hull_sees(hull, p))
+            continue;
+        most = cost;
+        memcpy(place, p, sizeof p);
+        found = true;
+    }
+    return found;
+}
+
+static bool smooth_node(tm_improver *m, uint32_t t, uint32_t v)
+{
+    if (m->features.dimension[v] == 0 || m->smoothed[v] > m->changed[v])
+        return false;
+    m->smoothed[v] = m->change + 1;
+    m->report->tried[TM_OP_SMOOTHING]++;
+    if (!tm_ball_around(m->mesh, t, v, &m->marks, &m->ball))
+        return tm_improve_no_memory(m);
+    if (!tm_improve_reserve(m, 0, 1))
+        return false;
+    tm_freedom freedom = tm_features_freedom(&m->features, m->mesh, &m->ball);
+    tm_hull hull = tm_ball_hull(&m->ball, m->mesh);
+    double least, place[3];
+    double old = tm_improve_old_cost(m, m->ball.tet, m->ball.size, &least);
+    if (freedom.dimension == 0 ||
+        !find_place(m, &hull, &freedom, least, old - TM_IMPROVE_GAIN, place))
+        return false;
+    move(m, place);
+    return true;
+}
+
+bool tm_improve_smooth(tm_improver *m, uint32_t t)
+{
+    bool any = false;
+    for (int i = 0; i < 4 && m->status == TM_OK && m->quality[t] < m->cost.target; i++)
+        any |= smooth_node(m, t, m->mesh->tet[t][i]);
+    return any;
+}

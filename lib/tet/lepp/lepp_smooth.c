@@ -1,0 +1,191 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Smart Laplacian smoothing between passes of selective. */
+#include "lepp_engine.h"
+
+#include "../../base/array.h"
+#include "../operation/interpolation.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void tm_lepp_sweeper_free(tm_lepp_sweeper *s)
+{
+    tm_features_free(&s->features);
+    tm_ball_free(&s->ball);
+    tm_tet_marks_free(&s->marks);
+    tm_star_free(&s->star);
+    tm_replacement_table_free(&s->table);
+    free(s->tet_at);
+    free(s->seen);
+    free(s->value);
+}
+
+void tm_lepp_measure_angles(tm_lepp_engine *e)
+{
+    const tm_tet_mesh *mesh = e->mesh;
+    const double(*x)[3] = (const double(*)[3])mesh->xyz;
+    e->sweeper.limits = tm_angle_limits_none();
+    for (uint32_t t = 0; t < mesh->slots; t++) {
+        const uint32_t *n = mesh->tet[t];
+        if (tm_tet_lives(mesh, t))
+            tm_angle_limits_include(&e->sweeper.limits, x[n[0]], x[n[1]], x[n[2]],
+                                    x[n[3]]);
+    }
+}
+
+/* A tetrahedron at each node, and marks for the nodes. */
+static bool start(tm_lepp_engine *e)
+{
+    const tm_tet_mesh *mesh = e->mesh;
+    tm_lepp_sweeper *s = &e->sweeper;
+    size_t room = s->seen_room;
+    uint32_t *tet_at = tm_grow(s->tet_at, &s->tet_at_room, mesh->nodes, sizeof *tet_at);
+    s->tet_at = tet_at ? tet_at : s->tet_at;
+    uint32_t *seen = tm_grow(s->seen, &room, mesh->nodes, sizeof *seen);
+    if (!tet_at || !seen)
+        return false;
+    memset(seen + s->seen_room, 0, (room - s->seen_room) * sizeof *seen);
+    s->seen = seen;
+    s->seen_room = room;
+    for (size_t v = 0; v < mesh->nodes; v++)
+        tet_at[v] = TM_NONE;
+    for (uint32_t t = 0; t < mesh->slots; t++)
+        for (int i = 0; i < 4 && tm_tet_lives(mesh, t); i++)
+            tet_at[mesh->tet[t][i]] = t;
+    return true;
+}
+
+/* A mean is taken of differences to the node, so that it is exactly in a plane across an
+ * axis. */
+typedef struct mean {
+    const tm_tet_mesh *mesh;
+    const double *from;
+    double sum[3];
+    size_t count;
+} mean;
+
+static void add_to_mean(tm_lepp_sweeper *s, mean *m, uint32_t v)
+{
+    if (s->seen[v] == s->look)
+        return;
+    s->seen[v] = s->look;
+    for (int k = 0; k < 3; k++)
+        m->sum[k] += m->mesh->xyz[v][k] - m->from[k];
+    m->count++;
+}
+
+/* The nodes of the facet around the node of the ball. */
+static void add_facet(tm_lepp_sweeper *s, mean *m)
+{
+    const tm_tet_mesh *mesh = m->mesh;
+    for (size_t k = 0; k < s->ball.size; k++)
+        for (uint32_t i = 0; i < 4; i++) {
+            uint32_t t = s->ball.tet[k], f = mesh->neighbour[t][i];
+            if (!(f & TM_FACE_BIT) || mesh->tet[t][i] == s->ball.node)
+                continue;
+            for (int c = 0; c < 3; c++)
+                add_to_mean(s, m, mesh->face[f & ~TM_FACE_BIT].node[c]);
+        }
+}
+
+/* The mean of the neighbours of the ball's node: of all inside, of those in its facet, of
+ * the two along its edge. */
+static void find_mean(tm_lepp_engine *e, int dimension, double p[3])
+{
+    tm_lepp_sweeper *s = &e->sweeper;
+    mean m = {.mesh = e->mesh, .from = e->mesh->xyz[s->ball.node]};
+    if (++s->look == 0) {
+        memset(s->seen, 0, s->seen_room * sizeof *s->seen);
+        s->look = 1;
+    }
+    s->seen[s->ball.node] = s->look;
+    if (dimension == 1) {
+        add_to_mean(s, &m, s->features.line[s->ball.node][0]);
+        add_to_mean(s, &m, s->features.line[s->ball.node][1]);
+    } else if (dimension == 2) {
+        add_facet(s, &m);
+    } else {
+        for (size_t k = 0; k < s->ball.size; k++)
+            for (int i = 0; i < 3; i++)
+                add_to_mean(s, &m, s->ball.face[k][i]);
+    }
+    for (int k = 0; k < 3; k++)
+        p[k] = m.from[k] + m.sum[k] / (double)m.count;
+}
+
+/* Whether the worst tetrahedron of the ball is better with its node at p. */
+static bool is_better(const tm_lepp_engine *e, const tm_hull *hull, const double p[3])
+{
+    const tm_ball *ball = &e->sweeper.ball;
+    tm_tet_measure measure = e->options->measure;
+    double worst = HUGE_VAL;
+    for (size_t k = 0; k < ball->size; k++)
+        worst = fmin(worst, e->quality[ball->tet[k]]);
+    double least = tm_tet_measure_times(measure, worst, 1 + TM_LEPP_GAIN);
+    if (!(tm_hull_quality(hull, measure, p, least) > worst))
+        return false;
+    for (size_t k = 0; k < hull->count; k++) {
+        const uint32_t *f = hull->face[k];
+        if (!tm_angles_are_within(&e->sweeper.limits, hull->xyz[f[0]], hull->xyz[f[1]],
+                                  hull->xyz[f[2]], p))
+            return false;
+    }
+    return true;
+}
+
+/* Moves the node of the ball. */
+static bool move(tm_lepp_engine *e, const double p[3])
+{
+    tm_lepp_sweeper *s = &e->sweeper;
+    tm_tet_mesh *mesh = e->mesh;
+    size_t width = mesh->node_attributes;
+    if (width > 0) {
+        double *value = tm_grow(s->value, &s->value_room, width, sizeof *value);
+        if (!value)
+            return false;
+        s->value = value;
+        tm_tet_interpolate(mesh, s->ball.tet, s->ball.size, p, value);
+        memcpy(mesh->node_attribute + s->ball.node * width, value, width * sizeof *value);
+    }
+    memcpy(mesh->xyz[s->ball.node], p, sizeof mesh->xyz[0]);
+    return tm_lepp_note(e, s->ball.tet, s->ball.size) &&
+           tm_lepp_unblock(e, s->ball.tet, s->ball.size);
+}
+
+static tm_status smooth_node(tm_lepp_engine *e, uint32_t v, size_t sweep)
+{
+    tm_lepp_sweep_report *report = &e->report->smooth;
+    tm_lepp_sweeper *s = &e->sweeper;
+    int dimension = s->features.dimension[v];
+    double p[3];
+    if (s->tet_at[v] == TM_NONE || dimension == 0)
+        return TM_OK;
+    if (!tm_ball_around(e->mesh, s->tet_at[v], v, &s->marks, &s->ball))
+        return tm_fail_memory(e->error);
+    report->tried++;
+    find_mean(e, dimension, p);
+    tm_hull hull = tm_ball_hull(&s->ball, e->mesh);
+    if (!tm_hull_sees(&hull, p)) {
+        report->invalid++;
+        return TM_OK;
+    }
+    if (!is_better(e, &hull, p))
+        return TM_OK;
+    report->done[sweep]++;
+    report->on_surface += dimension < 3;
+    return move(e, p) ? TM_OK : tm_fail_memory(e->error);
+}
+
+tm_status tm_lepp_smooth(tm_lepp_engine *e)
+{
+    tm_lepp_sweeper *s = &e->sweeper;
+    size_t sweep = tm_lepp_bin(e->report->smooth.sweeps++, TM_LEPP_SWEEPS);
+    tm_features_free(&s->features);
+    tm_status status = tm_features_find(&s->features, e->mesh, &s->marks, e->error);
+    if (status == TM_OK && !start(e))
+        status = tm_fail_memory(e->error);
+    for (uint32_t v = 0; v < e->mesh->nodes && status == TM_OK; v++)
+        status = smooth_node(e, v, sweep);
+    e->operations++; /* stars that paths have collected may have changed */
+    return status;
+}

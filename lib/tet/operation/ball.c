@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "ball.h"
+
+#include "../../base/array.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void tm_tet_marks_free(tm_tet_marks *marks)
+{
+    free(marks->stamp);
+    *marks = (tm_tet_marks){0};
+}
+
+bool tm_tet_marks_clear(tm_tet_marks *marks, size_t slots)
+{
+    if (slots > marks->room) {
+        size_t room = marks->room;
+        uint32_t *stamp = tm_grow(marks->stamp, &room, slots, sizeof *stamp);
+        if (!stamp)
+            return false;
+        memset(stamp + marks->room, 0, (room - marks->room) * sizeof *stamp);
+        marks->stamp = stamp;
+        marks->room = room;
+    }
+    if (++marks->now == 0) {
+        memset(marks->stamp, 0, marks->room * sizeof *marks->stamp);
+        marks->now = 1;
+    }
+    return true;
+}
+
+void tm_ball_free(tm_ball *ball)
+{
+    free(ball->tet);
+    free(ball->face);
+    *ball = (tm_ball){0};
+}
+
+static bool reserve(tm_ball *ball, size_t needed)
+{
+    if (needed <= ball->room)
+        return true;
+    size_t room = ball->room, face_room = ball->room;
+    uint32_t *tet = tm_grow(ball->tet, &room, needed, sizeof *tet);
+    ball->tet = tet ? tet : ball->tet;
+    uint32_t(*face)[3] = tm_grow(ball->face, &face_room, needed, sizeof *face);
+    ball->face = face ? face : ball->face;
+    if (tet && face)
+        ball->room = room;
+    return tet && face;
+}
+
+/* Appends tetrahedron t, for which there is room. */
+static void append(const tm_tet_mesh *mesh, uint32_t t, tm_ball *ball)
+{
+    ball->tet[ball->size] = t;
+    tm_tet_face_below(mesh, t, tm_tet_corner(mesh, t, ball->node),
+                      ball->face[ball->size]);
+    ball->size++;
+}
+
+bool tm_ball_around(const tm_tet_mesh *mesh, uint32_t t, uint32_t v, tm_tet_marks *marks,
+                    tm_ball *ball)
+{
+    ball->node = v;
+    ball->size = 0;
+    ball->kept_face = false;
+    if (!tm_tet_marks_clear(marks, mesh->slots) || !reserve(ball, 1))
+        return false;
+    tm_tet_mark(marks, t);
+    append(mesh, t, ball);
+    for (size_t next = 0; next < ball->size; next++) {
+        uint32_t u = ball->tet[next];
+        if (!reserve(ball, ball->size + 3))
+            return false;
+        for (uint32_t i = 0; i < 4; i++) {
+            if (mesh->tet[u][i] == v)
+                continue;
+            uint32_t across = mesh->neighbour[u][i];
+            if (across & TM_FACE_BIT) {
+                ball->kept_face = true;
+                across = tm_tet_across(mesh, u, i);
+                if (across == TM_NONE)
+                    continue;
+            }
+            if (tm_tet_mark(marks, across / 4))
+                append(mesh, across / 4, ball);
+        }
+    }
+    return true;
+}

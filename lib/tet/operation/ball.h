@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The ball of a node: the tetrahedra that have it as a corner. */
+#ifndef TM_OPERATION_BALL_H
+#define TM_OPERATION_BALL_H
+
+#include "cavity_boundary.h"
+#include "../mesh.h"
+
+/* Marks on tetrahedra that are all taken away at once. */
+typedef struct tm_tet_marks {
+    uint32_t *stamp; /* [room]; marked: == now */
+    size_t room;
+    uint32_t now;
+} tm_tet_marks;
+
+void tm_tet_marks_free(tm_tet_marks *marks);
+
+/* Takes all marks away; room for `slots` tetrahedra. False where memory is out. */
+bool tm_tet_marks_clear(tm_tet_marks *marks, size_t slots);
+
+/* Marks t; whether it was not marked before. */
+static inline bool tm_tet_mark(tm_tet_marks *marks, uint32_t t)
+{
+    bool fresh = marks->stamp[t] != marks->now;
+    marks->stamp[t] = marks->now;
+    return fresh;
+}
+
+static inline bool tm_tet_is_marked(const tm_tet_marks *marks, uint32_t t)
+{
+    return marks->stamp[t] == marks->now;
+}
+
+/* Tetrahedron i and its face opposite the node: (face[i][0], face[i][1], face[i][2],
+ * node) is a positive order. Where the mesh only touches itself in the node, the ball is
+ * what can be reached from the first tetrahedron through faces. */
+typedef struct tm_ball {
+    uint32_t node;
+    size_t size;
+    bool kept_face; /* a face that has to stay is at the node */
+    uint32_t *tet;
+    uint32_t (*face)[3];
+    size_t room;
+} tm_ball;
+
+void tm_ball_free(tm_ball *ball);
+
+/* Collects the ball of node v, which is a corner of t; marks its tetrahedra, after all
+ * other marks are gone. False where memory is out. O(size). */
+bool tm_ball_around(const tm_tet_mesh *mesh, uint32_t t, uint32_t v, tm_tet_marks *marks,
+                    tm_ball *ball);
+
+/* The faces around the ball; they hold until the ball or the mesh is changed. */
+static inline tm_hull tm_ball_hull(const tm_ball *ball, const tm_tet_mesh *mesh)
+{
+    return (tm_hull){(const double(*)[3])mesh->xyz, (const uint32_t(*)[3])ball->face,
+                     ball->size};
+}
+
+/* The face opposite corner i of t, as in a ball. */
+static inline void tm_tet_face_below(const tm_tet_mesh *mesh, uint32_t t, uint32_t i,
+                                     uint32_t face[3])
+{
+    static const uint8_t below[4][3] = {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}};
+    for (int k = 0; k < 3; k++)
+        face[k] = mesh->tet[t][below[i][k]];
+}
+
+#endif

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The faces that a point is joined to: those around the ball of a node, or around a
+ * cavity. */
+#ifndef TM_OPERATION_CAVITY_BOUNDARY_H
+#define TM_OPERATION_CAVITY_BOUNDARY_H
+
+#include "../../element/tet_cost.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* (face[i], point) is a positive order of a tetrahedron. */
+typedef struct tm_hull {
+    const double (*xyz)[3];
+    const uint32_t (*face)[3];
+    size_t count;
+} tm_hull;
+
+/* The least measure of the tetrahedra of p and the hull; 0 as soon as one is below
+ * `least`. O(count), as all of these. */
+double tm_hull_quality(const tm_hull *hull, tm_tet_measure measure, const double p[3],
+                       double least);
+
+/* What these tetrahedra cost together; HUGE_VAL where one is below `least`, or the sum
+ * not below `most`. */
+double tm_hull_cost(const tm_hull *hull, const tm_cost *cost, const double p[3],
+                    double least, double most);
+
+/* Whether p sees all faces from inside: all these tetrahedra are exactly positive. */
+bool tm_hull_sees(const tm_hull *hull, const double p[3]);
+
+/* The mean of the hull's nodes, each counted by its faces. */
+void tm_hull_centre(const tm_hull *hull, double p[3]);
+
+#endif

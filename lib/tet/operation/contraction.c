@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "contraction.h"
+
+#include "../../geom/predicates.h"
+
+static bool has_node(const uint32_t face[3], uint32_t v)
+{
+    return face[0] == v || face[1] == v || face[2] == v;
+}
+
+double tm_contraction_cost(const tm_tet_mesh *mesh, const tm_ball *ball, uint32_t b,
+                           const tm_cost *cost, double least, double most, size_t *gone)
+{
+    const double(*x)[3] = (const double(*)[3])mesh->xyz;
+    double sum = 0;
+    *gone = 0;
+    for (size_t i = 0; i < ball->size; i++) {
+        const uint32_t *f = ball->face[i];
+        if (has_node(f, b)) {
+            /* A kept face opposite b would be flat with b. */
+            uint32_t t = ball->tet[i];
+            if (mesh->neighbour[t][tm_tet_corner(mesh, t, b)] & TM_FACE_BIT)
+                return HUGE_VAL;
+            ++*gone;
+            continue;
+        }
+        double quality = tm_cost_quality(cost, least, x[f[0]], x[f[1]], x[f[2]], x[b]);
+        if (quality < least)
+            return HUGE_VAL;
+        sum += tm_cost_of(cost, quality);
+        if (!(sum < most))
+            return HUGE_VAL;
+    }
+    for (size_t i = 0; i < ball->size; i++) {
+        const uint32_t *f = ball->face[i];
+        if (!has_node(f, b) && tm_orient3d(x[f[0]], x[f[1]], x[f[2]], x[b]) <= 0)
+            return HUGE_VAL;
+    }
+    return sum;
+}
+
+/* A kept face of the ball: renamed, or forgotten where it has both nodes. */
+static void move_face(tm_tet_mesh *mesh, uint32_t f, uint32_t a, uint32_t b)
+{
+    tm_kept_face *face = &mesh->face[f];
+    if (has_node(face->node, a) && has_node(face->node, b)) {
+        face->side[0] = face->side[1] = TM_NONE;
+        face->listed = false;
+        return;
+    }
+    for (int i = 0; i < 3; i++)
+        if (face->node[i] == a)
+            face->node[i] = b;
+}
+
+/* Takes tetrahedron t, which has both nodes, out: what lies across its faces opposite a
+ * and b meets. */
+static void collapse(tm_tet_mesh *mesh, uint32_t t, uint32_t a, uint32_t b)
+{
+    uint32_t outside = 4 * t + tm_tet_corner(mesh, t, a);
+    uint32_t inside = mesh->neighbour[t][tm_tet_corner(mesh, t, b)];
+    tm_tet_replace_half(mesh, inside, outside, mesh->neighbour[t][outside % 4]);
+    tm_tet_mesh_delete_tet(mesh, t);
+}
+
+static void move_edge(tm_tet_mesh *mesh, uint32_t a, uint32_t x, uint32_t b)
+{
+    tm_marked_edge *edge = tm_tet_mesh_edge(mesh, a, x);
+    if (!edge)
+        return;
+    uint32_t e = (uint32_t)(edge - mesh->edge);
+    tm_edge_map_remove(&mesh->edge_of, a, x);
+    if (x == b || tm_tet_mesh_edge(mesh, b, x)) {
+        edge->gone = true;
+        return;
+    }
+    edge->node[edge->node[1] == a] = b;
+    tm_edge_map_put(&mesh->edge_of, b, x, e);
+}
+
+void tm_contract(tm_tet_mesh *mesh, const tm_ball *ball, uint32_t b, uint32_t *created)
+{
+    uint32_t a = ball->node;
+    size_t made = 0;
+    for (size_t i = 0; i < ball->size; i++)
+        for (int k = 0; k < 3 && mesh->edge_of.count > 0; k++)
+            move_edge(mesh, a, ball->face[i][k], b);
+    for (size_t i = 0; i < ball->size && ball->kept_face; i++)
+        for (uint32_t k = 0; k < 4; k++) {
+            uint32_t across = mesh->neighbour[ball->tet[i]][k];
+            if (across & TM_FACE_BIT && mesh->tet[ball->tet[i]][k] != a)
+                move_face(mesh, across & ~TM_FACE_BIT, a, b);
+        }
+    for (size_t i = 0; i < ball->size; i++) {
+        uint32_t t = ball->tet[i];
+        if (has_node(ball->face[i], b)) {
+            collapse(mesh, t, a, b);
+        } else {
+            mesh->tet[t][tm_tet_corner(mesh, t, a)] = b;
+            created[made++] = t;
+        }
+    }
+}

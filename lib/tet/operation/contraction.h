@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Contraction of an edge: a node goes, and what was joined to it is joined to the other
+ * end of the edge. The tetrahedra around the edge go with it. */
+#ifndef TM_OPERATION_CONTRACTION_H
+#define TM_OPERATION_CONTRACTION_H
+
+#include "../../element/tet_cost.h"
+#include "ball.h"
+
+/* What the tetrahedra of the ball that stay would cost with node b in the place of the
+ * ball's own; HUGE_VAL where one would be below `least`, or not exactly positive, or the
+ * sum not below `most`. *gone is how many have b already. O(size).
+ *
+ * The tetrahedra that stay fill the ball exactly if they are positive and b is in every
+ * kept face's plane that the node is in: the ball is bounded by their outer faces, the
+ * faces that b has, and those flat ones. */
+double tm_contraction_cost(const tm_tet_mesh *mesh, const tm_ball *ball, uint32_t b,
+                           const tm_cost *cost, double least, double most, size_t *gone);
+
+/* Contracts the ball's node into b. Kept faces and edges of .edge move along or go.
+ * created[0 … ball->size - gone) are the tetrahedra that stay and are changed. O(size).
+ */
+void tm_contract(tm_tet_mesh *mesh, const tm_ball *ball, uint32_t b, uint32_t *created);
+
+#endif

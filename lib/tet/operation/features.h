@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What must not move: corners, straight edges and flat facets of the surface of a mesh,
+ * which is its boundary, the faces between its regions, and marked faces inside. */
+#ifndef TM_OPERATION_FEATURES_H
+#define TM_OPERATION_FEATURES_H
+
+#include "ball.h"
+#include "smoothing.h"
+#include "../star.h"
+
+typedef struct tm_features {
+    size_t room;
+    uint8_t *dimension;  /* of what a node may move in: 3 inside, 2 a flat facet, 1 a
+                            straight feature edge, 0 nothing */
+    uint32_t (*line)[2]; /* of a node with dimension 1: its neighbours on the edge */
+    double flatness;     /* points that are this near to a plane are in it */
+} tm_features;
+
+/* Finds them. Two triangles are in one facet if they have the same marker and are
+ * coplanar but for the rounding of coordinates; an edge that is not between two such
+ * ones, or has a marker, is a feature edge. Nodes also stay where they are if the mesh
+ * only touches itself there, if they are inside and have a marker, or if their marker is
+ * not that of their neighbours in the facet or on the edge. Expected O(n). */
+tm_status tm_features_find(tm_features *features, const tm_tet_mesh *mesh,
+                           tm_tet_marks *marks, tm_error *error);
+void tm_features_free(tm_features *features);
+
+/* Room for so many nodes in all; false where memory is out. */
+bool tm_features_reserve(tm_features *features, size_t nodes);
+
+/* Makes *to, which is {0} or was found, the same as *from; false, with *to empty, where
+ * memory is out. */
+bool tm_features_copy(tm_features *to, const tm_features *from);
+
+/* How the node of a ball may move. */
+tm_freedom tm_features_freedom(const tm_features *features, const tm_tet_mesh *mesh,
+                               const tm_ball *ball);
+
+/* What an edge is in. */
+typedef enum tm_edge_place {
+    TM_EDGE_INSIDE,
+    TM_EDGE_IN_FACET,  /* of two flat faces */
+    TM_EDGE_OF_FEATURE /* has to stay */
+} tm_edge_place;
+
+/* Where the edge of a star is. kept[0] and kept[1] are the two faces of TM_EDGE_IN_FACET,
+ * as the places in the ring of their third nodes. */
+tm_edge_place tm_features_place(const tm_features *features, const tm_tet_mesh *mesh,
+                                const tm_star *star, size_t kept[2]);
+
+/* A new node was put inside, or on the edge ab, which was in the place. */
+void tm_features_place_node(tm_features *features, uint32_t node, tm_edge_place place,
+                            uint32_t a, uint32_t b);
+
+/* Node a of a feature edge goes, and its neighbour b is joined to the one beyond. */
+void tm_features_join(tm_features *features, uint32_t a, uint32_t b);
+
+#endif
