@@ -239,7 +239,7 @@ static void improve(filter *f, tm_stream *stream, const settings *o, result *r)
 {
     tm_error error;
     tm_tet_mesh mesh;
-    take_tet_mesh(f, stream, &mesh);
+    tet_mesh_from_stream(f, stream, &mesh);
     measure(f, (const double(*)[3])mesh.xyz, mesh.nodes, (const uint32_t(*)[4])mesh.tet,
             mesh.slots, o->improve.angle, &r->before);
     r->seconds = -cpu_seconds();
@@ -254,7 +254,7 @@ static void improve(filter *f, tm_stream *stream, const settings *o, result *r)
         if (tm_tet_mesh_invalidates(&mesh, &stream->block[b]))
             filter_note(f, "%s is dropped: nodes have other numbers now",
                         stream->block[b].name);
-    if (tm_tet_mesh_give(&mesh, stream, &error) != TM_OK)
+    if (tm_tet_mesh_to_stream(&mesh, stream, &error) != TM_OK)
         filter_fail(f, &error);
 }
 

@@ -33,7 +33,7 @@ int main(int argc, char **argv)
     stream.base = 0;
     if (tm_mdl_read(&surface, bytes.byte ? bytes.byte : "", bytes.size,
                     filter_input_name(&f), &error) != TM_OK ||
-        tm_surface_give(&surface, &stream, "", &error) != TM_OK)
+        tm_polygon_surface_to_stream(&surface, &stream, "", &error) != TM_OK)
         filter_fail(&f, &error);
     tm_text_free(&bytes);
     filter_write(&f, &stream, "%zu nodes, %zu triangles", surface.nodes,

@@ -52,7 +52,7 @@ static void read_surface(const char *file, tm_stream *stream)
     tm_polygon_surface_init(&surface);
     succeed(tm_format_read(&surface, tm_format_of(text, bytes.size, file), text,
                            bytes.size, file, &error));
-    succeed(tm_surface_give(&surface, stream, "surface", &error));
+    succeed(tm_polygon_surface_to_stream(&surface, stream, "surface", &error));
     tm_polygon_surface_free(&surface);
     tm_text_free(&bytes);
 }
@@ -64,7 +64,7 @@ static void read_octants(tm_stream *stream)
     const char *name = filter_input_name(&f);
     import_input(&f, &bytes);
     succeed(tm_oct_read(&oct, bytes.byte ? bytes.byte : "", bytes.size, name, &error));
-    succeed(tm_oct_give(&oct, stream, name, &error));
+    succeed(tm_oct_to_stream(&oct, stream, name, &error));
     tm_oct_free(&oct);
     tm_text_free(&bytes);
 }

@@ -156,7 +156,7 @@ static void write_json(filter *f, const tm_octree *octree, const tm_octree_mesh 
     tm_json_integer(&json, "wedge", (int64_t)kind[6]);
     tm_json_integer(&json, "hex", (int64_t)kind[8]);
     tm_json_close(&json, '}');
-    tm_json_integer(&json, "boundary_nodes", (int64_t)mesh->skin.nodes);
+    tm_json_integer(&json, "boundary_nodes", (int64_t)mesh->boundary.nodes);
     tm_json_integer(&json, "held_back", (int64_t)r->held_back);
     tm_json_integer(&json, "inverted", (int64_t)r->invalid);
     tm_json_integer(&json, "lost_octants", (int64_t)r->lost);
@@ -191,7 +191,7 @@ int main(int argc, char **argv)
     surface_input_build(&f, &o.surface, &surface, &stream);
     if (tm_octree_build(&octree, &surface, o.rules.rules.rule, o.rules.rules.count,
                         &error) != TM_OK ||
-        tm_octree_mesh_resolve(&mesh, &octree, &surface, o.resolve, &error) != TM_OK)
+        tm_octree_mesh_refine_lost(&mesh, &octree, &surface, o.resolve, &error) != TM_OK)
         filter_fail(&f, &error);
     octree_rules_free(&o.rules);
     note_losses(&f, &surface, &mesh.report, smallest_side(&octree));
@@ -200,7 +200,8 @@ int main(int argc, char **argv)
     const size_t nodes = mesh.assembly.mesh.nodes;
     const size_t elements = mesh.assembly.mesh.elements;
     const bool valid = mesh.report.invalid == 0;
-    if (tm_octree_mesh_give(&mesh, &octree, &surface, o.levels, &stream, &error) != TM_OK)
+    if (tm_octree_mesh_to_stream(&mesh, &octree, &surface, o.levels, &stream, &error) !=
+        TM_OK)
         filter_fail(&f, &error);
     filter_write(&f, &stream, "%zu octants, %zu nodes, %zu elements", octree.leaves,
                  nodes, elements);

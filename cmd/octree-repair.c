@@ -179,7 +179,7 @@ static void write_json(program *p, const tm_repair_report *report, size before,
     score_json(&json, "before", &report->before, before.elements, before.octants);
     score_json(&json, "after", &report->after, after.elements, after.octants);
     tm_json_integer(&json, "iterations", (int64_t)report->iterations);
-    tm_json_integer(&json, "tips", (int64_t)report->tips);
+    tm_json_integer(&json, "tips", (int64_t)report->corners);
     tm_json_integer(&json, "divided", (int64_t)report->divided);
     tm_json_double(&json, "seconds", seconds);
     tm_json_close(&json, '}');
@@ -220,7 +220,7 @@ static bool run(program *p, tm_stream *stream)
     tm_repair_notes notes = {0};
     tm_repair_report report;
     const clock_t start = clock();
-    if (tm_repair_take(&state, stream, &error) != TM_OK)
+    if (tm_repair_from_stream(&state, stream, &error) != TM_OK)
         fail(p, &error);
     if (tm_repair_is_needed(&state, stream, p->repair.threshold) || p->trace)
         prepare(p, stream, &state, &notes);
@@ -234,7 +234,7 @@ static bool run(program *p, tm_stream *stream)
     const bool done = report.after.bad == 0 && report.after.held == 0;
     if (!done)
         note_left(p, &state, &report.after, stream->base);
-    if (tm_repair_give(&state, stream, surface, &notes, &error) != TM_OK)
+    if (tm_repair_to_stream(&state, stream, surface, &notes, &error) != TM_OK)
         filter_fail(&p->f, &error);
     if (notes.dropped[0])
         filter_note(&p->f, "dropped, as they refer to what is no more: %s",

@@ -193,7 +193,7 @@ static void convert(filter *f, tm_stream *stream, const settings *o, result *r)
                    "a mesh of polyhedra already (tetrahedra would be right)");
         filter_fail(f, &error);
     }
-    take_tet_mesh(f, stream, &mesh);
+    tet_mesh_from_stream(f, stream, &mesh);
     if (!o->label && tm_tet_mesh_sort(&mesh, &error) != TM_OK)
         filter_fail(f, &error);
     if (o->ignore_markers)
@@ -202,7 +202,7 @@ static void convert(filter *f, tm_stream *stream, const settings *o, result *r)
         filter_fail(f, &error);
     if (!o->label)
         make_facets(f, o, &mesh, &partition, made, r);
-    if (tm_tet_mesh_give(&mesh, stream, &error) != TM_OK)
+    if (tm_tet_mesh_to_stream(&mesh, stream, &error) != TM_OK)
         filter_fail(f, &error);
     if (o->label)
         put_labels(f, stream, &partition);

@@ -6,28 +6,28 @@
 static bool comes_before(const uint32_t *place, const uint32_t *other)
 {
     size_t i = 0;
-    while (i + 1 < TM_PLACE_NUMBERS && place[i] == other[i])
+    while (i + 1 < TM_DEFECT_NUMBERS && place[i] == other[i])
         i++;
     return place[i] < other[i];
 }
 
 static size_t places(const tm_defect_list *list)
 {
-    return list->count < TM_PLACES ? list->count : TM_PLACES;
+    return list->count < TM_DEFECTS_LISTED ? list->count : TM_DEFECTS_LISTED;
 }
 
 /* Puts a place where its numbers belong; the last one makes room. */
 static void remember(tm_defect_list *list, const uint32_t *place)
 {
     size_t i = places(list);
-    if (i == TM_PLACES && !comes_before(place, list->place[--i]))
+    if (i == TM_DEFECTS_LISTED && !comes_before(place, list->place[--i]))
         return;
     for (; i > 0 && comes_before(place, list->place[i - 1]); i--)
         memcpy(list->place[i], list->place[i - 1], sizeof list->place[i]);
     memcpy(list->place[i], place, sizeof list->place[i]);
 }
 
-void tm_defect_add(tm_defect_list *list, const uint32_t place[TM_PLACE_NUMBERS])
+void tm_defect_add(tm_defect_list *list, const uint32_t place[TM_DEFECT_NUMBERS])
 {
     remember(list, place);
     list->count++;

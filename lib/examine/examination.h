@@ -53,13 +53,14 @@ typedef enum tm_element_kind {
     TM_ELEMENT_KINDS
 } tm_element_kind;
 
-enum { TM_PLACES = 5, TM_PLACE_NUMBERS = 4 };
+enum { TM_DEFECTS_LISTED = 5, TM_DEFECT_NUMBERS = 4 };
 
 /* All defects of one kind. The places are those that come first in the order of their
  * numbers, so that they do not depend on the order in which they were found. */
 typedef struct tm_defect_list {
     size_t count;
-    uint32_t place[TM_PLACES][TM_PLACE_NUMBERS]; /* min(count, TM_PLACES) of them */
+    uint32_t place[TM_DEFECTS_LISTED]
+                  [TM_DEFECT_NUMBERS]; /* min(count, TM_DEFECTS_LISTED) of them */
 } tm_defect_list;
 
 typedef struct tm_examination {
@@ -80,7 +81,7 @@ typedef struct tm_examination {
 } tm_examination;
 
 /* Counts one more; unused numbers are 0. */
-void tm_defect_add(tm_defect_list *list, const uint32_t place[TM_PLACE_NUMBERS]);
+void tm_defect_add(tm_defect_list *list, const uint32_t place[TM_DEFECT_NUMBERS]);
 
 /* Counts all that are in `more`. */
 void tm_defect_add_list(tm_defect_list *list, const tm_defect_list *more);

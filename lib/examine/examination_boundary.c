@@ -115,7 +115,7 @@ static bool find_spokes(surface *s, uint32_t v, size_t count)
 /* Each edge is counted at its smaller node. */
 static void check_edge(tm_examination *found, uint32_t v, uint32_t end, size_t faces)
 {
-    const uint32_t place[TM_PLACE_NUMBERS] = {v, end, (uint32_t)faces};
+    const uint32_t place[TM_DEFECT_NUMBERS] = {v, end, (uint32_t)faces};
     if (v < end && faces % 2 == 1)
         tm_defect_add(&found->defect[TM_OPEN_EDGE], place);
     if (v < end && faces > 2)
@@ -142,7 +142,7 @@ static bool check_node(tm_examination *found, surface *s, uint32_t v)
     }
     if (fans > 1)
         tm_defect_add(&found->defect[TM_NON_MANIFOLD_VERTEX],
-                      (uint32_t[TM_PLACE_NUMBERS]){v, (uint32_t)fans});
+                      (uint32_t[TM_DEFECT_NUMBERS]){v, (uint32_t)fans});
     return true;
 }
 

@@ -59,7 +59,7 @@ tm_status tm_examine_nodes(tm_examination *found, const double (*xyz)[3], size_t
             table.node[slot] = v;
         else
             tm_defect_add(&found->defect[TM_DUPLICATE_NODE],
-                          (uint32_t[TM_PLACE_NUMBERS]){v, table.node[slot]});
+                          (uint32_t[TM_DEFECT_NUMBERS]){v, table.node[slot]});
     }
     free(table.node);
     return TM_OK;

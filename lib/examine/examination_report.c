@@ -95,7 +95,7 @@ static void sizes(tm_text *text, const tm_examination *found)
 }
 
 static void unmatched_text(tm_text *text, const tm_examination *found,
-                           const uint32_t place[TM_PLACE_NUMBERS], unsigned base)
+                           const uint32_t place[TM_DEFECT_NUMBERS], unsigned base)
 {
     const uint32_t a = place[0] + base, b = place[1] + base, c = place[2] + base;
     if (found->polyhedra)
@@ -113,7 +113,7 @@ static void unmatched_text(tm_text *text, const tm_examination *found,
 
 /* Rows of .face, or of .facet. */
 static void row_text(tm_text *text, const tm_examination *found, tm_defect d,
-                     const uint32_t place[TM_PLACE_NUMBERS], unsigned base)
+                     const uint32_t place[TM_DEFECT_NUMBERS], unsigned base)
 {
     const uint32_t a = place[0] + base, b = place[1] + base;
     const bool is_facet = found->polyhedra || place[2] == 1;
@@ -129,7 +129,7 @@ static void row_text(tm_text *text, const tm_examination *found, tm_defect d,
 
 /* One defect in a sentence. */
 static void place_text(tm_text *text, const tm_examination *found, tm_defect d,
-                       const uint32_t place[TM_PLACE_NUMBERS], unsigned base)
+                       const uint32_t place[TM_DEFECT_NUMBERS], unsigned base)
 {
     const char *one = found->element, *many = found->elements;
     const uint32_t a = place[0] + base, b = place[1] + base, c = place[2] + base;
@@ -193,13 +193,13 @@ static void defect_text(tm_text *text, const tm_examination *found, tm_defect d,
     if (list->count == 0)
         return;
     integer_row(text, name[d].label, (int64_t)list->count);
-    for (size_t i = 0; i < list->count && i < TM_PLACES; i++) {
+    for (size_t i = 0; i < list->count && i < TM_DEFECTS_LISTED; i++) {
         tm_text_string(text, "  ");
         place_text(text, found, d, list->place[i], base);
         tm_text_string(text, "\n");
     }
-    if (list->count > TM_PLACES)
-        tm_text_format(text, "  and %zu more\n", list->count - TM_PLACES);
+    if (list->count > TM_DEFECTS_LISTED)
+        tm_text_format(text, "  and %zu more\n", list->count - TM_DEFECTS_LISTED);
 }
 
 void tm_examination_text(tm_text *text, const tm_examination *found, unsigned base)

@@ -59,15 +59,15 @@ static int8_t measure(measured *m, const tm_mixed_arrays *mesh, uint32_t e)
     const uint32_t *n = mesh->item + mesh->start[e], twice = node_twice(n, k);
     m->kind[kind_of(k)]++;
     if (twice != TM_NONE) {
-        tm_defect_add(&m->degenerate, (uint32_t[TM_PLACE_NUMBERS]){e, twice});
+        tm_defect_add(&m->degenerate, (uint32_t[TM_DEFECT_NUMBERS]){e, twice});
         return TM_MIXED_NODE_TWICE;
     }
     tm_sum_add(&m->volume, tm_mixed_volume(mesh->xyz, n, k));
     const tm_mixed_corners corner = tm_mixed_corners_of(mesh->xyz, n, k);
     if (corner.negative > 0)
-        tm_defect_add(&m->inverted, (uint32_t[TM_PLACE_NUMBERS]){e});
+        tm_defect_add(&m->inverted, (uint32_t[TM_DEFECT_NUMBERS]){e});
     else if (corner.zero > 0)
-        tm_defect_add(&m->degenerate, (uint32_t[TM_PLACE_NUMBERS]){e, TM_NONE});
+        tm_defect_add(&m->degenerate, (uint32_t[TM_DEFECT_NUMBERS]){e, TM_NONE});
     return (int8_t)((corner.negative == 0 && corner.positive > 0) -
                     (corner.positive == 0 && corner.negative > 0));
 }
@@ -171,7 +171,7 @@ tm_status tm_mixed_examine(tm_examination *found, const tm_mixed_arrays *mesh,
         status = tm_mixed_examine_faces(found, mesh, sign, &boundary, error);
     free(sign);
     if (status == TM_OK)
-        status = tm_mixed_examine_halves(found, &boundary, error);
+        status = tm_mixed_examine_nonconforming(found, &boundary, error);
     if (status == TM_OK)
         status = tm_examine_boundary(found, mesh->xyz, mesh->nodes,
                                      (const uint32_t *)boundary.node, 4, boundary.count,

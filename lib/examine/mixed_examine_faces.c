@@ -55,7 +55,7 @@ static void add_defect(walk *w, tm_defect d, uint32_t first, uint32_t second,
                        uint32_t third)
 {
     tm_defect_add(&w->found->defect[d],
-                  (uint32_t[TM_PLACE_NUMBERS]){first, second, third});
+                  (uint32_t[TM_DEFECT_NUMBERS]){first, second, third});
 }
 
 static uint32_t lesser(uint32_t a, uint32_t b)
@@ -302,9 +302,9 @@ static size_t take_face(walk *w, uint32_t v, const tm_mixed_face *entry, size_t 
         check_sides(w, &run);
     else
         tm_defect_add(&w->found->defect[TM_UNMATCHED_FACE],
-                      (uint32_t[TM_PLACE_NUMBERS]){v, (uint32_t)(entry->key >> 32),
-                                                   (uint32_t)entry->key,
-                                                   (uint32_t)run.elements});
+                      (uint32_t[TM_DEFECT_NUMBERS]){v, (uint32_t)(entry->key >> 32),
+                                                    (uint32_t)entry->key,
+                                                    (uint32_t)run.elements});
     return run.elements;
 }
 
@@ -322,9 +322,9 @@ static bool take_faces(walk *w, uint32_t v)
         if (before && before->key == entry[i].key &&
             before->shape >> 2 == entry[i].shape >> 2)
             tm_defect_add(&w->found->defect[TM_UNMATCHED_FACE],
-                          (uint32_t[TM_PLACE_NUMBERS]){v, (uint32_t)(entry[i].key >> 32),
-                                                       (uint32_t)entry[i].key,
-                                                       TM_FACE_IN_ANOTHER_ORDER});
+                          (uint32_t[TM_DEFECT_NUMBERS]){v, (uint32_t)(entry[i].key >> 32),
+                                                        (uint32_t)entry[i].key,
+                                                        TM_FACE_IN_ANOTHER_ORDER});
         before = &entry[i];
     }
     return enough;

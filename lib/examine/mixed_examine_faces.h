@@ -22,7 +22,8 @@ tm_status tm_mixed_examine_faces(tm_examination *found, const tm_mixed_arrays *m
 
 /* Finds in *found: triangles that are half of a quadrilateral, both on the boundary.
  * Expected O(faces). */
-tm_status tm_mixed_examine_halves(tm_examination *found,
-                                  const tm_mixed_boundary *boundary, tm_error *error);
+tm_status tm_mixed_examine_nonconforming(tm_examination *found,
+                                         const tm_mixed_boundary *boundary,
+                                         tm_error *error);
 
 #endif

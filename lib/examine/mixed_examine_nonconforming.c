@@ -64,13 +64,15 @@ static void look_up(tm_examination *found, const triangle_table *table,
             n[i] = quadrilateral[i < left_out ? i : i + 1];
         sort3(n);
         if (table->face[slot_of(table, n)] != TM_NONE)
-            tm_defect_add(&found->defect[TM_UNMATCHED_FACE],
-                          (uint32_t[TM_PLACE_NUMBERS]){n[0], n[1], n[2], TM_FACE_HALVED});
+            tm_defect_add(
+                &found->defect[TM_UNMATCHED_FACE],
+                (uint32_t[TM_DEFECT_NUMBERS]){n[0], n[1], n[2], TM_FACE_HALVED});
     }
 }
 
-tm_status tm_mixed_examine_halves(tm_examination *found,
-                                  const tm_mixed_boundary *boundary, tm_error *error)
+tm_status tm_mixed_examine_nonconforming(tm_examination *found,
+                                         const tm_mixed_boundary *boundary,
+                                         tm_error *error)
 {
     size_t triangles = 0, room = 2;
     for (size_t f = 0; f < boundary->count; f++)

@@ -34,7 +34,7 @@ static void examine_edge(examined *e, const tm_poly_boundary *b, uint32_t c,
 {
     const uint32_t p = b->node[edge->end[0]], q = b->node[edge->end[1]];
     const uint32_t faces = edge->along + edge->against;
-    const uint32_t place[TM_PLACE_NUMBERS] = {c, p < q ? p : q, p < q ? q : p, faces};
+    const uint32_t place[TM_DEFECT_NUMBERS] = {c, p < q ? p : q, p < q ? q : p, faces};
     if (faces != 2)
         tm_defect_add(&e->unclosed, place);
     else if (edge->along != 1)
@@ -55,9 +55,9 @@ static void examine_cell(examined *e, const tm_poly_arrays *mesh, tm_poly_bounda
     const int sign = tm_poly_sign(b, mesh->xyz, &volume);
     tm_sum_add(&e->volume, volume);
     if (sign < 0)
-        tm_defect_add(&e->inverted, (uint32_t[TM_PLACE_NUMBERS]){c});
+        tm_defect_add(&e->inverted, (uint32_t[TM_DEFECT_NUMBERS]){c});
     else if (sign == 0)
-        tm_defect_add(&e->degenerate, (uint32_t[TM_PLACE_NUMBERS]){c, TM_NONE});
+        tm_defect_add(&e->degenerate, (uint32_t[TM_DEFECT_NUMBERS]){c, TM_NONE});
 }
 
 static void examine_chunk(void *context, size_t chunk)
@@ -104,7 +104,7 @@ static void examine_surface(tm_examination *found, const tm_poly_boundary *b)
         const tm_poly_edge *e = &b->edge[i];
         const uint32_t p = b->node[e->end[0]], q = b->node[e->end[1]];
         const uint32_t faces = e->along + e->against;
-        const uint32_t place[TM_PLACE_NUMBERS] = {p < q ? p : q, p < q ? q : p, faces};
+        const uint32_t place[TM_DEFECT_NUMBERS] = {p < q ? p : q, p < q ? q : p, faces};
         if (faces % 2 == 1)
             tm_defect_add(&found->defect[TM_OPEN_EDGE], place);
         if (faces > 2)
@@ -113,7 +113,7 @@ static void examine_surface(tm_examination *found, const tm_poly_boundary *b)
     for (size_t v = 0; v < b->nodes; v++)
         if (b->fans[v] > 1)
             tm_defect_add(&found->defect[TM_NON_MANIFOLD_VERTEX],
-                          (uint32_t[TM_PLACE_NUMBERS]){b->node[v], b->fans[v]});
+                          (uint32_t[TM_DEFECT_NUMBERS]){b->node[v], b->fans[v]});
 }
 
 /* The surface of the facets that name only one cell. */

@@ -31,7 +31,7 @@ static void add_defect(matching *m, tm_defect d, uint32_t first, uint32_t second
                        uint32_t third)
 {
     tm_defect_add(&m->found->defect[d],
-                  (uint32_t[TM_PLACE_NUMBERS]){first, second, third});
+                  (uint32_t[TM_DEFECT_NUMBERS]){first, second, third});
 }
 
 static void list_facets(matching *m)

@@ -13,10 +13,10 @@
 static const double full_turn = 360; /* degrees */
 
 /* A node, around the first one of the polyhedron. */
-typedef struct tm_poly_place {
+typedef struct tm_poly_point {
     double x[3];
     double distance; /* from the mean of all nodes */
-} tm_poly_place;
+} tm_poly_point;
 
 enum { PLACE, NORMAL, PLANE };
 
@@ -55,7 +55,7 @@ static void place_nodes(tm_poly_shape_memory *m, const tm_poly_boundary *b,
 
 static int compare(const void *a, const void *b)
 {
-    const tm_poly_place *p = a, *q = b;
+    const tm_poly_point *p = a, *q = b;
     return (p->distance < q->distance) - (p->distance > q->distance);
 }
 
@@ -63,7 +63,7 @@ static int compare(const void *a, const void *b)
  * are known to be closer without a look. */
 static double diameter(tm_poly_shape_memory *m, size_t nodes)
 {
-    tm_poly_place *place = m->place + nodes;
+    tm_poly_point *place = m->place + nodes;
     double largest2 = 0, largest = 0;
     memcpy(place, m->place, nodes * sizeof *place);
     qsort(place, nodes, sizeof *place, compare);

@@ -29,7 +29,7 @@ typedef struct tm_poly_shape {
 
 /* Memory that is kept from one polyhedron to the next. {0} is empty. */
 typedef struct tm_poly_shape_memory {
-    struct tm_poly_place *place; /* of its nodes; then again, farthest first */
+    struct tm_poly_point *place; /* of its nodes; then again, farthest first */
     double (*normal)[3];         /* of its facets, length 1; 0 of those without area */
     double (*plane)[4];          /* of those with area */
     size_t room[3];

@@ -46,7 +46,7 @@ static int8_t measure(measured *m, const tm_tet_arrays *mesh, uint32_t t)
 {
     const uint32_t *n = mesh->tet[t], twice = node_twice(n);
     if (twice != TM_NONE) {
-        tm_defect_add(&m->degenerate, (uint32_t[TM_PLACE_NUMBERS]){t, twice});
+        tm_defect_add(&m->degenerate, (uint32_t[TM_DEFECT_NUMBERS]){t, twice});
         return TM_TET_NODE_TWICE;
     }
     const double *a = mesh->xyz[n[0]], *b = mesh->xyz[n[1]];
@@ -54,9 +54,9 @@ static int8_t measure(measured *m, const tm_tet_arrays *mesh, uint32_t t)
     tm_sum_add(&m->volume, tm_tet_volume(a, b, c, d));
     const int sign = tm_orient3d(a, b, c, d);
     if (sign < 0)
-        tm_defect_add(&m->inverted, (uint32_t[TM_PLACE_NUMBERS]){t});
+        tm_defect_add(&m->inverted, (uint32_t[TM_DEFECT_NUMBERS]){t});
     else if (sign == 0)
-        tm_defect_add(&m->degenerate, (uint32_t[TM_PLACE_NUMBERS]){t, TM_NONE});
+        tm_defect_add(&m->degenerate, (uint32_t[TM_DEFECT_NUMBERS]){t, TM_NONE});
     return (int8_t)sign;
 }
 

@@ -45,7 +45,7 @@ static bool is_whole(const walk *w, size_t t)
 
 static void add_defect(walk *w, tm_defect d, uint32_t first, uint32_t second)
 {
-    tm_defect_add(&w->found->defect[d], (uint32_t[TM_PLACE_NUMBERS]){first, second});
+    tm_defect_add(&w->found->defect[d], (uint32_t[TM_DEFECT_NUMBERS]){first, second});
 }
 
 /* The two largest nodes of a tetrahedron, the larger one second. */
@@ -221,7 +221,7 @@ static bool take_face(walk *w, uint32_t v, const tm_face_entry *entry, size_t co
     else
         tm_defect_add(
             &w->found->defect[TM_UNMATCHED_FACE],
-            (uint32_t[TM_PLACE_NUMBERS]){v, middle, largest, (uint32_t)run.tets});
+            (uint32_t[TM_DEFECT_NUMBERS]){v, middle, largest, (uint32_t)run.tets});
     return true;
 }
 

@@ -19,7 +19,7 @@ static const char letter_of[NODES_MAX + 1] = {
     [4] = 'T', [5] = 'P', [WEDGE] = 'R', [NODES_MAX] = 'H'};
 
 /* From the place of a node in a wedge here to that in .mix, and back. */
-static const unsigned char wedge_place[WEDGE] = {0, 2, 1, 3, 5, 4};
+static const unsigned char wedge_corner[WEDGE] = {0, 2, 1, 3, 5, 4};
 
 /* Reading -------------------------------------------------------------------------- */
 
@@ -114,7 +114,7 @@ static tm_status read_element(reader *r)
             tm_scan_next_integer(&r->scan, "node", 0, UINT32_MAX - 1, &node, r->error);
         if (status != TM_OK)
             return status;
-        item[begin + (k == WEDGE ? wedge_place[i] : i)] = (uint32_t)node;
+        item[begin + (k == WEDGE ? wedge_corner[i] : i)] = (uint32_t)node;
     }
     start[e + 1] = begin + k;
     r->elements++;
@@ -266,7 +266,7 @@ static char *put_element(const void *context, size_t row, char *to)
     const uint32_t *node = tm_row_nodes(all->block, row, &k);
     *to++ = letter_of[k];
     for (size_t i = 0; i < k; i++)
-        to = tm_put_number(to, node[k == WEDGE ? wedge_place[i] : i]);
+        to = tm_put_number(to, node[k == WEDGE ? wedge_corner[i] : i]);
     memcpy(to, all->after, length);
     to += length;
     *to++ = '\n';

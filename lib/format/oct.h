@@ -48,8 +48,8 @@ void tm_oct_free(tm_oct *oct);
  * they do. TM_ERROR_INPUT where octants are no cubes, of different trees, or not as many
  * elements as the mesh has. *stream is as before after an error, but for blocks added.
  * O(n). */
-tm_status tm_oct_give(const tm_oct *oct, tm_stream *stream, const char *name,
-                      tm_error *error);
+tm_status tm_oct_to_stream(const tm_oct *oct, tm_stream *stream, const char *name,
+                           tm_error *error);
 
 /* Appends the file of the first version to *text: .octant, .root and .mix, and
  * surface.node and surface.face for the triangles that meet the closed octants. Point 0

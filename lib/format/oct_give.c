@@ -242,8 +242,8 @@ static tm_status check_elements(const giver *g, const tm_block *mix)
     return TM_OK;
 }
 
-tm_status tm_oct_give(const tm_oct *oct, tm_stream *stream, const char *name,
-                      tm_error *error)
+tm_status tm_oct_to_stream(const tm_oct *oct, tm_stream *stream, const char *name,
+                           tm_error *error)
 {
     giver g = {.oct = oct, .name = name, .error = error};
     const tm_block *mix = tm_stream_find(stream, ".mix");

@@ -47,10 +47,10 @@ static tm_format format_of_numbers(const char *bytes, size_t size, const char *n
     for (size_t k = 0; k < sizeof known / sizeof known[0]; k++)
         if (has_suffix(name, known[k].suffix))
             return known[k].format;
-    switch (tm_poly_kind_of(bytes, size)) {
-    case TM_POLY_POLY:
+    switch (tm_plc_kind_of(bytes, size)) {
+    case TM_PLC_POLY:
         return TM_FORMAT_POLY;
-    case TM_POLY_SMESH:
+    case TM_PLC_SMESH:
         return TM_FORMAT_SMESH;
     default:
         return TM_FORMAT_NODE;
@@ -121,11 +121,11 @@ tm_status tm_format_read(tm_polygon_surface *surface, tm_format format, const ch
     case TM_FORMAT_MDL:
         return tm_mdl_read(surface, bytes, size, name, error);
     case TM_FORMAT_NODE:
-        return tm_poly_read(surface, TM_POLY_NODE, bytes, size, name, error);
+        return tm_plc_read(surface, TM_PLC_NODE, bytes, size, name, error);
     case TM_FORMAT_POLY:
-        return tm_poly_read(surface, TM_POLY_POLY, bytes, size, name, error);
+        return tm_plc_read(surface, TM_PLC_POLY, bytes, size, name, error);
     case TM_FORMAT_SMESH:
-        return tm_poly_read(surface, TM_POLY_SMESH, bytes, size, name, error);
+        return tm_plc_read(surface, TM_PLC_SMESH, bytes, size, name, error);
     default:
         return tm_fail_at(
             error, TM_ERROR_INPUT, name, 0, NULL,

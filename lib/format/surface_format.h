@@ -25,7 +25,7 @@ tm_format tm_format_of(const char *bytes, size_t size, const char *name);
 /* "OFF", …; "" for the unknown one. */
 const char *tm_format_name(tm_format format);
 
-/* Calls the reader of the format. *surface must be empty (but see tm_poly_read() for
+/* Calls the reader of the format. *surface must be empty (but see tm_plc_read() for
  * .poly and .smesh files whose nodes are in a .node file); after an error it is. For
  * TM_FORMAT_UNKNOWN and TM_FORMAT_STREAM it fails with a list of what is read. */
 tm_status tm_format_read(tm_polygon_surface *surface, tm_format format, const char *bytes,

@@ -21,7 +21,7 @@ static tm_status read_nodes(reader *r)
     tm_polygon_surface *surface = r->surface;
     tm_status status = tm_tetgen_read_rows(node, &r->scan, &surface->base, 0, r->error);
     if (status == TM_OK && node->count > 0)
-        status = tm_polygon_surface_take_nodes(surface, node, r->error);
+        status = tm_polygon_surface_nodes_from_stream(surface, node, r->error);
     tm_stream_free(&rows);
     return status;
 }
@@ -115,7 +115,7 @@ static tm_status read_poly_facet(reader *r, int64_t *marker)
     return status;
 }
 
-static tm_status read_facets(reader *r, tm_poly_kind kind)
+static tm_status read_facets(reader *r, tm_plc_kind kind)
 {
     int64_t count = 0, markers = 0;
     tm_status status = tm_scan_next_integer(&r->scan, "the number of facets", 0,
@@ -128,8 +128,8 @@ static tm_status read_facets(reader *r, tm_poly_kind kind)
     r->markers = r->surface->has_facet_markers = markers != 0;
     for (int64_t f = 0; f < count && status == TM_OK; f++) {
         int64_t marker = 0;
-        status = kind == TM_POLY_SMESH ? read_smesh_facet(r, &marker)
-                                       : read_poly_facet(r, &marker);
+        status = kind == TM_PLC_SMESH ? read_smesh_facet(r, &marker)
+                                      : read_poly_facet(r, &marker);
         if (status == TM_OK)
             status = tm_polygon_surface_end_facet(r->surface, (int32_t)marker, r->error);
     }
@@ -190,13 +190,13 @@ static tm_status read_regions(reader *r)
     return status;
 }
 
-tm_status tm_poly_read(tm_polygon_surface *surface, tm_poly_kind kind, const char *bytes,
-                       size_t size, const char *name, tm_error *error)
+tm_status tm_plc_read(tm_polygon_surface *surface, tm_plc_kind kind, const char *bytes,
+                      size_t size, const char *name, tm_error *error)
 {
     reader r = {.surface = surface, .error = error};
     tm_tetgen_begin(&r.scan, bytes, size, name);
     tm_status status = read_nodes(&r);
-    if (kind != TM_POLY_NODE) {
+    if (kind != TM_PLC_NODE) {
         if (status == TM_OK)
             status = read_facets(&r, kind);
         if (status == TM_OK)
@@ -218,7 +218,7 @@ static bool peek_integer(tm_scan *scan, int64_t *value)
     return tm_scan_integer(scan, "", 0, INT64_MAX, value, NULL) == TM_OK;
 }
 
-bool tm_poly_lacks_nodes(const char *bytes, size_t size)
+bool tm_plc_lacks_nodes(const char *bytes, size_t size)
 {
     tm_scan scan;
     int64_t nodes;
@@ -237,7 +237,7 @@ static size_t words_in_line(tm_scan *scan)
 
 /* The first line of a facet of .poly has at most three numbers, and the polygon behind it
  * k + 1; that of .smesh has k + 1 itself, 4 or more. */
-tm_poly_kind tm_poly_kind_of(const char *bytes, size_t size)
+tm_plc_kind tm_plc_kind_of(const char *bytes, size_t size)
 {
     enum { POLY_FACET_WORDS = 3 };
     tm_scan scan;
@@ -245,16 +245,16 @@ tm_poly_kind tm_poly_kind_of(const char *bytes, size_t size)
     tm_tetgen_begin(&scan, bytes, size, "");
     tm_scan_seek(&scan);
     if (!peek_integer(&scan, &nodes))
-        return TM_POLY_NODE;
+        return TM_PLC_NODE;
     tm_scan_end_line(&scan);
     for (int64_t v = 0; v < nodes && tm_scan_seek(&scan); v++)
         tm_scan_end_line(&scan);
     if (!tm_scan_seek(&scan))
-        return TM_POLY_NODE;
+        return TM_PLC_NODE;
     tm_scan_end_line(&scan);
     if (!tm_scan_seek(&scan))
-        return TM_POLY_POLY;
-    return words_in_line(&scan) <= POLY_FACET_WORDS ? TM_POLY_POLY : TM_POLY_SMESH;
+        return TM_PLC_POLY;
+    return words_in_line(&scan) <= POLY_FACET_WORDS ? TM_PLC_POLY : TM_PLC_SMESH;
 }
 
 /* Writing -------------------------------------------------------------------------- */
@@ -267,7 +267,7 @@ static void write_point(tm_text *text, const double xyz[3])
     }
 }
 
-void tm_poly_write_nodes(tm_text *text, const tm_polygon_surface *surface)
+void tm_plc_write_nodes(tm_text *text, const tm_polygon_surface *surface)
 {
     tm_text_format(text, "%zu 3 %zu %d\n", surface->nodes, surface->attributes,
                    surface->node_marker != NULL);
@@ -306,9 +306,9 @@ static void write_facet(tm_text *text, const tm_polygon_surface *surface, size_t
     }
 }
 
-void tm_poly_write(tm_text *text, const tm_polygon_surface *surface)
+void tm_plc_write(tm_text *text, const tm_polygon_surface *surface)
 {
-    tm_poly_write_nodes(text, surface);
+    tm_plc_write_nodes(text, surface);
     tm_text_format(text, "%zu %d\n", surface->facets, surface->has_facet_markers);
     for (size_t f = 0; f < surface->facets; f++)
         write_facet(text, surface, f);

@@ -32,7 +32,7 @@ static uint32_t spread(uint32_t bits)
     return (bits | bits << 2) & 0x09249249;
 }
 
-uint32_t tm_space_place(const tm_space *space, const double p[3])
+uint32_t tm_space_position(const tm_space *space, const double p[3])
 {
     uint32_t place = 0;
     for (int k = 0; k < 3; k++) {
@@ -45,7 +45,8 @@ uint32_t tm_space_place(const tm_space *space, const double p[3])
 }
 
 /* Sorts by ten bits of the place from bit `from` on; equal ones stay in their order. */
-static void sort_by_digit(tm_placed *to, const tm_placed *placed, size_t count, int from)
+static void sort_by_digit(tm_curve_point *to, const tm_curve_point *placed, size_t count,
+                          int from)
 {
     size_t begin[CELLS + 1] = {0};
     for (size_t i = 0; i < count; i++)
@@ -56,10 +57,10 @@ static void sort_by_digit(tm_placed *to, const tm_placed *placed, size_t count, 
         to[begin[placed[i].place >> from & (CELLS - 1)]++] = placed[i];
 }
 
-bool tm_space_sort(tm_placed *placed, size_t count)
+bool tm_space_sort(tm_curve_point *placed, size_t count)
 {
     enum { DIGIT = 10 };
-    tm_placed *other = tm_new(count, sizeof *other);
+    tm_curve_point *other = tm_new(count, sizeof *other);
     if (!other)
         return false;
     sort_by_digit(other, placed, count, 0);

@@ -147,7 +147,7 @@ static bool is_open(const tm_tet_mesh *mesh, uint32_t half)
 /* A row of .face that is a face of tetrahedra: puts it between them, or drops it. */
 static void keep_row(tm_tet_mesh *mesh, uint32_t row, uint32_t h)
 {
-    tm_kept_face *kept = &mesh->face[row];
+    tm_constrained_face *kept = &mesh->face[row];
     uint32_t g = mesh->neighbour[h / 4][h % 4];
     if (!is_open(mesh, h) && kept->marker == 0) {
         kept->listed = false;

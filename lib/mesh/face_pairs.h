@@ -17,8 +17,8 @@ typedef struct tm_face_pairs {
 } tm_face_pairs;
 
 /* Joins the tetrahedra at all faces; a half face of mesh->neighbour without partner is
- * TM_NONE. Faces listed[f], which are mesh->face[f], stay as tm_tet_mesh_take() says. All
- * tetrahedra are of four nodes. Expected O(n). */
+ * TM_NONE. Faces listed[f], which are mesh->face[f], stay as tm_tet_mesh_from_stream()
+ * says. All tetrahedra are of four nodes. Expected O(n). */
 tm_status tm_face_pairs_find(tm_face_pairs *pairs, tm_tet_mesh *mesh,
                              const uint32_t (*listed)[3], size_t listed_count,
                              tm_error *error);

@@ -19,7 +19,8 @@ static tm_status check(const tm_mixed_mesh *mesh, unsigned base, tm_error *error
     return TM_OK;
 }
 
-tm_status tm_mixed_mesh_take(tm_mixed_mesh *mesh, tm_stream *stream, tm_error *error)
+tm_status tm_mixed_mesh_from_stream(tm_mixed_mesh *mesh, tm_stream *stream,
+                                    tm_error *error)
 {
     *mesh = (tm_mixed_mesh){0};
     tm_block *node = tm_stream_find(stream, ".node");
@@ -49,7 +50,7 @@ static bool fits(const tm_block *block, size_t rows)
     return block->count == rows || (block->attributes == 0 && !block->markers);
 }
 
-tm_status tm_mixed_mesh_give(tm_mixed_mesh *mesh, tm_stream *stream, tm_error *error)
+tm_status tm_mixed_mesh_to_stream(tm_mixed_mesh *mesh, tm_stream *stream, tm_error *error)
 {
     tm_block *node = tm_stream_find(stream, ".node");
     tm_block *mix = tm_stream_find(stream, ".mix");

@@ -50,7 +50,7 @@ static void count_elements(const tm_optimise_work *w, size_t *bad, size_t *inver
     }
 }
 
-static size_t count_held(const tm_optimise_work *w)
+static size_t count_off_surface(const tm_optimise_work *w)
 {
     size_t held = 0;
     for (size_t v = 0; v < w->mesh->nodes; v++)
@@ -87,7 +87,7 @@ static tm_status start_work(tm_optimise_work *w, tm_error *error)
     tm_optimise_report *report = w->report;
     count_elements(w, &report->bad_before, &report->inverted_before,
                    &report->worst_before);
-    report->held_before = count_held(w);
+    report->held_before = count_off_surface(w);
     return find_bad(w, error);
 }
 
@@ -143,7 +143,7 @@ static void kick_nodes(tm_cluster *cluster, double kick, uint64_t seed)
             const double unit = (double)(next_bits(&seed) >> 11) * 0x1p-52 - 1;
             to[i] = cluster->xyz[v][i] + kick * cluster->size[v] * unit;
         }
-        tm_cluster_place(cluster, v, to);
+        tm_cluster_move(cluster, v, to);
     }
 }
 
@@ -305,7 +305,7 @@ tm_status tm_optimise_mend(tm_optimise_work *w, unsigned effort, tm_error *error
     return status == TM_OK ? rank_bad(w, error) : status;
 }
 
-/* What nodes that were held back have left bad. */
+/* What nodes that were off the surface have left bad. */
 static tm_status mend_again(tm_optimise_work *w, tm_error *error)
 {
     tm_status status = find_bad(w, error);
@@ -334,14 +334,14 @@ tm_status tm_mixed_optimise(tm_mixed_mesh *mesh, tm_node_rule *rule,
         if (status == TM_OK && options->release_threshold > 0)
             status = tm_optimise_release(&w, error);
         if (status == TM_OK && report->held_before > 0)
-            status = tm_optimise_held(&w, error);
+            status = tm_optimise_off_surface(&w, error);
         if (status == TM_OK && report->held_before > 0)
             status = mend_again(&w, error);
     }
     if (w.bad) {
         count_elements(&w, &report->bad_after, &report->inverted_after,
                        &report->worst_after);
-        report->held_after = count_held(&w);
+        report->held_after = count_off_surface(&w);
         for (size_t v = 0; w.moved && v < mesh->nodes; v++)
             report->moved += w.moved[v];
         report->evaluations = w.cluster.evaluations;

@@ -19,8 +19,8 @@ typedef enum tm_freedom {
     TM_MOVES_AT_CORNER   /* stays at a corner of it */
 } tm_freedom;
 
-/* What a node may do. One that is held back is not on its surface, curve or corner yet:
- * it is to be brought there. */
+/* What a node may do. One that is off the surface is not on its surface, curve or corner
+ * yet: it is to be brought there. */
 typedef struct tm_node_rule {
     uint32_t where; /* the patch, curve or corner; TM_NONE: any patch */
     uint8_t freedom;
@@ -28,11 +28,11 @@ typedef struct tm_node_rule {
 } tm_node_rule;
 
 /* A place on the boundary, and its normal or, on a curve, its direction, of length 1. */
-typedef struct tm_boundary_place {
+typedef struct tm_boundary_point {
     double xyz[3];
     double axis[3];
     uint32_t guess; /* where the next search may begin; TM_NONE: nowhere special */
-} tm_boundary_place;
+} tm_boundary_point;
 
 /* The boundary, as what is closest to a point. The functions read at->guess and fill *at;
  * the closest place of a place must be that place, up to rounding. Of a corner there is
@@ -40,10 +40,10 @@ typedef struct tm_boundary_place {
 typedef struct tm_boundary {
     const void *of;
     void (*on_surface)(const void *of, uint32_t patch, const double point[3],
-                       tm_boundary_place *at);
+                       tm_boundary_point *at);
     void (*on_curve)(const void *of, uint32_t curve, const double point[3],
-                     tm_boundary_place *at);
-    void (*at_corner)(const void *of, uint32_t corner, tm_boundary_place *at);
+                     tm_boundary_point *at);
+    void (*at_corner)(const void *of, uint32_t corner, tm_boundary_point *at);
 } tm_boundary;
 
 /* An element is bad if its J_ENS is below its threshold. */
@@ -74,7 +74,7 @@ typedef struct tm_optimise_report {
 } tm_optimise_report;
 
 /* Raises J_ENS of bad elements by moving nodes up to three elements away from them, and
- * brings nodes that are held back to their places.
+ * brings nodes that are off the surface to their places.
  *
  * Bad elements that touch, and the nodes around them, are one problem: a sum over all
  * corners that grows exponentially with what is missing to the threshold (so the worst
@@ -85,11 +85,12 @@ typedef struct tm_optimise_report {
  *   - no more are bad, no more are inverted, and fewer of either or the worst is better,
  *   - the worst has not become worse, unless some were inverted;
  * else the nodes are where they were. So no mesh becomes worse, but for elements that
- * fall below their threshold, not below held_threshold, for a node that was held back.
+ * fall below their threshold, not below held_threshold, for a node that was off the
+ * surface.
  *
- * Before: rules [nodes] with nodes that are not held back on their places; element nodes
- * in range; `boundary` may be NULL where no rule needs it, and its functions that none
- * needs. After: nodes of the boundary that moved are where `boundary` says that the
+ * Before: rules [nodes] with nodes that are not off the surface on their places; element
+ * nodes in range; `boundary` may be NULL where no rule needs it, and its functions that
+ * none needs. After: nodes of the boundary that moved are where `boundary` says that the
  * closest place is; rule[v].held is false of those that were brought there; nodes that
  * were released have the rule TM_MOVES_ON_SURFACE, TM_NONE. Deterministic.
  * TM_ERROR_SYSTEM where memory is out: the mesh is then as good as it has become.

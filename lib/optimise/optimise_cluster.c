@@ -185,14 +185,15 @@ static void measure_elements(tm_cluster *cluster)
     }
 }
 
-/* Where nodes of the boundary are on it, and how far from it those that are held back. */
+/* Where nodes of the boundary are on it, and how far from it those that are off the
+ * surface. */
 static void find_places(tm_cluster *cluster)
 {
     for (size_t v = 0; v < cluster->moving; v++) {
         const tm_node_rule *rule = &cluster->rule[v];
         const double *p = cluster->xyz[v];
-        tm_boundary_place *at = &cluster->place[v];
-        *at = (tm_boundary_place){.guess = TM_NONE};
+        tm_boundary_point *at = &cluster->place[v];
+        *at = (tm_boundary_point){.guess = TM_NONE};
         memset(cluster->offset[v], 0, sizeof *cluster->offset);
         tm_cluster_find(cluster, v, p);
         if (rule->held)

@@ -120,7 +120,7 @@ static bool find_direction(descent *d)
     return true;
 }
 
-static void keep_best(tm_cluster *cluster)
+static void snapshot_best(tm_cluster *cluster)
 {
     const tm_score score = tm_cluster_score(cluster);
     if (!tm_score_better(&score, &cluster->best_score))
@@ -139,11 +139,11 @@ static void go(const descent *d, double length)
         double to[3];
         for (size_t i = 0; i < 3; i++)
             to[i] = cluster->old[v][i] + length * cluster->size[v] * along[i];
-        tm_cluster_place(cluster, v, to);
+        tm_cluster_move(cluster, v, to);
     }
 }
 
-static void go_back(tm_cluster *cluster)
+static void restore(tm_cluster *cluster)
 {
     memcpy(cluster->xyz, cluster->old, cluster->moving * sizeof *cluster->old);
     memcpy(cluster->place, cluster->places, cluster->moving * sizeof *cluster->place);
@@ -170,7 +170,7 @@ static bool search_line(const descent *d, double *value)
         const double curve = 2 * (now - *value - length * rate);
         length *= fmin(fmax(-rate * length / curve, 0.1), 0.5);
     }
-    go_back(cluster);
+    restore(cluster);
     return false;
 }
 
@@ -199,7 +199,7 @@ double tm_cluster_descend(tm_cluster *cluster, tm_objective objective,
     descent d = start_descent(cluster, objective);
     const double first = tm_cluster_value(cluster, objective);
     double value = first;
-    keep_best(cluster);
+    snapshot_best(cluster);
     unsigned idle = 0;
     find_slope(&d);
     while (iterations-- > 0 && cluster->best_score.bad > 0 && idle < SLOW_MOST) {
@@ -213,7 +213,7 @@ double tm_cluster_descend(tm_cluster *cluster, tm_objective objective,
             tm_cluster_value(cluster, objective);
             continue;
         }
-        keep_best(cluster);
+        snapshot_best(cluster);
         memcpy(d.old_slope, d.slope, d.reals * sizeof *d.slope);
         find_slope(&d);
         remember(&d);

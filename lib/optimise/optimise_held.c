@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Nodes that are held back go to the boundary one by one: all of the way if the nodes
- * around can make room, or half of it, and so on. */
+/* Nodes that are off the surface go to the boundary one by one: all of the way if the
+ * nodes around can make room, or half of it, and so on. */
 #include "optimise_parts.h"
 
 /* How often a node is tried, and all of them. */
@@ -64,7 +64,7 @@ static tm_status bring(tm_optimise_work *w, uint32_t node, bool *closer, tm_erro
     return TM_OK;
 }
 
-tm_status tm_optimise_held(tm_optimise_work *w, tm_error *error)
+tm_status tm_optimise_off_surface(tm_optimise_work *w, tm_error *error)
 {
     bool closer = true;
     for (size_t round = 0; round < ROUNDS && closer; round++) {

@@ -15,7 +15,7 @@ void tm_cluster_find(tm_cluster *cluster, size_t v, const double point[3])
 {
     const tm_node_rule *rule = &cluster->rule[v];
     const tm_boundary *boundary = cluster->boundary;
-    tm_boundary_place *at = &cluster->place[v];
+    tm_boundary_point *at = &cluster->place[v];
     switch (rule->freedom) {
     case TM_MOVES_ON_SURFACE:
         boundary->on_surface(boundary->of, rule->where, point, at);
@@ -31,7 +31,7 @@ void tm_cluster_find(tm_cluster *cluster, size_t v, const double point[3])
     }
 }
 
-void tm_cluster_place(tm_cluster *cluster, size_t v, const double point[3])
+void tm_cluster_move(tm_cluster *cluster, size_t v, const double point[3])
 {
     double on[3];
     tm_subtract(on, point, cluster->offset[v]);

@@ -42,14 +42,14 @@ typedef struct tm_cluster {
     size_t moving;
     size_t nodes;
     size_t node_room;
-    uint32_t *node;            /* [nodes] in the mesh */
-    double (*xyz)[3];          /* [nodes] */
-    tm_node_rule *rule;        /* [moving] */
-    tm_boundary_place *place;  /* [moving]: on the boundary */
-    double (*offset)[3];       /* [moving]: from there to the node, if it is held back */
-    double *size;              /* [moving]: the mean length of its edges */
-    double (*old)[3];          /* [moving]: before a step */
-    tm_boundary_place *places; /* [moving]: the same */
+    uint32_t *node;           /* [nodes] in the mesh */
+    double (*xyz)[3];         /* [nodes] */
+    tm_node_rule *rule;       /* [moving] */
+    tm_boundary_point *place; /* [moving]: on the boundary */
+    double (*offset)[3]; /* [moving]: from there to the node, if it is off the surface */
+    double *size;        /* [moving]: the mean length of its edges */
+    double (*old)[3];    /* [moving]: before a step */
+    tm_boundary_point *places; /* [moving]: the same */
     double (*best)[3];         /* [moving]: with the best score so far */
     double *vector;            /* [moving * 3 * TM_CLUSTER_VECTORS]: of the descent */
 
@@ -107,7 +107,7 @@ void tm_cluster_free(tm_cluster *cluster);
 void tm_cluster_find(tm_cluster *cluster, size_t v, const double point[3]);
 
 /* Puts node v of the cluster, which moves, to the allowed place closest to a point. */
-void tm_cluster_place(tm_cluster *cluster, size_t v, const double point[3]);
+void tm_cluster_move(tm_cluster *cluster, size_t v, const double point[3]);
 
 /* What is minimised: the distortion of optimise_untangle.c with the number ε, or what is
  * missing to the thresholds, with a sharpness. */
@@ -137,9 +137,9 @@ void tm_cluster_along(const tm_cluster *cluster, size_t v, double vector[3]);
 tm_score tm_cluster_score(const tm_cluster *cluster);
 bool tm_score_better(const tm_score *score, const tm_score *than);
 
-/* Lets node v, which is held back, come closer to its place, by that factor of the way
- * that is missing; 0: all of it. All elements are from now on compared with how they were
- * when gathered, by thresholds of at most `threshold`. */
+/* Lets node v, which is off the surface, come closer to its place, by that factor of the
+ * way that is missing; 0: all of it. All elements are from now on compared with how they
+ * were when gathered, by thresholds of at most `threshold`. */
 void tm_cluster_approach(tm_cluster *cluster, size_t v, double factor, double threshold);
 
 /* Minimises from where the nodes are. Places with a score better than best_score are
@@ -181,7 +181,7 @@ tm_status tm_optimise_mend(tm_optimise_work *work, unsigned effort, tm_error *er
  * patches, and mends again. */
 tm_status tm_optimise_release(tm_optimise_work *work, tm_error *error);
 
-/* Brings nodes that are held back to their places. */
-tm_status tm_optimise_held(tm_optimise_work *work, tm_error *error);
+/* Brings nodes that are off the surface to their places. */
+tm_status tm_optimise_off_surface(tm_optimise_work *work, tm_error *error);
 
 #endif

@@ -14,7 +14,7 @@ static void make_unit(double v[3])
 }
 
 static void on_surface(const void *of, uint32_t patch, const double point[3],
-                       tm_boundary_place *at)
+                       tm_boundary_point *at)
 {
     const tm_surface *surface = of;
     tm_surface_point closest = {.triangle = at->guess};
@@ -28,7 +28,7 @@ static void on_surface(const void *of, uint32_t patch, const double point[3],
 }
 
 static void on_curve(const void *of, uint32_t curve, const double point[3],
-                     tm_boundary_place *at)
+                     tm_boundary_point *at)
 {
     const tm_surface *surface = of;
     size_t segment;
@@ -38,7 +38,7 @@ static void on_curve(const void *of, uint32_t curve, const double point[3],
     make_unit(at->axis);
 }
 
-static void at_corner(const void *of, uint32_t corner, tm_boundary_place *at)
+static void at_corner(const void *of, uint32_t corner, tm_boundary_point *at)
 {
     const tm_surface *surface = of;
     memcpy(at->xyz, surface->xyz[surface->corner[corner]], sizeof at->xyz);

@@ -155,7 +155,7 @@ static tm_status take_up(repair *r, const lists *l, uint32_t p, uint32_t *size)
         bool taken;
         if (q == p || size[q] > SMALL)
             continue;
-        if (!tm_shelling_take(s, l->item + l->start[q], size[q], &taken))
+        if (!tm_shelling_add(s, l->item + l->start[q], size[q], &taken))
             return tm_fail_memory(r->error);
         if (taken)
             size[q] = 0;
@@ -232,7 +232,7 @@ void tm_ignore_markers(tm_tet_mesh *mesh)
 {
     size_t width = mesh->regions;
     for (size_t f = 0; f < mesh->faces; f++) {
-        tm_kept_face *face = &mesh->face[f];
+        tm_constrained_face *face = &mesh->face[f];
         if (face->side[0] == TM_NONE || face->side[1] == TM_NONE)
             continue;
         if (width > 0 && memcmp(mesh->region + face->side[0] / 4 * width,

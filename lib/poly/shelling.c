@@ -125,11 +125,11 @@ static bool meets_in_disc(tm_shelling *s, uint32_t t, bool *memory)
     unsigned shared[4], shares = 0;
     for (unsigned i = 0; i < 4; i++) {
         uint32_t across = s->mesh->neighbour[t][i];
-        bool is_kept = across & TM_FACE_BIT;
-        if (is_kept)
+        bool is_constrained = across & TM_FACE_BIT;
+        if (is_constrained)
             across = tm_tet_across(s->mesh, t, i);
         bool is_in = across != TM_NONE && s->piece[across / 4] == s->id;
-        if (is_in && is_kept)
+        if (is_in && is_constrained)
             return false; /* the face would be inside */
         if (is_in)
             shared[shares++] = i;
@@ -260,7 +260,7 @@ bool tm_shelling_grow(tm_shelling *s, uint32_t *label, uint32_t name)
 
 /* Takes the last tetrahedra out again, down to the piece as it was. */
 static void undo(tm_shelling *s, const tm_shelling *was, uint32_t old,
-                 uint32_t stamp[TM_SHELLING_TAKE][4])
+                 uint32_t stamp[TM_SHELLING_ADD][4])
 {
     while (s->size > was->size) {
         uint32_t t = s->member[--s->size];
@@ -275,10 +275,10 @@ static void undo(tm_shelling *s, const tm_shelling *was, uint32_t old,
     memcpy(s->high, was->high, sizeof s->high);
 }
 
-bool tm_shelling_take(tm_shelling *s, const uint32_t *tet, size_t count, bool *taken)
+bool tm_shelling_add(tm_shelling *s, const uint32_t *tet, size_t count, bool *taken)
 {
     tm_shelling was = *s;
-    uint32_t stamp[TM_SHELLING_TAKE][4], old = s->piece[tet[0]];
+    uint32_t stamp[TM_SHELLING_ADD][4], old = s->piece[tet[0]];
     bool memory = true, any = true;
     *taken = false;
     if (s->size + count > most_tets(s))

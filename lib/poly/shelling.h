@@ -49,8 +49,8 @@ bool tm_shelling_resume(tm_shelling *s, uint32_t id, const uint32_t *member, siz
  * small; with `star` sometimes O(size). */
 bool tm_shelling_grow(tm_shelling *s, uint32_t *label, uint32_t name);
 
-/* Adds all of some tetrahedra, TM_SHELLING_TAKE at most, or none; *taken tells. */
-enum { TM_SHELLING_TAKE = 8 };
-bool tm_shelling_take(tm_shelling *s, const uint32_t *tet, size_t count, bool *taken);
+/* Adds all of some tetrahedra, TM_SHELLING_ADD at most, or none; *taken tells. */
+enum { TM_SHELLING_ADD = 8 };
+bool tm_shelling_add(tm_shelling *s, const uint32_t *tet, size_t count, bool *taken);
 
 #endif

@@ -14,7 +14,7 @@ static const double pi = 3.14159265358979323846;
 
 /* The angles of the triangles around the tip of a cone make less than this: that of one
  * that opens by 39°. */
-static const double tip_angle = 120;
+static const double sharp_corner_angle = 120;
 
 /* A triangle whose height is less than this part of the surface has no normal of its own:
  * coordinates of six digits, or of 32 bits, do not say which it is. */
@@ -291,7 +291,7 @@ static tm_status find_corners(feature_finder *f, tm_error *error)
         return tm_fail_memory(error);
     add_angles(surface, sum);
     for (uint32_t v = 0; v < surface->nodes; v++) {
-        f->corner[v] = is_corner(f, v) || sum[v] < tip_angle;
+        f->corner[v] = is_corner(f, v) || sum[v] < sharp_corner_angle;
         surface->corners += f->corner[v];
     }
     free(sum);

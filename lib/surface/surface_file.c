@@ -160,8 +160,8 @@ tm_status tm_polygon_surface_add_region(tm_polygon_surface *surface,
     return TM_OK;
 }
 
-tm_status tm_polygon_surface_take_nodes(tm_polygon_surface *surface, tm_block *node,
-                                        tm_error *error)
+tm_status tm_polygon_surface_nodes_from_stream(tm_polygon_surface *surface,
+                                               tm_block *node, tm_error *error)
 {
     tm_status status = TM_OK;
     for (size_t v = 0; v < node->count && status == TM_OK; v++)

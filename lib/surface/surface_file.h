@@ -79,8 +79,8 @@ tm_status tm_polygon_surface_add_region(tm_polygon_surface *surface,
 
 /* The nodes of a .node block become those of the surface, which must have none. The
  * arrays of attributes and markers are taken from the block. */
-tm_status tm_polygon_surface_take_nodes(tm_polygon_surface *surface, tm_block *node,
-                                        tm_error *error);
+tm_status tm_polygon_surface_nodes_from_stream(tm_polygon_surface *surface,
+                                               tm_block *node, tm_error *error);
 
 /* Appends the triangles of a .face block as facets with their markers. */
 tm_status tm_polygon_surface_add_faces(tm_polygon_surface *surface, const tm_block *face,

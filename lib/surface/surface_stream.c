@@ -58,8 +58,9 @@ static size_t put_fan(const tm_polygon_surface *surface, size_t p, int32_t marke
     return t;
 }
 
-tm_status tm_surface_give(const tm_polygon_surface *surface, tm_stream *stream,
-                          const char *part, tm_error *error)
+tm_status tm_polygon_surface_to_stream(const tm_polygon_surface *surface,
+                                       tm_stream *stream, const char *part,
+                                       tm_error *error)
 {
     size_t triangles = 0, t = 0;
     tm_status status = give_nodes(surface, stream, part, error);

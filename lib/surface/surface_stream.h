@@ -9,7 +9,8 @@
  * the surface and its polygons, those with more than three corners as fans of triangles
  * from the first, those with fewer left out. Attributes and markers come with them.
  * TM_ERROR_SYSTEM where memory or 32-bit ids are out. O(n). */
-tm_status tm_surface_give(const tm_polygon_surface *surface, tm_stream *stream,
-                          const char *part, tm_error *error);
+tm_status tm_polygon_surface_to_stream(const tm_polygon_surface *surface,
+                                       tm_stream *stream, const char *part,
+                                       tm_error *error);
 
 #endif

@@ -27,7 +27,7 @@ static inline uint32_t greater(uint32_t a, uint32_t b)
     return a < b ? b : a;
 }
 
-static bool is_on_boundary(const tm_kept_face *face)
+static bool is_on_boundary(const tm_constrained_face *face)
 {
     return (face->side[0] == TM_NONE) != (face->side[1] == TM_NONE);
 }
@@ -99,7 +99,7 @@ static void look_for_inner_edges(const buckets *b, tm_tet_mesh *mesh)
     }
 }
 
-tm_status tm_tet_mesh_look_at_edges(tm_tet_mesh *mesh, tm_error *error)
+tm_status tm_tet_mesh_find_edges(tm_tet_mesh *mesh, tm_error *error)
 {
     buckets b = {0};
     bool done = start(&b, mesh);

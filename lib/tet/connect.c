@@ -68,8 +68,8 @@ static tm_status add_face(tm_tet_mesh *mesh, uint32_t half, tm_error *error)
     tm_status status = tm_tet_mesh_reserve(mesh, 0, 0, 1, 0, error);
     if (status != TM_OK)
         return status;
-    tm_kept_face *face = &mesh->face[mesh->faces++];
-    *face = (tm_kept_face){.side = {TM_NONE, TM_NONE}};
+    tm_constrained_face *face = &mesh->face[mesh->faces++];
+    *face = (tm_constrained_face){.side = {TM_NONE, TM_NONE}};
     for (int i = 0; i < 3; i++)
         face->node[i] = mesh->tet[half / 4][tm_face_corner[half % 4][i]];
     return TM_OK;
@@ -183,7 +183,7 @@ static void turn_connected(tm_tet_mesh *mesh, uint32_t t)
         uint32_t half = 4 * t + 3 - i, old = 4 * t + 2 + i;
         mesh->neighbour[t][3 - i] = across[i];
         if (across[i] & TM_FACE_BIT) {
-            tm_kept_face *face = &mesh->face[across[i] & ~TM_FACE_BIT];
+            tm_constrained_face *face = &mesh->face[across[i] & ~TM_FACE_BIT];
             face->side[face->side[0] != old] = half;
         } else {
             mesh->neighbour[across[i] / 4][across[i] % 4] = half;
@@ -231,7 +231,7 @@ static void drop_faces(tm_tet_mesh *mesh, size_t listed_count)
 {
     size_t kept = 0;
     for (size_t f = 0; f < mesh->faces; f++) {
-        tm_kept_face *face = &mesh->face[f];
+        tm_constrained_face *face = &mesh->face[f];
         if (f < listed_count && !face->listed)
             continue;
         for (int s = 0; s < 2; s++)
@@ -265,6 +265,6 @@ tm_status tm_tet_mesh_connect(tm_tet_mesh *mesh, unsigned base, tm_error *error)
     if (status == TM_OK && mesh->dropped_faces > 0)
         drop_faces(mesh, listed_count);
     if (status == TM_OK)
-        status = tm_tet_mesh_look_at_edges(mesh, error);
+        status = tm_tet_mesh_find_edges(mesh, error);
     return status;
 }

@@ -23,7 +23,7 @@ static bool is_near_plane(const double normal[3], const double on_plane[3],
     return fabs(tm_dot(normal, to)) <= flatness * tm_norm(normal);
 }
 
-static bool is_between_two(const tm_kept_face *face)
+static bool is_between_two(const tm_constrained_face *face)
 {
     return face->side[0] != TM_NONE && face->side[1] != TM_NONE;
 }
@@ -31,7 +31,7 @@ static bool is_between_two(const tm_kept_face *face)
 bool tm_facet_continues(const tm_tet_mesh *mesh, uint32_t f, uint32_t g, uint32_t a,
                         uint32_t b, uint32_t c, uint32_t d, double flatness)
 {
-    const tm_kept_face *p = &mesh->face[f], *q = &mesh->face[g];
+    const tm_constrained_face *p = &mesh->face[f], *q = &mesh->face[g];
     const tm_marked_edge *edge = tm_tet_mesh_edge(mesh, a, b);
     if (p->marker != q->marker || p->listed != q->listed ||
         is_between_two(p) != is_between_two(q) || (edge && edge->marker != 0) ||

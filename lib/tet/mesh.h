@@ -17,19 +17,20 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* A value of neighbour[t][i] with this bit is the number of a tm_kept_face; without it,
- * the half face on the other side. So a mesh has fewer than 2^29 tetrahedra. */
+/* A value of neighbour[t][i] with this bit is the number of a tm_constrained_face;
+ * without it, the half face on the other side. So a mesh has fewer than 2^29 tetrahedra.
+ */
 #define TM_FACE_BIT ((uint32_t)1 << 31)
 #define TM_TETS_MAX ((size_t)1 << 29)
 
 /* A face that has to stay: on the boundary, between two regions, or inside with a marker
  * that is not 0. */
-typedef struct tm_kept_face {
+typedef struct tm_constrained_face {
     uint32_t node[3]; /* in the order of .face */
     uint32_t side[2]; /* half faces; TM_NONE where there is no tetrahedron */
     int32_t marker;
     bool listed; /* .face has it: written again */
-} tm_kept_face;
+} tm_constrained_face;
 
 /* An edge of .edge. */
 typedef struct tm_marked_edge {
@@ -59,7 +60,7 @@ typedef struct tm_tet_mesh {
 
     size_t faces;
     size_t face_room;
-    tm_kept_face *face;
+    tm_constrained_face *face;
 
     size_t edges;
     size_t edge_room;
@@ -92,7 +93,7 @@ static inline uint32_t tm_tet_across(const tm_tet_mesh *mesh, uint32_t t, uint32
     uint32_t n = mesh->neighbour[t][i];
     if (!(n & TM_FACE_BIT))
         return n;
-    const tm_kept_face *face = &mesh->face[n & ~TM_FACE_BIT];
+    const tm_constrained_face *face = &mesh->face[n & ~TM_FACE_BIT];
     return face->side[face->side[0] == 4 * t + i];
 }
 
@@ -109,16 +110,16 @@ static inline uint32_t tm_tet_corner(const tm_tet_mesh *mesh, uint32_t t, uint32
  * tetrahedra. TM_ERROR_INPUT where the tetrahedra are no mesh: three at a face, two on
  * the same side of one, a node twice in one, a face or edge listed twice. *mesh need not
  * be initialised; tm_tet_mesh_free() also after an error. Expected O(n). */
-tm_status tm_tet_mesh_take(tm_tet_mesh *mesh, tm_stream *stream, tm_error *error);
+tm_status tm_tet_mesh_from_stream(tm_tet_mesh *mesh, tm_stream *stream, tm_error *error);
 
 /* Gives the mesh back to the blocks that it was taken from; the mesh is empty then.
  * Dead slots are filled by the last tetrahedra; nodes that were not removed keep their
  * order. */
-tm_status tm_tet_mesh_give(tm_tet_mesh *mesh, tm_stream *stream, tm_error *error);
+tm_status tm_tet_mesh_to_stream(tm_tet_mesh *mesh, tm_stream *stream, tm_error *error);
 
 /* Whether a block of the stream refers to numbers that nodes will not have any more:
- * other elements than tetrahedra, where nodes were removed. tm_tet_mesh_give() removes
- * such blocks. */
+ * other elements than tetrahedra, where nodes were removed. tm_tet_mesh_to_stream()
+ * removes such blocks. */
 bool tm_tet_mesh_invalidates(const tm_tet_mesh *mesh, const tm_block *block);
 
 void tm_tet_mesh_free(tm_tet_mesh *mesh);
@@ -167,7 +168,7 @@ static inline void tm_tet_replace_half(tm_tet_mesh *mesh, uint32_t h, uint32_t o
 {
     mesh->neighbour[h / 4][h % 4] = across;
     if (across & TM_FACE_BIT) {
-        tm_kept_face *face = &mesh->face[across & ~TM_FACE_BIT];
+        tm_constrained_face *face = &mesh->face[across & ~TM_FACE_BIT];
         face->side[face->side[0] != old] = h;
     } else {
         mesh->neighbour[across / 4][across % 4] = h;

@@ -49,7 +49,7 @@ static tm_status check_half(const tm_tet_mesh *mesh, uint32_t h, tm_error *error
         uint32_t f = across & ~TM_FACE_BIT;
         if (f >= mesh->faces)
             return FAIL("half face %u: face %u of %zu", h, f, mesh->faces);
-        const tm_kept_face *face = &mesh->face[f];
+        const tm_constrained_face *face = &mesh->face[f];
         if ((face->side[0] != h && face->side[1] != h) || !is_face(mesh, h, face->node))
             return FAIL("half face %u: face %u is not its own", h, f);
         return TM_OK;

@@ -11,9 +11,10 @@
 static bool find_order(const tm_tet_mesh *mesh, uint32_t *order, uint32_t *place)
 {
     tm_space space = tm_space_around((const double(*)[3])mesh->xyz, mesh->nodes);
-    tm_placed *placed = tm_new(mesh->slots, sizeof *placed);
+    tm_curve_point *placed = tm_new(mesh->slots, sizeof *placed);
     for (uint32_t t = 0; t < mesh->slots && placed; t++)
-        placed[t] = (tm_placed){tm_space_place(&space, mesh->xyz[mesh->tet[t][0]]), t};
+        placed[t] =
+            (tm_curve_point){tm_space_position(&space, mesh->xyz[mesh->tet[t][0]]), t};
     bool done = placed && tm_space_sort(placed, mesh->slots);
     for (uint32_t k = 0; k < mesh->slots && done; k++) {
         order[k] = placed[k].item;

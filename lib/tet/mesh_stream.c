@@ -46,8 +46,8 @@ static tm_status take_faces(tm_tet_mesh *mesh, tm_block *block, unsigned base,
         if (n[0] == n[1] || n[1] == n[2] || n[2] == n[0])
             return tm_fail_at(error, TM_ERROR_INPUT, NULL, 0, ".face",
                               "triangle %zu names a node twice", f + base);
-        tm_kept_face *face = &mesh->face[mesh->faces++];
-        *face = (tm_kept_face){.side = {TM_NONE, TM_NONE}, .listed = true};
+        tm_constrained_face *face = &mesh->face[mesh->faces++];
+        *face = (tm_constrained_face){.side = {TM_NONE, TM_NONE}, .listed = true};
         memcpy(face->node, n, sizeof face->node);
         face->marker = block->marker ? block->marker[f] : 0;
     }
@@ -76,7 +76,7 @@ static tm_status take_edges(tm_tet_mesh *mesh, tm_block *block, unsigned base,
     return TM_OK;
 }
 
-tm_status tm_tet_mesh_take(tm_tet_mesh *mesh, tm_stream *stream, tm_error *error)
+tm_status tm_tet_mesh_from_stream(tm_tet_mesh *mesh, tm_stream *stream, tm_error *error)
 {
     *mesh = (tm_tet_mesh){.first_dead = TM_NONE};
     tm_block *node = tm_stream_find(stream, ".node");
@@ -162,7 +162,7 @@ static tm_status give_faces(const tm_tet_mesh *mesh, tm_block *block, tm_error *
     if (status != TM_OK)
         return status;
     for (size_t f = 0, row = 0; f < mesh->faces; f++) {
-        const tm_kept_face *face = &mesh->face[f];
+        const tm_constrained_face *face = &mesh->face[f];
         if (!face->listed)
             continue;
         memcpy(block->integer + 3 * row, face->node, sizeof face->node);
@@ -199,7 +199,7 @@ bool tm_tet_mesh_invalidates(const tm_tet_mesh *mesh, const tm_block *block)
            block->kind < TM_UNKNOWN && block->kind != TM_ROOT;
 }
 
-tm_status tm_tet_mesh_give(tm_tet_mesh *mesh, tm_stream *stream, tm_error *error)
+tm_status tm_tet_mesh_to_stream(tm_tet_mesh *mesh, tm_stream *stream, tm_error *error)
 {
     for (size_t b = stream->blocks; b > 0; b--)
         if (tm_tet_mesh_invalidates(mesh, &stream->block[b - 1]))

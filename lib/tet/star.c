@@ -55,12 +55,12 @@ typedef struct {
 
 /* The half face beyond the end; TM_NONE on the boundary. */
 static inline uint32_t look_beyond(const tm_tet_mesh *mesh, const star_end *end,
-                                   bool *kept_face)
+                                   bool *constrained_face)
 {
     uint32_t across = mesh->neighbour[end->t][end->behind];
     if (!(across & TM_FACE_BIT))
         return across;
-    *kept_face = true;
+    *constrained_face = true;
     return tm_tet_across(mesh, end->t, end->behind);
 }
 
@@ -149,7 +149,7 @@ bool tm_star_around(const tm_tet_mesh *mesh, uint32_t t, unsigned e, tm_star *st
             }
         }
     }
-    star->kept_face = kept;
+    star->constrained_face = kept;
     star->closed = closed;
     star->size = ahead + back;
     if (closed) {
@@ -177,7 +177,7 @@ bool tm_star_is_simple(const tm_tet_mesh *mesh, const tm_star *star)
 
 bool tm_star_is_free(const tm_tet_mesh *mesh, const tm_star *star)
 {
-    if (!star->closed || star->kept_face)
+    if (!star->closed || star->constrained_face)
         return false;
     if (!mesh->inner_marked_edges)
         return true;

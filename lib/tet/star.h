@@ -13,7 +13,8 @@ typedef struct tm_star {
     uint32_t a, b;
     size_t size;
     bool closed;
-    bool kept_face; /* a face that has to stay is at the edge: always if not closed */
+    bool constrained_face; /* a face that has to stay is at the edge: always if not closed
+                            */
     uint32_t *tet;
     uint32_t *ring;
     uint8_t *edge; /* which edge of tetrahedron i it is, 0 … 5 */

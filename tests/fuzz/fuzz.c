@@ -205,7 +205,7 @@ static void check_improvement(tm_stream *stream)
 {
     tm_tet_mesh mesh;
     tm_error error;
-    tm_status status = tm_tet_mesh_take(&mesh, stream, &error);
+    tm_status status = tm_tet_mesh_from_stream(&mesh, stream, &error);
     if (status == TM_OK) {
         require(tm_tet_mesh_check(&mesh, &error) == TM_OK, "a mesh that is none");
         status =
@@ -213,7 +213,8 @@ static void check_improvement(tm_stream *stream)
         require(status == TM_OK, "the improvement fails");
         if (tm_tet_mesh_check(&mesh, &error) != TM_OK)
             require(false, error.what);
-        require(tm_tet_mesh_give(&mesh, stream, &error) == TM_OK, "the mesh is kept");
+        require(tm_tet_mesh_to_stream(&mesh, stream, &error) == TM_OK,
+                "the mesh is kept");
         check_round_trip(stream);
     } else {
         require(status == TM_ERROR_INPUT && error.what[0], "no mesh, but no reason");

@@ -97,7 +97,7 @@ static void slope_of(shape_function *function, const double at[3], double step,
 }
 
 /* Takes a point to where the function vanishes; false if it is not close to that. */
-static bool go_back(shape_function *function, double step, double at[3])
+static bool restore(shape_function *function, double step, double at[3])
 {
     for (int round = 0; round < 3; round++) {
         double slope[3];
@@ -130,7 +130,7 @@ static void relax(marching *m, shape_function *function, double (*sum)[4])
         double at[3];
         for (int i = 0; i < 3; i++)
             at[i] = sum[node][i] / sum[node][3];
-        if (go_back(function, step, at))
+        if (restore(function, step, at))
             memcpy(s->xyz[node], at, sizeof at);
     }
 }

@@ -102,8 +102,8 @@ static void place_spikes(const grid *g, double at[3])
     to_ball(at);
     const double slope = 0.35; /* tangent of half the angle of a tip */
     double r = 1;
-    for (int tip = 0; tip < 27; tip++) {
-        const int along[3] = {tip % 3 - 1, tip / 3 % 3 - 1, tip / 9 - 1};
+    for (int corner = 0; corner < 27; corner++) {
+        const int along[3] = {corner % 3 - 1, corner / 3 % 3 - 1, corner / 9 - 1};
         const int ones = abs(along[0]) + abs(along[1]) + abs(along[2]);
         if (ones % 2 == 0)
             continue;

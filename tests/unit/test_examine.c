@@ -60,15 +60,15 @@ static void assert_only(const tm_examination *found, const expected *list, size_
 #define ASSERT_GOOD(found) assert_only(found, NULL, 0)
 
 static void assert_place(const tm_examination *found, tm_defect d, size_t i,
-                         const uint32_t place[TM_PLACE_NUMBERS])
+                         const uint32_t place[TM_DEFECT_NUMBERS])
 {
     assert_true(i < found->defect[d].count);
-    for (size_t k = 0; k < TM_PLACE_NUMBERS; k++)
+    for (size_t k = 0; k < TM_DEFECT_NUMBERS; k++)
         assert_int_equal(found->defect[d].place[i][k], place[k]);
 }
 
 #define ASSERT_PLACE(found, d, i, ...)                                                   \
-    assert_place(found, d, i, (const uint32_t[TM_PLACE_NUMBERS]){__VA_ARGS__})
+    assert_place(found, d, i, (const uint32_t[TM_DEFECT_NUMBERS]){__VA_ARGS__})
 
 static bool close_to(double value, double right)
 {
@@ -477,7 +477,7 @@ static void test_threads(void **state)
                                 .tet = (const uint32_t(*)[4])m.tet};
     const tm_examination alone = examine(&mesh);
     ASSERT_ONLY(&alone, {TM_INVERTED, INVERTED});
-    for (size_t i = 0; i < TM_PLACES; i++)
+    for (size_t i = 0; i < TM_DEFECTS_LISTED; i++)
         ASSERT_PLACE(&alone, TM_INVERTED, i,
                      (uint32_t)(m.tets - 1 - (INVERTED - 1 - i) * m.tets / INVERTED));
     for (unsigned threads = 2; threads < 6; threads++) {
@@ -494,12 +494,12 @@ static void test_places(void **state)
     static const uint32_t order[] = {9, 4, 7, 1, 8, 2, 6, 3, 5, 0};
     tm_defect_list list = {0}, more = {0};
     for (size_t i = 0; i < 4; i++)
-        tm_defect_add(&list, (uint32_t[TM_PLACE_NUMBERS]){1, order[i]});
+        tm_defect_add(&list, (uint32_t[TM_DEFECT_NUMBERS]){1, order[i]});
     for (size_t i = 4; i < 10; i++)
-        tm_defect_add(&more, (uint32_t[TM_PLACE_NUMBERS]){1, order[i]});
+        tm_defect_add(&more, (uint32_t[TM_DEFECT_NUMBERS]){1, order[i]});
     tm_defect_add_list(&list, &more);
     assert_int_equal(list.count, 10);
-    for (uint32_t i = 0; i < TM_PLACES; i++)
+    for (uint32_t i = 0; i < TM_DEFECTS_LISTED; i++)
         assert_int_equal(list.place[i][1], i);
 }
 

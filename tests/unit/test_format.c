@@ -135,7 +135,7 @@ static void test_poly(void **state)
                      TM_OK);
     check_poly(&surface);
     tm_text written = {0};
-    tm_poly_write(&written, &surface);
+    tm_plc_write(&written, &surface);
     tm_polygon_surface_free(&surface);
     assert_int_equal(
         read_bytes(&surface, TM_FORMAT_POLY, written.byte, written.size, &error), TM_OK);
@@ -149,8 +149,8 @@ static void test_poly_with_nodes_elsewhere(void **state)
     (void)state;
     static const char node[] = "4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n";
     static const char smesh[] = "0 3 0 0\n1 0\n3 1 2 4\n0\n0\n";
-    assert_true(tm_poly_lacks_nodes(smesh, sizeof smesh - 1));
-    assert_false(tm_poly_lacks_nodes(smesh_text, sizeof smesh_text - 1));
+    assert_true(tm_plc_lacks_nodes(smesh, sizeof smesh - 1));
+    assert_false(tm_plc_lacks_nodes(smesh_text, sizeof smesh_text - 1));
     tm_polygon_surface surface;
     tm_polygon_surface_init(&surface);
     assert_int_equal(

@@ -260,7 +260,7 @@ static void read_oct(const char *bytes, size_t size)
     tm_stream_init(&stream);
     tm_status status = tm_oct_read(&oct, copy, size, "file", &error);
     if (status == TM_OK)
-        status = tm_oct_give(&oct, &stream, "file", &error);
+        status = tm_oct_to_stream(&oct, &stream, "file", &error);
     if (status == TM_OK) {
         const tm_block *octant = tm_stream_find(&stream, ".octant");
         const tm_block *root = tm_stream_find(&stream, ".root");

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From leaves to elements on the lattice, on random octrees: octant masks, the solid, its
- * skin, and the elements there. */
+/* From leaves to elements on the lattice, on random octrees: octant masks, the interior,
+ * its interior boundary, and the elements there. */
 #include "../../lib/examine/mixed_examine.h"
 #include "../../lib/examine/mixed_volume.h"
 #include "../../lib/octree/layer/lattice_points.h"
@@ -115,10 +115,10 @@ static void test_places(void **state)
         for (unsigned o = 0; o < OCTANTS; o++) {
             bool inside = true;
             for (int i = 0; i < 3; i++) {
-                const int cell = tm_leaf_place[p][i] - 1 + (int)(o >> i & 1);
+                const int cell = tm_leaf_point[p][i] - 1 + (int)(o >> i & 1);
                 inside &= cell >= 0 && cell < 2;
             }
-            assert_int_equal(tm_place_octants[p] >> o & 1, inside);
+            assert_int_equal(tm_point_octants[p] >> o & 1, inside);
         }
 }
 
@@ -152,7 +152,7 @@ static void fill_leaf(const cell_map *map, const tm_octree *octree, size_t l)
                 *cell_at(map, at) = 1;
 }
 
-static cell_map map_cells(const tm_octree *octree, const tm_solid *solid)
+static cell_map map_cells(const tm_octree *octree, const tm_interior *interior)
 {
     unsigned deepest = 0;
     for (size_t l = 0; l < octree->leaves; l++)
@@ -163,14 +163,14 @@ static cell_map map_cells(const tm_octree *octree, const tm_solid *solid)
         map.cells[i] = (size_t)octree->roots[i] << deepest;
     map.filled = calloc(map.cells[0] * map.cells[1] * map.cells[2], 1);
     for (size_t l = 0; l < octree->leaves; l++)
-        if (solid->chosen[l])
+        if (interior->chosen[l])
             fill_leaf(&map, octree, l);
     return map;
 }
 
-static void check_masks(const tm_octree *octree, const tm_solid *solid)
+static void check_masks(const tm_octree *octree, const tm_interior *interior)
 {
-    const cell_map map = map_cells(octree, solid);
+    const cell_map map = map_cells(octree, interior);
     for (size_t n = 0; n < octree->nodes; n++) {
         unsigned mask = 0;
         for (unsigned o = 0; o < OCTANTS; o++) {
@@ -180,33 +180,33 @@ static void check_masks(const tm_octree *octree, const tm_solid *solid)
             const uint8_t *cell = cell_at(&map, at);
             mask |= (unsigned)(cell && *cell) << o;
         }
-        assert_int_equal(solid->mask[n], mask);
-        assert_true(tm_octant_mask_is_good(solid->mask[n]));
+        assert_int_equal(interior->mask[n], mask);
+        assert_true(tm_octant_mask_is_good(interior->mask[n]));
     }
     free(map.filled);
 }
 
 /* Those that are chosen are those with the centre inside, but for as many as it says. */
 static void check_chosen(const tm_octree *octree, const tm_surface *surface,
-                         const tm_solid *solid)
+                         const tm_interior *interior)
 {
     size_t count = 0, filled = 0, removed = 0;
     for (size_t l = 0; l < octree->leaves; l++) {
         double centre[3];
         tm_leaf_centre(octree, &octree->leaf[l], centre);
         const bool inside = tm_surface_has_inside(surface, centre);
-        count += solid->chosen[l];
-        filled += solid->chosen[l] && !inside;
-        removed += !solid->chosen[l] && inside;
-        for (int c = 0; solid->chosen[l] && c < TM_LEAF_EDGE; c++)
-            assert_true(solid->used[octree->node[l][c]]);
+        count += interior->chosen[l];
+        filled += interior->chosen[l] && !inside;
+        removed += !interior->chosen[l] && inside;
+        for (int c = 0; interior->chosen[l] && c < TM_LEAF_EDGE; c++)
+            assert_true(interior->used[octree->node[l][c]]);
     }
-    assert_int_equal(count, solid->count);
-    assert_true(filled <= solid->filled);
-    assert_true(removed <= solid->removed);
+    assert_int_equal(count, interior->count);
+    assert_true(filled <= interior->filled);
+    assert_true(removed <= interior->removed);
 }
 
-/* A directed edge of the skin. */
+/* A directed edge of the interior boundary. */
 typedef struct {
     uint32_t from, to;
     int turns; /* 1 where from < to, else -1: they sum up to 0 */
@@ -221,15 +221,15 @@ static int compare_edges(const void *a, const void *b)
 }
 
 /* Every edge is in two faces, in opposite senses; returns the number of edges. */
-static size_t check_closed(const tm_skin *skin)
+static size_t check_closed(const tm_interior_boundary *boundary)
 {
     size_t sides = 0;
-    skin_edge *edge = malloc((4 * skin->faces + 1) * sizeof *edge);
-    for (size_t f = 0; f < skin->faces; f++) {
-        const unsigned k = tm_skin_corners(skin, f);
+    skin_edge *edge = malloc((4 * boundary->faces + 1) * sizeof *edge);
+    for (size_t f = 0; f < boundary->faces; f++) {
+        const unsigned k = tm_boundary_face_corners(boundary, f);
         for (unsigned i = 0; i < k; i++) {
-            const uint32_t a = skin->face[f][i], b = skin->face[f][(i + 1) % k];
-            assert_true(a < skin->nodes && a != b);
+            const uint32_t a = boundary->face[f][i], b = boundary->face[f][(i + 1) % k];
+            assert_true(a < boundary->nodes && a != b);
             edge[sides++] = a < b ? (skin_edge){a, b, 1} : (skin_edge){b, a, -1};
         }
     }
@@ -245,29 +245,31 @@ static size_t check_closed(const tm_skin *skin)
 }
 
 /* The corner of face f at node s. */
-static unsigned corner_at(const tm_skin *skin, size_t f, size_t s)
+static unsigned corner_at(const tm_interior_boundary *boundary, size_t f, size_t s)
 {
-    for (unsigned i = 0; i < tm_skin_corners(skin, f); i++)
-        if (skin->face[f][i] == s)
+    for (unsigned i = 0; i < tm_boundary_face_corners(boundary, f); i++)
+        if (boundary->face[f][i] == s)
             return i;
     fail_msg("face %zu is not at node %zu", f, s);
     return 0;
 }
 
 /* One walk around the node, from face to face, comes by all of them. */
-static void check_fan(const tm_skin *skin, size_t s)
+static void check_fan(const tm_interior_boundary *boundary, size_t s)
 {
-    const uint32_t *around = skin->around + skin->around_start[s];
-    const size_t count = skin->around_start[s + 1] - skin->around_start[s];
+    const uint32_t *around = boundary->around + boundary->around_start[s];
+    const size_t count = boundary->around_start[s + 1] - boundary->around_start[s];
     size_t walked = 0, f = around[0];
     do {
-        const unsigned k = tm_skin_corners(skin, f);
-        const uint32_t before = skin->face[f][(corner_at(skin, f, s) + k - 1) % k];
+        const unsigned k = tm_boundary_face_corners(boundary, f);
+        const uint32_t before =
+            boundary->face[f][(corner_at(boundary, f, s) + k - 1) % k];
         size_t next = 0;
         while (next < count) {
             const size_t g = around[next];
-            const unsigned i = corner_at(skin, g, s);
-            if (skin->face[g][(i + 1) % tm_skin_corners(skin, g)] == before)
+            const unsigned i = corner_at(boundary, g, s);
+            if (boundary->face[g][(i + 1) % tm_boundary_face_corners(boundary, g)] ==
+                before)
                 break;
             next++;
         }
@@ -278,82 +280,82 @@ static void check_fan(const tm_skin *skin, size_t s)
     assert_int_equal(walked, count);
 }
 
-static void skin_point(const tm_octree *octree, const tm_skin *skin, uint32_t s,
-                       double xyz[3])
+static void skin_point(const tm_octree *octree, const tm_interior_boundary *boundary,
+                       uint32_t s, double xyz[3])
 {
-    tm_octree_point(octree, octree->grid[skin->grid_node[s]], xyz);
+    tm_octree_point(octree, octree->grid[boundary->grid_node[s]], xyz);
 }
 
-/* The volume inside the skin, whose faces are plane, seen from outside. */
-static double skin_volume(const tm_octree *octree, const tm_skin *skin)
+/* The volume inside the interior boundary, whose faces are plane, seen from outside. */
+static double skin_volume(const tm_octree *octree, const tm_interior_boundary *boundary)
 {
     double sum = 0;
-    for (size_t f = 0; f < skin->faces; f++)
-        for (unsigned i = 1; i + 1 < tm_skin_corners(skin, f); i++) {
+    for (size_t f = 0; f < boundary->faces; f++)
+        for (unsigned i = 1; i + 1 < tm_boundary_face_corners(boundary, f); i++) {
             double a[3], b[3], c[3], normal[3];
-            skin_point(octree, skin, skin->face[f][0], a);
-            skin_point(octree, skin, skin->face[f][i], b);
-            skin_point(octree, skin, skin->face[f][i + 1], c);
+            skin_point(octree, boundary, boundary->face[f][0], a);
+            skin_point(octree, boundary, boundary->face[f][i], b);
+            skin_point(octree, boundary, boundary->face[f][i + 1], c);
             tm_cross(normal, b, c);
             sum += tm_dot(a, normal);
         }
     return sum / 6;
 }
 
-static double leaf_volume(const tm_octree *octree, const tm_solid *solid)
+static double leaf_volume(const tm_octree *octree, const tm_interior *interior)
 {
     double sum = 0;
     for (size_t l = 0; l < octree->leaves; l++)
-        if (solid->chosen[l])
+        if (interior->chosen[l])
             sum += pow(tm_leaf_side(octree, &octree->leaf[l]), 3);
     return sum;
 }
 
-static void check_skin(const tm_octree *octree, const tm_solid *solid,
-                       const tm_skin *skin)
+static void check_skin(const tm_octree *octree, const tm_interior *interior,
+                       const tm_interior_boundary *boundary)
 {
-    check_closed(skin);
-    for (size_t s = 0; s < skin->nodes; s++) {
-        assert_true(s == 0 || skin->grid_node[s - 1] < skin->grid_node[s]);
-        assert_true(solid->used[skin->grid_node[s]]);
-        check_fan(skin, s);
+    check_closed(boundary);
+    for (size_t s = 0; s < boundary->nodes; s++) {
+        assert_true(s == 0 || boundary->grid_node[s - 1] < boundary->grid_node[s]);
+        assert_true(interior->used[boundary->grid_node[s]]);
+        check_fan(boundary, s);
     }
-    assert_int_equal(skin->around_start[0], 0);
-    for (size_t f = 0; f < skin->faces; f++) {
-        assert_true(solid->chosen[skin->leaf[f]]);
-        assert_int_equal(skin->cut[f], TM_UNCUT);
+    assert_int_equal(boundary->around_start[0], 0);
+    for (size_t f = 0; f < boundary->faces; f++) {
+        assert_true(interior->chosen[boundary->leaf[f]]);
+        assert_int_equal(boundary->cut[f], TM_UNCUT);
         if (f > 0)
-            assert_true(skin->leaf[f - 1] < skin->leaf[f] ||
-                        (skin->leaf[f - 1] == skin->leaf[f] &&
-                         skin->piece[f - 1] < skin->piece[f]));
+            assert_true(boundary->leaf[f - 1] < boundary->leaf[f] ||
+                        (boundary->leaf[f - 1] == boundary->leaf[f] &&
+                         boundary->piece[f - 1] < boundary->piece[f]));
     }
-    const double volume = leaf_volume(octree, solid);
-    assert_true(fabs(skin_volume(octree, skin) - volume) <= 1e-9 * volume);
+    const double volume = leaf_volume(octree, interior);
+    assert_true(fabs(skin_volume(octree, boundary) - volume) <= 1e-9 * volume);
 }
 
 /* Cuts some quadrilaterals, as the paths of curves do. */
-static void cut_some(tm_skin *skin)
+static void cut_some(tm_interior_boundary *boundary)
 {
     const unsigned every = 1 + random_below(20);
-    for (size_t f = 0; f < skin->faces; f++)
-        if (tm_skin_corners(skin, f) == 4 && random_below(every) == 0)
-            skin->cut[f] = random_below(2) ? TM_CUT_02 : TM_CUT_13;
+    for (size_t f = 0; f < boundary->faces; f++)
+        if (tm_boundary_face_corners(boundary, f) == 4 && random_below(every) == 0)
+            boundary->cut[f] = random_below(2) ? TM_CUT_02 : TM_CUT_13;
 }
 
 /* On the lattice all elements are valid, fill the leaves, and fit together. */
-static void check_elements(const tm_octree *octree, const tm_solid *solid,
-                           const tm_skin *skin, const tm_assembly *a)
+static void check_elements(const tm_octree *octree, const tm_interior *interior,
+                           const tm_interior_boundary *boundary, const tm_assembly *a)
 {
     const tm_mixed_mesh *mesh = &a->mesh;
     tm_error error;
     double(*base)[3] = malloc(mesh->nodes * sizeof *base);
-    assert_ok(tm_base_places(a, octree, solid, skin, base, &error), &error);
-    const double volume = leaf_volume(octree, solid), clearly = 0.05;
+    assert_ok(tm_lattice_points(a, octree, interior, boundary, base, &error), &error);
+    const double volume = leaf_volume(octree, interior), clearly = 0.05;
     double sum = 0;
     assert_int_equal(a->first[0], 0);
     for (size_t l = 0; l < octree->leaves; l++) {
         assert_true(a->first[l + 1] >= a->first[l]);
-        assert_int_equal(a->first[l + 1] > a->first[l], solid->chosen[l]);
+        assert_int_equal(a->first[l + 1] > a->first[l], interior->chosen[l]);
     }
     assert_int_equal(a->first[octree->leaves], mesh->elements);
     for (size_t e = 0; e < mesh->elements; e++) {
@@ -363,9 +365,9 @@ static void check_elements(const tm_octree *octree, const tm_solid *solid,
         sum += tm_mixed_volume((const double(*)[3])base, mesh->item + mesh->start[e], k);
     }
     assert_true(fabs(sum - volume) <= 1e-9 * volume);
-    for (uint32_t s = 0; s < skin->nodes; s++) {
+    for (uint32_t s = 0; s < boundary->nodes; s++) {
         double at[3];
-        skin_point(octree, skin, s, at);
+        skin_point(octree, boundary, s, at);
         assert_memory_equal(base[a->outer + s], at, sizeof at);
     }
     tm_examination found;
@@ -388,28 +390,29 @@ static void test_random(void **state)
         const uint64_t seed = random_state;
         tm_surface surface;
         tm_octree octree;
-        tm_solid solid;
-        tm_skin skin;
+        tm_interior interior;
+        tm_interior_boundary boundary;
         tm_assembly assembly;
         tm_error error;
         make_random_surface(&surface);
         make_random_octree(&octree, &surface);
         printf("round %d (TM_SEED=%" PRIu64 "): %zu leaves\n", round, seed,
                octree.leaves);
-        assert_ok(tm_solid_choose(&solid, &octree, &surface, &error), &error);
-        check_chosen(&octree, &surface, &solid);
-        check_masks(&octree, &solid);
-        assert_ok(tm_skin_find(&skin, &octree, &solid, &error), &error);
-        check_skin(&octree, &solid, &skin);
-        cut_some(&skin);
-        assert_ok(tm_assemble(&assembly, &octree, &solid, &skin, &error), &error);
-        check_elements(&octree, &solid, &skin, &assembly);
+        assert_ok(tm_interior_choose(&interior, &octree, &surface, &error), &error);
+        check_chosen(&octree, &surface, &interior);
+        check_masks(&octree, &interior);
+        assert_ok(tm_interior_boundary_find(&boundary, &octree, &interior, &error),
+                  &error);
+        check_skin(&octree, &interior, &boundary);
+        cut_some(&boundary);
+        assert_ok(tm_assemble(&assembly, &octree, &interior, &boundary, &error), &error);
+        check_elements(&octree, &interior, &boundary, &assembly);
         elements += assembly.mesh.elements;
-        filled += solid.filled;
-        removed += solid.removed;
+        filled += interior.filled;
+        removed += interior.removed;
         tm_assembly_free(&assembly);
-        tm_skin_free(&skin);
-        tm_solid_free(&solid);
+        tm_interior_boundary_free(&boundary);
+        tm_interior_free(&interior);
         tm_octree_free(&octree);
         tm_surface_free(&surface);
     }

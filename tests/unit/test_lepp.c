@@ -36,8 +36,8 @@ static tm_lepp_report improve(tm_tet_mesh *mesh, const tm_lepp_options *options)
 static void through_stream(tm_tet_mesh *mesh, tm_stream *stream)
 {
     tm_error error = {0};
-    assert_int_equal(tm_tet_mesh_give(mesh, stream, &error), TM_OK);
-    if (tm_tet_mesh_take(mesh, stream, &error) != TM_OK)
+    assert_int_equal(tm_tet_mesh_to_stream(mesh, stream, &error), TM_OK);
+    if (tm_tet_mesh_from_stream(mesh, stream, &error) != TM_OK)
         fail_msg("%s", error.what);
     assert_valid(mesh);
 }
@@ -207,7 +207,7 @@ static size_t improve_small(const uint32_t (*tet)[4], size_t tets, const double 
         tm_tet_mesh mesh;
         tm_error error = {0};
         make_stream(&stream, xyz, nodes, tet, tets);
-        if (tm_tet_mesh_take(&mesh, &stream, &error) != TM_OK)
+        if (tm_tet_mesh_from_stream(&mesh, &stream, &error) != TM_OK)
             fail_msg("%s", error.what);
         assert_valid(&mesh);
         double worst = worst_quality(&mesh, TM_MEASURE_DIHEDRAL);
@@ -255,7 +255,7 @@ static void test_touching_edge(void **state)
     tm_stream stream;
     tm_tet_mesh mesh;
     make_stream(&stream, xyz, 6, tet, 2);
-    assert_int_equal(tm_tet_mesh_take(&mesh, &stream, NULL), TM_OK);
+    assert_int_equal(tm_tet_mesh_from_stream(&mesh, &stream, NULL), TM_OK);
     assert_int_equal(mesh.turned, 1);
     assert_int_equal(mesh.locked.count, 1);
     tm_lepp_options o = usual;
@@ -282,7 +282,7 @@ static void test_flat(void **state)
     tm_tet_mesh mesh;
     make_stream(&stream, xyz, 6, tet, 5);
     tm_error error = {0};
-    if (tm_tet_mesh_take(&mesh, &stream, &error) != TM_OK)
+    if (tm_tet_mesh_from_stream(&mesh, &stream, &error) != TM_OK)
         fail_msg("%s", error.what);
     assert_int_equal(mesh.flat, 1);
     assert_valid(&mesh);
@@ -313,7 +313,7 @@ static void assert_refused(const uint32_t (*tet)[4], size_t tets, const char *wh
     tm_tet_mesh mesh;
     tm_error error = {0};
     make_stream(&stream, points, POINTS, tet, tets);
-    assert_int_equal(tm_tet_mesh_take(&mesh, &stream, &error), TM_ERROR_INPUT);
+    assert_int_equal(tm_tet_mesh_from_stream(&mesh, &stream, &error), TM_ERROR_INPUT);
     assert_non_null(strstr(error.what, what));
     assert_string_equal(error.block, ".ele");
     tm_tet_mesh_free(&mesh);
@@ -345,7 +345,7 @@ static void test_listed_faces_and_edges(void **state)
         assert_int_equal(tm_block_allocate(face, count, 0, NULL), TM_OK);
         memcpy(face->integer, rows, count * sizeof rows[0]);
         tm_error error = {0};
-        tm_status status = tm_tet_mesh_take(&mesh, &stream, &error);
+        tm_status status = tm_tet_mesh_from_stream(&mesh, &stream, &error);
         if (count == 3) {
             assert_int_equal(status, TM_ERROR_INPUT);
             assert_string_equal(error.block, ".face");
@@ -353,7 +353,7 @@ static void test_listed_faces_and_edges(void **state)
             assert_int_equal(status, TM_OK);
             assert_int_equal(mesh.dangling, 1);
             assert_valid(&mesh);
-            assert_int_equal(tm_tet_mesh_give(&mesh, &stream, NULL), TM_OK);
+            assert_int_equal(tm_tet_mesh_to_stream(&mesh, &stream, NULL), TM_OK);
             face = tm_stream_find(&stream, ".face");
             assert_int_equal(face->count, 2);
             assert_memory_equal(face->integer, rows, 2 * sizeof rows[0]);

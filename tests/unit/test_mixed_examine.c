@@ -52,16 +52,16 @@ static size_t all_defects(const tm_examination *found)
 
 /* Exactly one defect, of this kind and at this place. */
 static void assert_one(const tm_examination *found, tm_defect d,
-                       const uint32_t place[TM_PLACE_NUMBERS])
+                       const uint32_t place[TM_DEFECT_NUMBERS])
 {
     assert_int_equal(found->defect[d].count, 1);
     assert_int_equal(all_defects(found), 1);
-    for (size_t i = 0; i < TM_PLACE_NUMBERS; i++)
+    for (size_t i = 0; i < TM_DEFECT_NUMBERS; i++)
         assert_int_equal(found->defect[d].place[0][i], place[i]);
 }
 
 #define ASSERT_ONE(found, d, ...)                                                        \
-    assert_one(found, d, (const uint32_t[TM_PLACE_NUMBERS]){__VA_ARGS__})
+    assert_one(found, d, (const uint32_t[TM_DEFECT_NUMBERS]){__VA_ARGS__})
 
 /* One element of k nodes that are where `xyz` says. */
 static tm_examination examine_one(size_t k, const double (*xyz)[3])

@@ -36,13 +36,13 @@ static void test_take_and_give(void **state)
     tm_stream stream = make_stream();
     tm_mixed_mesh mesh;
     tm_error error;
-    assert_int_equal(tm_mixed_mesh_take(&mesh, &stream, &error), TM_OK);
+    assert_int_equal(tm_mixed_mesh_from_stream(&mesh, &stream, &error), TM_OK);
     assert_int_equal(mesh.nodes, 5);
     assert_int_equal(mesh.elements, 2);
     assert_true(mesh.xyz[4][2] == 14);
     assert_int_equal(mesh.item[mesh.start[1] + 3], 3);
     mesh.xyz[4][2] = 7;
-    assert_int_equal(tm_mixed_mesh_give(&mesh, &stream, &error), TM_OK);
+    assert_int_equal(tm_mixed_mesh_to_stream(&mesh, &stream, &error), TM_OK);
     assert_null(mesh.xyz);
     const tm_block *node = tm_stream_find(&stream, ".node");
     const tm_block *mix = tm_stream_find(&stream, ".mix");
@@ -61,15 +61,15 @@ static void test_other_counts(void **state)
     tm_stream stream = make_stream();
     tm_mixed_mesh mesh;
     tm_error error;
-    assert_int_equal(tm_mixed_mesh_take(&mesh, &stream, &error), TM_OK);
+    assert_int_equal(tm_mixed_mesh_from_stream(&mesh, &stream, &error), TM_OK);
     mesh.elements = 1;
-    assert_int_equal(tm_mixed_mesh_give(&mesh, &stream, &error), TM_ERROR_INTERNAL);
+    assert_int_equal(tm_mixed_mesh_to_stream(&mesh, &stream, &error), TM_ERROR_INTERNAL);
     assert_int_equal(mesh.nodes, 5);
     tm_block *mix = tm_stream_find(&stream, ".mix");
     free(mix->attribute);
     mix->attribute = NULL;
     mix->attributes = 0;
-    assert_int_equal(tm_mixed_mesh_give(&mesh, &stream, &error), TM_OK);
+    assert_int_equal(tm_mixed_mesh_to_stream(&mesh, &stream, &error), TM_OK);
     assert_int_equal(tm_stream_find(&stream, ".mix")->count, 1);
     tm_mixed_mesh_free(&mesh);
     tm_stream_free(&stream);
@@ -82,7 +82,7 @@ static void test_node_twice(void **state)
     tm_stream_find(&stream, ".mix")->item[8] = 2;
     tm_mixed_mesh mesh;
     tm_error error;
-    assert_int_equal(tm_mixed_mesh_take(&mesh, &stream, &error), TM_ERROR_INPUT);
+    assert_int_equal(tm_mixed_mesh_from_stream(&mesh, &stream, &error), TM_ERROR_INPUT);
     assert_string_equal(error.what, "element 2 names a node twice");
     tm_mixed_mesh_free(&mesh);
     tm_stream_free(&stream);
@@ -95,10 +95,10 @@ static void test_empty(void **state)
     tm_mixed_mesh mesh;
     tm_error error;
     tm_stream_init(&stream);
-    assert_int_equal(tm_mixed_mesh_take(&mesh, &stream, &error), TM_OK);
+    assert_int_equal(tm_mixed_mesh_from_stream(&mesh, &stream, &error), TM_OK);
     assert_int_equal(mesh.nodes + mesh.elements, 0);
     assert_int_equal(mesh.start[0], 0);
-    assert_int_equal(tm_mixed_mesh_give(&mesh, &stream, &error), TM_OK);
+    assert_int_equal(tm_mixed_mesh_to_stream(&mesh, &stream, &error), TM_OK);
     tm_mixed_mesh_free(&mesh);
     tm_stream_free(&stream);
 }

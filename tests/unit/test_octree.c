@@ -263,20 +263,20 @@ static void test_places(void **state)
     (void)state;
     for (unsigned c = 0; c < CHILDREN; c++)
         for (unsigned k = 0; k < 3; k++)
-            assert_int_equal(tm_leaf_place[TM_LEAF_CORNER + c][k], 2 * (c >> k & 1));
+            assert_int_equal(tm_leaf_point[TM_LEAF_CORNER + c][k], 2 * (c >> k & 1));
     for (unsigned e = 0; e < 12; e++) {
         const unsigned along = e / 4, lower = along == 0 ? 1 : 0,
                        upper = along == 2 ? 1 : 2;
-        assert_int_equal(tm_leaf_place[TM_LEAF_EDGE + e][along], 1);
-        assert_int_equal(tm_leaf_place[TM_LEAF_EDGE + e][lower], 2 * (e & 1));
-        assert_int_equal(tm_leaf_place[TM_LEAF_EDGE + e][upper], 2 * (e >> 1 & 1));
+        assert_int_equal(tm_leaf_point[TM_LEAF_EDGE + e][along], 1);
+        assert_int_equal(tm_leaf_point[TM_LEAF_EDGE + e][lower], 2 * (e & 1));
+        assert_int_equal(tm_leaf_point[TM_LEAF_EDGE + e][upper], 2 * (e >> 1 & 1));
     }
     for (unsigned f = 0; f < 6; f++)
         for (unsigned k = 0; k < 3; k++)
-            assert_int_equal(tm_leaf_place[TM_LEAF_FACE + f][k],
+            assert_int_equal(tm_leaf_point[TM_LEAF_FACE + f][k],
                              k == f / 2 ? 2 * (f & 1) : 1);
     for (unsigned k = 0; k < 3; k++)
-        assert_int_equal(tm_leaf_place[TM_LEAF_CENTRE][k], 1);
+        assert_int_equal(tm_leaf_point[TM_LEAF_CENTRE][k], 1);
 }
 
 static void assert_brick(const double low[3], const double high[3],
@@ -617,7 +617,7 @@ static void test_stream(void **state)
     tm_block *node = tm_stream_add(&stream, ".node");
     assert_non_null(node);
     assert_ok(tm_block_allocate(node, 1, 0, &error), &error);
-    assert_ok(tm_octree_give_blocks(&octree, none, &stream, &error), &error);
+    assert_ok(tm_octree_to_stream(&octree, none, &stream, &error), &error);
     write_and_read(&stream, &again);
     uint32_t *order = NULL;
     assert_ok(tm_octree_read_blocks(&back, &again, &surface, &order, &error), &error);

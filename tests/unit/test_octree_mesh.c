@@ -69,26 +69,27 @@ static void check_boundary(const tm_octree_mesh *mesh, const tm_surface *surface
 {
     const double close = 1e-9 * sqrt(tm_distance2(surface->low, surface->high));
     size_t held = 0;
-    for (size_t s = 0; s < mesh->skin.nodes; s++) {
+    for (size_t s = 0; s < mesh->boundary.nodes; s++) {
         held += mesh->held[s];
         assert_true(mesh->held[s] || distance_from_place(mesh, surface, s) <= close);
     }
     assert_int_equal(held, mesh->report.held_back);
 }
 
-/* Whether two skin nodes are the ends of an edge, or of a diagonal that cuts a face. */
-static bool are_joined(const tm_skin *skin, uint32_t a, uint32_t b)
+/* Whether two interior boundary nodes are the ends of an edge, or of a diagonal that cuts
+ * a face. */
+static bool are_joined(const tm_interior_boundary *boundary, uint32_t a, uint32_t b)
 {
-    for (size_t i = skin->around_start[a]; i < skin->around_start[a + 1]; i++) {
-        const size_t f = skin->around[i];
-        const uint32_t *face = skin->face[f];
-        const unsigned k = tm_skin_corners(skin, f);
+    for (size_t i = boundary->around_start[a]; i < boundary->around_start[a + 1]; i++) {
+        const size_t f = boundary->around[i];
+        const uint32_t *face = boundary->face[f];
+        const unsigned k = tm_boundary_face_corners(boundary, f);
         unsigned at = 0;
         while (face[at] != a)
             at++;
         if (face[(at + 1) % k] == b || face[(at + k - 1) % k] == b)
             return true;
-        if (skin->cut[f] == (at % 2 == 0 ? TM_CUT_02 : TM_CUT_13) &&
+        if (boundary->cut[f] == (at % 2 == 0 ? TM_CUT_02 : TM_CUT_13) &&
             face[(at + 2) % k] == b)
             return true;
     }
@@ -107,13 +108,13 @@ static size_t walk_curve(const tm_octree_mesh *mesh, uint32_t s, uint32_t before
         assert_int_equal(feature->of[s], curve);
         const uint32_t *along = feature->along[s];
         assert_true(along[0] == before || along[1] == before);
-        assert_true(are_joined(&mesh->skin, before, s));
+        assert_true(are_joined(&mesh->boundary, before, s));
         const uint32_t next = along[0] == before ? along[1] : along[0];
         before = s;
         s = next;
-        assert_true(++passed <= mesh->skin.nodes);
+        assert_true(++passed <= mesh->boundary.nodes);
     }
-    assert_true(are_joined(&mesh->skin, before, s));
+    assert_true(are_joined(&mesh->boundary, before, s));
     assert_int_equal(feature->kind[s], TM_ON_CORNER);
     *corner = feature->of[s];
     return passed;
@@ -125,7 +126,7 @@ static void check_curves(const tm_octree_mesh *mesh, const tm_surface *surface)
     const tm_feature *feature = &mesh->feature;
     size_t nodes[BOX_CURVES] = {0};
     uint32_t first[BOX_CURVES] = {0};
-    for (uint32_t s = 0; s < mesh->skin.nodes; s++)
+    for (uint32_t s = 0; s < mesh->boundary.nodes; s++)
         if (feature->kind[s] == TM_ON_CURVE) {
             first[feature->of[s]] = s;
             nodes[feature->of[s]]++;
@@ -148,7 +149,7 @@ static void check_curves(const tm_octree_mesh *mesh, const tm_surface *surface)
 static void check_corners(const tm_octree_mesh *mesh, const tm_surface *surface)
 {
     size_t nodes[BOX_CORNERS] = {0};
-    for (size_t s = 0; s < mesh->skin.nodes; s++)
+    for (size_t s = 0; s < mesh->boundary.nodes; s++)
         if (mesh->feature.kind[s] == TM_ON_CORNER) {
             const uint32_t corner = mesh->feature.of[s];
             nodes[corner]++;
@@ -167,9 +168,9 @@ static void check_patches(const tm_octree_mesh *mesh, const tm_surface *surface)
 {
     const tm_feature *feature = &mesh->feature;
     bool there[BOX_PATCHES] = {false};
-    for (size_t f = 0; f < mesh->skin.faces; f++) {
-        const uint32_t *face = mesh->skin.face[f];
-        const unsigned k = tm_skin_corners(&mesh->skin, f);
+    for (size_t f = 0; f < mesh->boundary.faces; f++) {
+        const uint32_t *face = mesh->boundary.face[f];
+        const unsigned k = tm_boundary_face_corners(&mesh->boundary, f);
         for (unsigned i = 0; i < k; i++) {
             if (feature->kind[face[i]] != TM_ON_PATCH)
                 continue;
@@ -241,10 +242,10 @@ static void test_boxes(void **state)
 static bool has_solid(const tm_octree *octree, const tm_surface *surface)
 {
     tm_error error;
-    tm_solid solid;
-    assert_ok(tm_solid_choose(&solid, octree, surface, &error), &error);
-    const bool has = solid.count > 0;
-    tm_solid_free(&solid);
+    tm_interior interior;
+    assert_ok(tm_interior_choose(&interior, octree, surface, &error), &error);
+    const bool has = interior.count > 0;
+    tm_interior_free(&interior);
     return has;
 }
 
@@ -264,13 +265,13 @@ static void test_random(void **state)
                octree.leaves);
         const size_t patches = surface.patches;
         const tm_status status =
-            tm_octree_mesh_resolve(&mesh, &octree, &surface, random_below(2), &error);
+            tm_octree_mesh_refine_lost(&mesh, &octree, &surface, random_below(2), &error);
         assert_int_equal(status, has_solid(&octree, &surface) ? TM_OK : TM_ERROR_INPUT);
         if (status == TM_OK) {
             check_elements(&mesh);
             check_boundary(&mesh, &surface);
             elements += mesh.assembly.mesh.elements;
-            boundary += mesh.skin.nodes;
+            boundary += mesh.boundary.nodes;
             held += mesh.report.held_back;
         }
         assert_int_equal(surface.patches, patches);
@@ -312,11 +313,11 @@ static unsigned deepest_level(const tm_octree *octree)
 static size_t count_lost(const tm_octree *octree, const tm_surface *surface)
 {
     tm_error error;
-    tm_solid solid;
+    tm_interior interior;
     uint8_t *lost = malloc(octree->leaves);
-    assert_ok(tm_solid_choose(&solid, octree, surface, &error), &error);
-    const size_t count = tm_solid_find_lost(&solid, octree, surface, lost);
-    tm_solid_free(&solid);
+    assert_ok(tm_interior_choose(&interior, octree, surface, &error), &error);
+    const size_t count = tm_interior_find_lost(&interior, octree, surface, lost);
+    tm_interior_free(&interior);
     free(lost);
     return count;
 }
@@ -335,7 +336,7 @@ static void test_resolve(void **state)
         tm_octree_mesh mesh;
         assert_ok(tm_octree_build(&octree, &surface, &rule, 1, &error), &error);
         const tm_status status =
-            tm_octree_mesh_resolve(&mesh, &octree, &surface, more, &error);
+            tm_octree_mesh_refine_lost(&mesh, &octree, &surface, more, &error);
         assert_int_equal(deepest_level(&octree), LEVEL + (more < NEEDED ? more : NEEDED));
         if (more < NEEDED) {
             assert_int_equal(status, TM_ERROR_INPUT);

@@ -30,7 +30,7 @@ typedef struct grid {
 /* The cube [0, SIDE]³: patch 2d + s is the side where coordinate d is 0 or SIDE; curve 4d
  * + s, along d, is where the next coordinate is at s & 1, the one after it at s & 2. */
 static void on_cube(const void *of, uint32_t patch, const double point[3],
-                    tm_boundary_place *at)
+                    tm_boundary_point *at)
 {
     (void)of;
     memcpy(at->xyz, point, sizeof at->xyz);
@@ -40,7 +40,7 @@ static void on_cube(const void *of, uint32_t patch, const double point[3],
 }
 
 static void on_cube_edge(const void *of, uint32_t curve, const double point[3],
-                         tm_boundary_place *at)
+                         tm_boundary_point *at)
 {
     (void)of;
     const uint32_t d = curve / 4;
@@ -51,7 +51,7 @@ static void on_cube_edge(const void *of, uint32_t curve, const double point[3],
     at->xyz[(d + 2) % 3] = curve / 2 % 2 * SIDE;
 }
 
-static void at_cube_corner(const void *of, uint32_t corner, tm_boundary_place *at)
+static void at_cube_corner(const void *of, uint32_t corner, tm_boundary_point *at)
 {
     (void)of;
     for (size_t i = 0; i < 3; i++)
@@ -64,7 +64,7 @@ static const tm_boundary cube = {NULL, on_cube, on_cube_edge, at_cube_corner};
 static const double radius = SIDE / 2.0;
 
 static void on_ball(const void *of, uint32_t patch, const double point[3],
-                    tm_boundary_place *at)
+                    tm_boundary_point *at)
 {
     (void)of;
     (void)patch;
@@ -197,7 +197,7 @@ static void make_round(grid *g)
 
 static void place_node(grid *g, const tm_boundary *boundary, size_t v)
 {
-    tm_boundary_place at = {.guess = TM_NONE};
+    tm_boundary_point at = {.guess = TM_NONE};
     const tm_node_rule *rule = &g->rule[v];
     if (rule->freedom == TM_MOVES_ON_SURFACE)
         boundary->on_surface(boundary->of, rule->where, g->mesh.xyz[v], &at);

@@ -124,8 +124,8 @@ static void test_degenerate_slopes(void **state)
     assert_int_equal(tm_tet_slopes(TM_MEASURE_DIHEDRAL, a, b, c, a, 1, slope), 0);
 }
 
-/* A point of the hull of the vectors that is nearly nearest to the origin: M. Frank and
- * P. Wolfe's method, slow and simple. */
+/* A point of the boundary of the vectors that is nearly nearest to the origin: M. Frank
+ * and P. Wolfe's method, slow and simple. */
 static double slow_shortest(const double *const *vector, size_t count)
 {
     enum { ROUNDS = 4000 };
@@ -163,7 +163,7 @@ static void test_shortest_vector(void **state)
             vector[i] = v[i];
         }
         tm_shortest_vector(vector, count, p);
-        /* No point of the hull is nearer, and some are as near. */
+        /* No point of the boundary is nearer, and some are as near. */
         for (size_t i = 0; i < count; i++)
             assert_true(tm_dot(p, v[i]) >= tm_norm2(p) - exact);
         assert_true(fabs(tm_norm(p) - slow_shortest(vector, count)) < close);
@@ -175,7 +175,7 @@ static const double corner[6][3] = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
                                     {0, -1, 0}, {0, 0, 1},  {0, 0, -1}};
 static const uint32_t face[8][3] = {{0, 4, 2}, {2, 4, 1}, {1, 4, 3}, {3, 4, 0},
                                     {2, 5, 0}, {1, 5, 2}, {3, 5, 1}, {0, 5, 3}};
-static const tm_hull octahedron = {corner, face, 8};
+static const tm_cavity_boundary octahedron = {corner, face, 8};
 
 /* The best place is the centre, in all that the point is free to follow. */
 static void test_climb(void **state)
@@ -192,15 +192,15 @@ static void test_climb(void **state)
             p[x] = random_unit() - 0.5;
         double plane = tm_dot(p, freedom.direction);
         memcpy(from, p, sizeof p);
-        double before = tm_hull_quality(&octahedron, measure, p, 0);
-        tm_hull_climb(&octahedron, measure, &freedom, HUGE_VAL, STEPS, p);
-        double after = tm_hull_quality(&octahedron, measure, p, 0);
+        double before = tm_cavity_boundary_quality(&octahedron, measure, p, 0);
+        tm_cavity_boundary_climb(&octahedron, measure, &freedom, HUGE_VAL, STEPS, p);
+        double after = tm_cavity_boundary_quality(&octahedron, measure, p, 0);
         assert_true(after >= before);
         tm_subtract(moved, p, from);
         double along = tm_dot(moved, freedom.direction);
         if (freedom.dimension == 3 && measure == TM_MEASURE_DIHEDRAL && before > 0)
-            assert_true(after > 0.9 * tm_hull_quality(&octahedron, measure,
-                                                      (double[3]){0, 0, 0}, 0));
+            assert_true(after > 0.9 * tm_cavity_boundary_quality(
+                                          &octahedron, measure, (double[3]){0, 0, 0}, 0));
         if (freedom.dimension == 2)
             assert_true(fabs(tm_dot(p, freedom.direction) - plane) < 1e-12);
         if (freedom.dimension == 1)

@@ -47,7 +47,7 @@ static void check_star(const tm_tet_mesh *mesh, const tm_star *star)
     if (star->closed)
         assert_int_equal(star->ring[0], star->ring[star->size]);
     else
-        assert_true(star->kept_face);
+        assert_true(star->constrained_face);
 }
 
 /* One random operation; whether there was one to do. */
@@ -103,9 +103,9 @@ static void operate_on(bool regions)
         assert_same_invariants(&before, &after);
     }
     assert_true(done > OPERATIONS / 10);
-    assert_int_equal(tm_tet_mesh_give(&mesh, &stream, NULL), TM_OK);
+    assert_int_equal(tm_tet_mesh_to_stream(&mesh, &stream, NULL), TM_OK);
     tm_error error = {0};
-    if (tm_tet_mesh_take(&mesh, &stream, &error) != TM_OK)
+    if (tm_tet_mesh_from_stream(&mesh, &stream, &error) != TM_OK)
         fail_msg("%s", error.what);
     assert_valid(&mesh);
     invariants after = measure_invariants(&mesh);
@@ -175,7 +175,7 @@ static bool random_star(tm_stream *stream, tm_tet_mesh *mesh, size_t n, size_t t
         tm_stream_free(stream);
         return false;
     }
-    assert_int_equal(tm_tet_mesh_take(mesh, stream, NULL), TM_OK);
+    assert_int_equal(tm_tet_mesh_from_stream(mesh, stream, NULL), TM_OK);
     return true;
 }
 

@@ -64,7 +64,7 @@ static const shape *shape_of(const tm_piece *element)
 static bool occurs(tm_leaf_state state)
 {
     for (unsigned e = 0; e < EDGES; e++) {
-        const unsigned char *at = tm_leaf_place[TM_LEAF_EDGE + e];
+        const unsigned char *at = tm_leaf_point[TM_LEAF_EDGE + e];
         for (unsigned f = 0; f < FACES; f++) {
             if (at[f / 2] == 2 * (f % 2) && (state >> (EDGES + f) & 1) != 0 &&
                 (state >> e & 1) == 0)
@@ -90,7 +90,7 @@ static void each_state(void (*test)(tm_leaf_state state))
 static void edge_of(unsigned from, unsigned to, int edge[3])
 {
     for (int i = 0; i < 3; i++)
-        edge[i] = tm_leaf_place[to][i] - tm_leaf_place[from][i];
+        edge[i] = tm_leaf_point[to][i] - tm_leaf_point[from][i];
 }
 
 /* Six times the volume of a tetrahedron at a node, in half sides. */
@@ -398,7 +398,7 @@ static tm_leaf_state seen_at(tm_leaf_state state, unsigned f)
 {
     tm_leaf_state seen = state & 1U << (EDGES + f);
     for (unsigned e = 0; e < EDGES; e++) {
-        if (tm_leaf_place[TM_LEAF_EDGE + e][f / 2] == 2 * (f % 2))
+        if (tm_leaf_point[TM_LEAF_EDGE + e][f / 2] == 2 * (f % 2))
             seen |= state & 1U << e;
     }
     return seen;
@@ -411,7 +411,7 @@ static uint8_t beyond(uint8_t place, unsigned f)
         bool same = true;
         for (unsigned i = 0; i < 3; i++) {
             const int moved = i != f / 2 ? 0 : f % 2 == 0 ? 2 : -2;
-            same = same && tm_leaf_place[p][i] == tm_leaf_place[place][i] + moved;
+            same = same && tm_leaf_point[p][i] == tm_leaf_point[place][i] + moved;
         }
         if (same)
             return (uint8_t)p;
@@ -463,17 +463,17 @@ static void test_places(void **state)
     (void)state;
     for (unsigned c = 0; c < 8; c++) {
         for (unsigned i = 0; i < 3; i++)
-            assert_int_equal(tm_leaf_place[c][i], 2 * (c >> i & 1));
+            assert_int_equal(tm_leaf_point[c][i], 2 * (c >> i & 1));
     }
     for (unsigned e = 0; e < EDGES; e++) {
         const unsigned along = e / 4, low = along == 0 ? 1 : 0, high = along == 2 ? 1 : 2;
-        assert_int_equal(tm_leaf_place[TM_LEAF_EDGE + e][along], 1);
-        assert_int_equal(tm_leaf_place[TM_LEAF_EDGE + e][low], 2 * (e & 1));
-        assert_int_equal(tm_leaf_place[TM_LEAF_EDGE + e][high], 2 * (e >> 1 & 1));
+        assert_int_equal(tm_leaf_point[TM_LEAF_EDGE + e][along], 1);
+        assert_int_equal(tm_leaf_point[TM_LEAF_EDGE + e][low], 2 * (e & 1));
+        assert_int_equal(tm_leaf_point[TM_LEAF_EDGE + e][high], 2 * (e >> 1 & 1));
     }
     for (unsigned f = 0; f < FACES; f++) {
         for (unsigned i = 0; i < 3; i++)
-            assert_int_equal(tm_leaf_place[TM_LEAF_FACE + f][i],
+            assert_int_equal(tm_leaf_point[TM_LEAF_FACE + f][i],
                              i == f / 2 ? 2 * (f % 2) : 1);
     }
 }

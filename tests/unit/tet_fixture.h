@@ -167,7 +167,7 @@ static inline void measure_faces(const tm_tet_mesh *mesh, invariants *i)
     assert_non_null(on);
     assert_true(tm_edge_map_reserve(&edges, 3 * mesh->faces));
     for (size_t f = 0; f < mesh->faces; f++) {
-        const tm_kept_face *face = &mesh->face[f];
+        const tm_constrained_face *face = &mesh->face[f];
         if (face->side[0] == TM_NONE && face->side[1] == TM_NONE)
             continue; /* removed */
         if (face->marker >= 0 && face->marker < FIXTURE_MARKERS)
@@ -246,7 +246,7 @@ static inline void make_mesh(tm_tet_mesh *mesh, tm_stream *stream, int n, double
 {
     tm_error error = {0};
     make_grid(stream, n, by, regions);
-    if (tm_tet_mesh_take(mesh, stream, &error) != TM_OK)
+    if (tm_tet_mesh_from_stream(mesh, stream, &error) != TM_OK)
         fail_msg("%s", error.what);
     assert_valid(mesh);
 }

@@ -34,7 +34,7 @@ static tm_status read_nodes_beside(const filter *f, tm_polygon_surface *surface,
         file.failed ? tm_fail_memory(error) : import_file(file.byte, &bytes, error);
     if (status == TM_OK)
         status =
-            tm_poly_read(surface, TM_POLY_NODE, bytes.byte, bytes.size, file.byte, error);
+            tm_plc_read(surface, TM_PLC_NODE, bytes.byte, bytes.size, file.byte, error);
     tm_text_free(&file);
     tm_text_free(&bytes);
     return status;
@@ -76,7 +76,7 @@ static tm_status copy_nodes(const tm_block *node, tm_polygon_surface *surface,
                    node->count * node->attributes * sizeof *node->attribute);
         if (node->marker)
             memcpy(block->marker, node->marker, node->count * sizeof *node->marker);
-        status = tm_polygon_surface_take_nodes(surface, block, error);
+        status = tm_polygon_surface_nodes_from_stream(surface, block, error);
     }
     tm_stream_free(&copy);
     return status;
@@ -132,7 +132,7 @@ tm_format surface_input_read(const filter *f, tm_polygon_surface *surface,
         }
     } else if (status == TM_OK) {
         if ((format == TM_FORMAT_POLY || format == TM_FORMAT_SMESH) &&
-            tm_poly_lacks_nodes(bytes.byte, bytes.size))
+            tm_plc_lacks_nodes(bytes.byte, bytes.size))
             status = read_nodes_beside(f, surface, &error);
         if (status == TM_OK)
             status =

@@ -19,10 +19,10 @@ static void note_input(const filter *f, const tm_tet_mesh *mesh)
                     mesh->locked.count);
 }
 
-void take_tet_mesh(const filter *f, tm_stream *stream, tm_tet_mesh *mesh)
+void tet_mesh_from_stream(const filter *f, tm_stream *stream, tm_tet_mesh *mesh)
 {
     tm_error error;
-    if (tm_tet_mesh_take(mesh, stream, &error) != TM_OK) {
+    if (tm_tet_mesh_from_stream(mesh, stream, &error) != TM_OK) {
         snprintf(error.file, sizeof error.file, "%s", filter_input_name(f));
         filter_fail(f, &error);
     }

@@ -6,9 +6,9 @@
 #include "../../../lib/tet/mesh.h"
 #include "../app/filter.h"
 
-/* Takes the mesh out of the stream (tm_tet_mesh_take()), with a note about what is worth
- * one. Exits where the tetrahedra are no mesh. */
-void take_tet_mesh(const filter *f, tm_stream *stream, tm_tet_mesh *mesh);
+/* Takes the mesh out of the stream (tm_tet_mesh_from_stream()), with a note about what is
+ * worth one. Exits where the tetrahedra are no mesh. */
+void tet_mesh_from_stream(const filter *f, tm_stream *stream, tm_tet_mesh *mesh);
 
 /* Drops the main mesh's blocks that are not known, with a note that says why: they may
  * refer to the tetrahedra, which are others now. */

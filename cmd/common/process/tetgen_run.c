@@ -127,9 +127,9 @@ static tm_status run_in(const private_folder *folder, const filter *f,
     const char *file = surface->facets > 0 ? input_poly : input_node;
     tm_text text = {0};
     if (surface->facets > 0)
-        tm_poly_write(&text, surface);
+        tm_plc_write(&text, surface);
     else
-        tm_poly_write_nodes(&text, surface);
+        tm_plc_write_nodes(&text, surface);
     tm_status status = private_folder_write(folder, file, &text, error);
     tm_text_free(&text);
     program_end end = {0};

@@ -29,7 +29,7 @@ enum {
 enum { TM_OCTREE_FINEST = 18, TM_OCTREE_LEVEL_MAX = TM_OCTREE_FINEST - 1 };
 
 /* Where each of them is, in half sides of the leaf: 0, 1 or 2. */
-extern const unsigned char tm_leaf_place[27][3];
+extern const unsigned char tm_leaf_point[27][3];
 
 typedef struct tm_leaf {
     uint32_t

@@ -17,7 +17,7 @@ typedef struct checker {
 static void place_of(const tm_leaf *leaf, int place, uint32_t point[3])
 {
     for (int k = 0; k < 3; k++)
-        point[k] = leaf->anchor[k] + ((uint32_t)tm_leaf_place[place][k]
+        point[k] = leaf->anchor[k] + ((uint32_t)tm_leaf_point[place][k]
                                       << (TM_OCTREE_LEVEL_MAX - leaf->level));
 }
 

@@ -210,7 +210,7 @@ static void order_nodes(tm_octree *octree, uint32_t *number)
             if (number[*v] == TM_NONE) {
                 for (int k = 0; k < AXES; k++)
                     octree->grid[next][k] =
-                        leaf->anchor[k] + ((uint32_t)tm_leaf_place[place][k] << half);
+                        leaf->anchor[k] + ((uint32_t)tm_leaf_point[place][k] << half);
                 number[*v] = next++;
             }
             *v = number[*v];

@@ -47,8 +47,8 @@ static tm_status give_roots(const tm_octree *octree, unsigned finest, tm_stream 
     return status;
 }
 
-tm_status tm_octree_give_blocks(const tm_octree *octree, const uint32_t *element,
-                                tm_stream *stream, tm_error *error)
+tm_status tm_octree_to_stream(const tm_octree *octree, const uint32_t *element,
+                              tm_stream *stream, tm_error *error)
 {
     const unsigned finest = deepest_level(octree);
     tm_status status = give_roots(octree, finest, stream, error);

@@ -10,8 +10,8 @@
  * elements element[i] up to, but not including, element[i + 1] of .mix; [leaves + 1].
  * Anchors are in units of the deepest level that a leaf has, which is the finest of
  * .root. O(leaves). */
-tm_status tm_octree_give_blocks(const tm_octree *octree, const uint32_t *element,
-                                tm_stream *stream, tm_error *error);
+tm_status tm_octree_to_stream(const tm_octree *octree, const uint32_t *element,
+                              tm_stream *stream, tm_error *error);
 
 /* The octree of the blocks .root and .octant; *octree is overwritten. Leaf i is row
  * order[i]; order is malloc'ed, NULL after an error. TM_ERROR_INPUT: a block is missing,

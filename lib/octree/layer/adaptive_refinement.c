@@ -22,15 +22,15 @@ static size_t keep_shallow(const tm_octree *octree, unsigned deepest, uint8_t *s
 static tm_status make_without_loss(tm_octree_mesh *mesh, tm_octree *octree,
                                    tm_surface *surface, unsigned deepest, tm_error *error)
 {
-    tm_solid solid = {0};
+    tm_interior interior = {0};
     tm_status status = TM_OK;
     for (bool more = true; status == TM_OK && more;) {
         uint8_t *lost = tm_new(octree->leaves, sizeof *lost);
-        tm_solid_free(&solid);
-        status = lost ? tm_solid_choose(&solid, octree, surface, error)
+        tm_interior_free(&interior);
+        status = lost ? tm_interior_choose(&interior, octree, surface, error)
                       : tm_fail_memory(error);
         if (status == TM_OK) {
-            tm_solid_find_lost(&solid, octree, surface, lost);
+            tm_interior_find_lost(&interior, octree, surface, lost);
             more = keep_shallow(octree, deepest, lost) > 0;
         }
         if (status == TM_OK && more)
@@ -38,20 +38,20 @@ static tm_status make_without_loss(tm_octree_mesh *mesh, tm_octree *octree,
         free(lost);
     }
     if (status == TM_OK)
-        return tm_octree_mesh_make_of(mesh, octree, &solid, surface, error);
-    tm_solid_free(&solid);
+        return tm_octree_mesh_make_of(mesh, octree, &interior, surface, error);
+    tm_interior_free(&interior);
     return status;
 }
 
-/* The leaves at boundary nodes that are held back, and their neighbours that the surface
- * crosses. NULL where memory is out or there is none. */
-static uint8_t *mark_held(const tm_octree_mesh *mesh, const tm_octree *octree,
-                          unsigned deepest)
+/* The leaves at boundary nodes that are off the surface, and their neighbours that the
+ * surface crosses. NULL where memory is out or there is none. */
+static uint8_t *mark_off_surface(const tm_octree_mesh *mesh, const tm_octree *octree,
+                                 unsigned deepest)
 {
     uint8_t *split = tm_new(octree->leaves, sizeof *split);
     bool *near = calloc(octree->nodes + 1, sizeof *near);
-    for (size_t s = 0; near && s < mesh->skin.nodes; s++)
-        near[mesh->skin.grid_node[s]] = mesh->held[s];
+    for (size_t s = 0; near && s < mesh->boundary.nodes; s++)
+        near[mesh->boundary.grid_node[s]] = mesh->held[s];
     for (int ring = 0; split && near && ring < 2; ring++) {
         for (size_t l = 0; l < octree->leaves; l++) {
             split[l] = 0;
@@ -70,8 +70,8 @@ static uint8_t *mark_held(const tm_octree_mesh *mesh, const tm_octree *octree,
 }
 
 /* The mesh of a copy of the octree with leaves split; *octree becomes the copy if fewer
- * nodes are held back, else the mesh is made of it again. Meshes are large: there is only
- * one at a time. */
+ * nodes are off the surface, else the mesh is made of it again. Meshes are large: there
+ * is only one at a time. */
 static tm_status try_split(tm_octree_mesh *mesh, tm_octree *octree, tm_surface *surface,
                            unsigned deepest, const uint8_t *split, bool *better,
                            tm_error *error)
@@ -98,8 +98,9 @@ static tm_status try_split(tm_octree_mesh *mesh, tm_octree *octree, tm_surface *
     return status;
 }
 
-tm_status tm_octree_mesh_resolve(tm_octree_mesh *mesh, tm_octree *octree,
-                                 tm_surface *surface, unsigned levels, tm_error *error)
+tm_status tm_octree_mesh_refine_lost(tm_octree_mesh *mesh, tm_octree *octree,
+                                     tm_surface *surface, unsigned levels,
+                                     tm_error *error)
 {
     unsigned deepest = 0;
     *mesh = (tm_octree_mesh){0};
@@ -114,7 +115,7 @@ tm_status tm_octree_mesh_resolve(tm_octree_mesh *mesh, tm_octree *octree,
                            : tm_octree_mesh_make(mesh, octree, surface, error);
     for (bool better = levels > 0; status == TM_OK && better;) {
         uint8_t *split =
-            mesh->report.held_back > 0 ? mark_held(mesh, octree, deepest) : NULL;
+            mesh->report.held_back > 0 ? mark_off_surface(mesh, octree, deepest) : NULL;
         if (!split)
             break;
         status = try_split(mesh, octree, surface, deepest, split, &better, error);

@@ -13,8 +13,8 @@ const uint8_t tm_cut_triangles[3][2][3] = {
 
 typedef struct {
     const tm_octree *octree;
-    const tm_solid *solid;
-    const tm_skin *skin;
+    const tm_interior *interior;
+    const tm_interior_boundary *boundary;
     tm_assembly *assembly;
     bool counting;                         /* nothing is written yet */
     size_t face, middles, elements, items; /* so far */
@@ -24,19 +24,19 @@ static tm_status number_core(assembler *a, tm_error *error)
 {
     tm_assembly *to = a->assembly;
     a->assembly->core_node = tm_new(a->octree->nodes, sizeof *a->assembly->core_node);
-    to->inner = tm_new(a->skin->nodes, sizeof *to->inner);
+    to->inner = tm_new(a->boundary->nodes, sizeof *to->inner);
     if (!a->assembly->core_node || !to->inner)
         return tm_fail_memory(error);
     for (size_t n = 0; n < a->octree->nodes; n++)
-        a->assembly->core_node[n] = a->solid->used[n] ? (uint32_t)to->core++ : TM_NONE;
+        a->assembly->core_node[n] = a->interior->used[n] ? (uint32_t)to->core++ : TM_NONE;
     to->grid_node = tm_new(to->core, sizeof *to->grid_node);
     if (!to->grid_node)
         return tm_fail_memory(error);
     for (size_t n = 0; n < a->octree->nodes; n++)
         if (a->assembly->core_node[n] != TM_NONE)
             to->grid_node[a->assembly->core_node[n]] = (uint32_t)n;
-    for (size_t s = 0; s < a->skin->nodes; s++)
-        to->inner[s] = a->assembly->core_node[a->skin->grid_node[s]];
+    for (size_t s = 0; s < a->boundary->nodes; s++)
+        to->inner[s] = a->assembly->core_node[a->boundary->grid_node[s]];
     to->outer = (uint32_t)to->core;
     return TM_OK;
 }
@@ -45,7 +45,7 @@ static tm_status allocate(const assembler *a, tm_error *error)
 {
     tm_assembly *to = a->assembly;
     tm_mixed_mesh *mesh = &to->mesh;
-    mesh->nodes = to->core + a->skin->nodes + a->middles;
+    mesh->nodes = to->core + a->boundary->nodes + a->middles;
     mesh->elements = a->elements;
     if (mesh->nodes >= TM_NONE || mesh->elements >= TM_NONE)
         return tm_fail(error, TM_ERROR_SYSTEM,
@@ -58,7 +58,7 @@ static tm_status allocate(const assembler *a, tm_error *error)
     to->first = tm_new(a->octree->leaves + 1, sizeof *to->first);
     to->middles = a->middles;
     to->middle_leaf = tm_new(a->middles, sizeof *to->middle_leaf);
-    to->layer = tm_new(a->skin->faces, sizeof *to->layer);
+    to->layer = tm_new(a->boundary->faces, sizeof *to->layer);
     if (!mesh->xyz || !mesh->start || !mesh->item || !to->first || !to->layer ||
         !to->middle_leaf)
         return tm_fail_memory(error);
@@ -81,7 +81,7 @@ static uint32_t new_middle(assembler *a, size_t l)
 {
     if (!a->counting)
         a->assembly->middle_leaf[a->middles] = (uint32_t)l;
-    return (uint32_t)(a->assembly->core + a->skin->nodes + a->middles++);
+    return (uint32_t)(a->assembly->core + a->boundary->nodes + a->middles++);
 }
 
 /* The element between a face of a leaf, whose k nodes turn counter-clockwise seen from
@@ -95,18 +95,18 @@ static void add_to_middle(assembler *a, unsigned k, const uint32_t *face, uint32
     add_element(a, k + 1, node);
 }
 
-/* Whether the face of the skin that comes next is that piece of leaf l. */
+/* Whether the face of the interior boundary that comes next is that piece of leaf l. */
 static bool is_next(const assembler *a, size_t face, size_t l, unsigned piece)
 {
-    return face < a->skin->faces && a->skin->leaf[face] == l &&
-           a->skin->piece[face] == piece;
+    return face < a->boundary->faces && a->boundary->leaf[face] == l &&
+           a->boundary->piece[face] == piece;
 }
 
 /* Divides a leaf from its centre, with the pieces of its faces that are cut as triangles.
  */
 static void add_star(assembler *a, size_t l, const uint32_t at[TM_LEAF_NODES])
 {
-    const tm_leaf_state state = tm_solid_leaf_state(a->solid, a->octree, l);
+    const tm_leaf_state state = tm_interior_leaf_state(a->interior, a->octree, l);
     const uint32_t middle = new_middle(a, l);
     size_t next = a->face;
     for (unsigned f = 0; f < LEAF_FACES; f++) {
@@ -118,7 +118,7 @@ static void add_star(assembler *a, size_t l, const uint32_t at[TM_LEAF_NODES])
                 node[c] = at[piece[i].place[c]];
             unsigned cut = TM_UNCUT;
             if (is_next(a, next, l, TM_FACE_PIECES * f + i))
-                cut = a->skin->cut[next++];
+                cut = a->boundary->cut[next++];
             if (cut == TM_UNCUT) {
                 add_to_middle(a, piece[i].k, node, middle);
                 continue;
@@ -134,8 +134,8 @@ static void add_star(assembler *a, size_t l, const uint32_t at[TM_LEAF_NODES])
 
 static bool has_cut(const assembler *a, size_t l)
 {
-    for (size_t f = a->face; f < a->skin->faces && a->skin->leaf[f] == l; f++)
-        if (a->skin->cut[f] != TM_UNCUT)
+    for (size_t f = a->face; f < a->boundary->faces && a->boundary->leaf[f] == l; f++)
+        if (a->boundary->cut[f] != TM_UNCUT)
             return true;
     return false;
 }
@@ -151,7 +151,8 @@ static void add_leaf(assembler *a, size_t l)
         add_star(a, l, at);
         return;
     }
-    const tm_transition t = tm_transition_of(tm_solid_leaf_state(a->solid, a->octree, l));
+    const tm_transition t =
+        tm_transition_of(tm_interior_leaf_state(a->interior, a->octree, l));
     at[TM_LEAF_CENTRE] = t.centre ? new_middle(a, l) : TM_NONE;
     for (unsigned i = 0; i < t.pieces; i++) {
         uint32_t node[MOST_NODES];
@@ -161,7 +162,8 @@ static void add_leaf(assembler *a, size_t l)
     }
 }
 
-/* The wedge between the triangle of corners c of the skin's face and its copy. */
+/* The wedge between the triangle of corners c of the interior boundary's face and its
+ * copy. */
 static void add_wedge(assembler *a, const uint32_t *in, const uint32_t *out,
                       const uint8_t c[3])
 {
@@ -173,27 +175,27 @@ static void add_wedge(assembler *a, const uint32_t *in, const uint32_t *out,
 /* The layer's elements under the faces of leaf l. */
 static void add_layer(assembler *a, size_t l)
 {
-    const tm_skin *skin = a->skin;
-    for (; a->face < skin->faces && skin->leaf[a->face] == l; a->face++) {
+    const tm_interior_boundary *boundary = a->boundary;
+    for (; a->face < boundary->faces && boundary->leaf[a->face] == l; a->face++) {
         const size_t f = a->face;
         uint32_t in[4];
         uint32_t out[4];
-        const unsigned k = tm_skin_corners(skin, f);
+        const unsigned k = tm_boundary_face_corners(boundary, f);
         if (!a->counting)
             a->assembly->layer[f] = (uint32_t)a->elements;
         for (unsigned i = 0; i < k; i++) {
-            in[i] = a->assembly->inner[skin->face[f][i]];
-            out[i] = a->assembly->outer + skin->face[f][i];
+            in[i] = a->assembly->inner[boundary->face[f][i]];
+            out[i] = a->assembly->outer + boundary->face[f][i];
         }
         if (k == 3)
             add_wedge(a, in, out, (const uint8_t[]){0, 1, 2});
-        else if (skin->cut[f] == TM_UNCUT)
+        else if (boundary->cut[f] == TM_UNCUT)
             add_element(
                 a, MOST_NODES,
                 (uint32_t[]){in[0], in[1], in[2], in[3], out[0], out[1], out[2], out[3]});
         else
             for (unsigned t = 0; t < 2; t++)
-                add_wedge(a, in, out, tm_cut_triangles[skin->cut[f]][t]);
+                add_wedge(a, in, out, tm_cut_triangles[boundary->cut[f]][t]);
     }
 }
 
@@ -205,7 +207,7 @@ static void add_all(assembler *a, bool counting)
     for (size_t l = 0; l < a->octree->leaves; l++) {
         if (!counting)
             a->assembly->first[l] = (uint32_t)a->elements;
-        if (a->solid->chosen[l]) {
+        if (a->interior->chosen[l]) {
             add_leaf(a, l);
             add_layer(a, l);
         }
@@ -219,18 +221,22 @@ static void place_nodes(const assembler *a)
     double(*xyz)[3] = to->mesh.xyz;
     for (size_t n = 0; n < to->core; n++)
         tm_octree_point(a->octree, a->octree->grid[to->grid_node[n]], xyz[n]);
-    for (size_t s = 0; s < a->skin->nodes; s++)
+    for (size_t s = 0; s < a->boundary->nodes; s++)
         memcpy(xyz[to->outer + s], xyz[to->inner[s]], sizeof *xyz);
     for (size_t m = 0; m < to->middles; m++)
         tm_leaf_centre(a->octree, &a->octree->leaf[to->middle_leaf[m]],
-                       xyz[to->core + a->skin->nodes + m]);
+                       xyz[to->core + a->boundary->nodes + m]);
 }
 
 tm_status tm_assemble(tm_assembly *assembly, const tm_octree *octree,
-                      const tm_solid *solid, const tm_skin *skin, tm_error *error)
+                      const tm_interior *interior, const tm_interior_boundary *boundary,
+                      tm_error *error)
 {
     *assembly = (tm_assembly){0};
-    assembler a = {.octree = octree, .solid = solid, .skin = skin, .assembly = assembly};
+    assembler a = {.octree = octree,
+                   .interior = interior,
+                   .boundary = boundary,
+                   .assembly = assembly};
     tm_status status = number_core(&a, error);
     if (status == TM_OK) {
         add_all(&a, true);

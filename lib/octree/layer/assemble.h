@@ -10,15 +10,16 @@
 /* The triangles of a cut face, as its corners. Indexed by tm_cut. */
 extern const uint8_t tm_cut_triangles[3][2][3];
 
-/* Node s of the skin is there twice: inner[s] belongs to the leaves, outer + s to the
- * boundary. Between a face of the skin and its copy is a wedge or a hexahedron, or, where
- * the face is cut, two wedges. A leaf with a cut face is divided from its centre. */
+/* Node s of the interior boundary is there twice: inner[s] belongs to the leaves, outer +
+ * s to the boundary. Between a face of the interior boundary and its copy is a wedge or a
+ * hexahedron, or, where the face is cut, two wedges. A leaf with a cut face is divided
+ * from its centre. */
 typedef struct tm_assembly {
     tm_mixed_mesh mesh;
     uint32_t *first; /* [leaves + 1]: leaf l has the elements first[l] … first[l + 1) */
-    uint32_t *layer; /* [faces of the skin]: the element under it; of a cut face the first
-                        of the two */
-    uint32_t *inner; /* [nodes of the skin] */
+    uint32_t *layer; /* [faces of the interior boundary]: the element under it; of a cut
+                        face the first of the two */
+    uint32_t *inner; /* [nodes of the interior boundary] */
     uint32_t outer;
     size_t core; /* nodes of the octree come first, then the outer ones, then middles */
     size_t middles;
@@ -32,7 +33,8 @@ typedef struct tm_assembly {
  * 32-bit ids are out. *assembly is to be freed, after an error too. O(leaves + elements).
  */
 tm_status tm_assemble(tm_assembly *assembly, const tm_octree *octree,
-                      const tm_solid *solid, const tm_skin *skin, tm_error *error);
+                      const tm_interior *interior, const tm_interior_boundary *boundary,
+                      tm_error *error);
 void tm_assembly_free(tm_assembly *assembly);
 
 #endif

@@ -9,10 +9,10 @@
 
 enum { KEY_BITS = 21 };
 
-typedef struct tm_skin_cell {
+typedef struct tm_boundary_cell {
     uint64_t key;
     uint32_t node;
-} tm_skin_cell;
+} tm_boundary_cell;
 
 static uint64_t key_of(int64_t x, int64_t y, int64_t z)
 {
@@ -21,48 +21,48 @@ static uint64_t key_of(int64_t x, int64_t y, int64_t z)
 
 static int compare(const void *a, const void *b)
 {
-    const tm_skin_cell *ca = a;
-    const tm_skin_cell *cb = b;
+    const tm_boundary_cell *ca = a;
+    const tm_boundary_cell *cb = b;
     if (ca->key != cb->key)
         return ca->key < cb->key ? -1 : 1;
     return (ca->node > cb->node) - (ca->node < cb->node);
 }
 
-tm_status tm_skin_cells_sort(tm_skin_cells *cells, const tm_octree *octree,
-                             const tm_skin *skin, tm_error *error)
+tm_status tm_boundary_cells_sort(tm_boundary_cells *cells, const tm_octree *octree,
+                                 const tm_interior_boundary *boundary, tm_error *error)
 {
-    *cells = (tm_skin_cells){.octree = octree, .skin = skin};
-    cells->cell = tm_new(skin->nodes, sizeof *cells->cell);
+    *cells = (tm_boundary_cells){.octree = octree, .boundary = boundary};
+    cells->cell = tm_new(boundary->nodes, sizeof *cells->cell);
     if (!cells->cell)
         return tm_fail_memory(error);
     unsigned coarsest = octree->finest;
-    for (size_t f = 0; f < skin->faces; f++) {
-        const unsigned level = octree->leaf[skin->leaf[f]].level;
+    for (size_t f = 0; f < boundary->faces; f++) {
+        const unsigned level = octree->leaf[boundary->leaf[f]].level;
         coarsest = level < coarsest ? level : coarsest;
     }
     cells->shift = octree->finest - coarsest + 1;
-    for (size_t s = 0; s < skin->nodes; s++) {
-        const uint32_t *grid = octree->grid[skin->grid_node[s]];
+    for (size_t s = 0; s < boundary->nodes; s++) {
+        const uint32_t *grid = octree->grid[boundary->grid_node[s]];
         cells->cell[s] =
-            (tm_skin_cell){key_of(grid[0] >> cells->shift, grid[1] >> cells->shift,
-                                  grid[2] >> cells->shift),
-                           (uint32_t)s};
+            (tm_boundary_cell){key_of(grid[0] >> cells->shift, grid[1] >> cells->shift,
+                                      grid[2] >> cells->shift),
+                               (uint32_t)s};
     }
-    if (skin->nodes > 0)
-        qsort(cells->cell, skin->nodes, sizeof *cells->cell, compare);
+    if (boundary->nodes > 0)
+        qsort(cells->cell, boundary->nodes, sizeof *cells->cell, compare);
     return TM_OK;
 }
 
-void tm_skin_cells_free(tm_skin_cells *cells)
+void tm_boundary_cells_free(tm_boundary_cells *cells)
 {
     free(cells->cell);
-    *cells = (tm_skin_cells){0};
+    *cells = (tm_boundary_cells){0};
 }
 
 /* The first entry whose key is not below. */
-static size_t lower_bound(const tm_skin_cells *cells, uint64_t key)
+static size_t lower_bound(const tm_boundary_cells *cells, uint64_t key)
 {
-    size_t begin = 0, end = cells->skin->nodes;
+    size_t begin = 0, end = cells->boundary->nodes;
     while (begin < end) {
         const size_t middle = begin + (end - begin) / 2;
         if (cells->cell[middle].key < key)
@@ -73,8 +73,8 @@ static size_t lower_bound(const tm_skin_cells *cells, uint64_t key)
     return begin;
 }
 
-void tm_skin_cells_near(const tm_skin_cells *cells, const double point[3],
-                        void (*visit)(void *context, uint32_t node), void *context)
+void tm_boundary_cells_near(const tm_boundary_cells *cells, const double point[3],
+                            void (*visit)(void *context, uint32_t node), void *context)
 {
     const tm_octree *octree = cells->octree;
     const double unit = octree->side / (double)((uint32_t)1 << octree->finest);
@@ -89,7 +89,7 @@ void tm_skin_cells_near(const tm_skin_cells *cells, const double point[3],
                     continue;
                 const uint64_t key = key_of(x, y, z);
                 for (size_t i = lower_bound(cells, key);
-                     i < cells->skin->nodes && cells->cell[i].key == key; i++)
+                     i < cells->boundary->nodes && cells->cell[i].key == key; i++)
                     visit(context, cells->cell[i].node);
             }
         }
@@ -97,7 +97,7 @@ void tm_skin_cells_near(const tm_skin_cells *cells, const double point[3],
 }
 
 typedef struct {
-    const tm_skin_cells *cells;
+    const tm_boundary_cells *cells;
     const double *point;
     const uint8_t *taken;
     uint32_t node;
@@ -110,7 +110,7 @@ static void compare_nearest(void *context, uint32_t s)
     double xyz[3];
     if (n->taken && n->taken[s])
         return;
-    tm_skin_place(n->cells->skin, n->cells->octree, s, xyz);
+    tm_boundary_node_point(n->cells->boundary, n->cells->octree, s, xyz);
     const double distance2 = tm_distance2(n->point, xyz);
     if (distance2 < n->distance2 || (distance2 == n->distance2 && s < n->node)) {
         n->node = s;
@@ -118,11 +118,11 @@ static void compare_nearest(void *context, uint32_t s)
     }
 }
 
-uint32_t tm_skin_cells_nearest(const tm_skin_cells *cells, const double point[3],
-                               const uint8_t *taken, double *distance2)
+uint32_t tm_boundary_cells_nearest(const tm_boundary_cells *cells, const double point[3],
+                                   const uint8_t *taken, double *distance2)
 {
     nearest n = {cells, point, taken, TM_NONE, INFINITY};
-    tm_skin_cells_near(cells, point, compare_nearest, &n);
+    tm_boundary_cells_near(cells, point, compare_nearest, &n);
     *distance2 = n.distance2;
     return n.node;
 }

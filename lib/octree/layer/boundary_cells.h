@@ -1,32 +1,32 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The nodes of a skin by place: which are close to a point. */
+/* The nodes of an interior boundary by place: which are close to a point. */
 #ifndef TM_LAYER_BOUNDARY_CELLS_H
 #define TM_LAYER_BOUNDARY_CELLS_H
 
 #include "interior_boundary.h"
 
-typedef struct tm_skin_cells {
+typedef struct tm_boundary_cells {
     const tm_octree *octree;
-    const tm_skin *skin;
-    unsigned shift;            /* a cell has 2^shift grid units along each side */
-    struct tm_skin_cell *cell; /* [nodes], sorted by cell */
-} tm_skin_cells;
+    const tm_interior_boundary *boundary;
+    unsigned shift;                /* a cell has 2^shift grid units along each side */
+    struct tm_boundary_cell *cell; /* [nodes], sorted by cell */
+} tm_boundary_cells;
 
-/* Sorts the nodes into cells twice as large as the largest leaf of the skin. O(n log n).
- * TM_ERROR_SYSTEM where memory is out. */
-tm_status tm_skin_cells_sort(tm_skin_cells *cells, const tm_octree *octree,
-                             const tm_skin *skin, tm_error *error);
-void tm_skin_cells_free(tm_skin_cells *cells);
+/* Sorts the nodes into cells twice as large as the largest leaf of the interior boundary.
+ * O(n log n). TM_ERROR_SYSTEM where memory is out. */
+tm_status tm_boundary_cells_sort(tm_boundary_cells *cells, const tm_octree *octree,
+                                 const tm_interior_boundary *boundary, tm_error *error);
+void tm_boundary_cells_free(tm_boundary_cells *cells);
 
 /* Calls visit(context, node) for all nodes closer to the point than a cell's side, and
  * some that are not. */
-void tm_skin_cells_near(const tm_skin_cells *cells, const double point[3],
-                        void (*visit)(void *context, uint32_t node), void *context);
+void tm_boundary_cells_near(const tm_boundary_cells *cells, const double point[3],
+                            void (*visit)(void *context, uint32_t node), void *context);
 
 /* The closest of these nodes, of those with taken[node] == 0 where taken is not NULL;
  * TM_NONE where there is none. *distance2 is its squared distance on the lattice, or
  * infinite. */
-uint32_t tm_skin_cells_nearest(const tm_skin_cells *cells, const double point[3],
-                               const uint8_t *taken, double *distance2);
+uint32_t tm_boundary_cells_nearest(const tm_boundary_cells *cells, const double point[3],
+                                   const uint8_t *taken, double *distance2);
 
 #endif

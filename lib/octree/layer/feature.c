@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A skin node that could stand for a corner. */
+/* An interior boundary node that could stand for a corner. */
 typedef struct {
     double distance2; /* in sides of leaves */
     uint32_t corner, node;
@@ -21,7 +21,7 @@ typedef struct {
 typedef struct {
     tm_path_finder path;
     tm_feature_choice choice;
-    uint32_t *node_of; /* [corners]: the skin node, or TM_NONE */
+    uint32_t *node_of; /* [corners]: the interior boundary node, or TM_NONE */
     size_t candidates, room;
     candidate *candidate;
     uint32_t corner; /* whose candidates are looked for */
@@ -45,7 +45,7 @@ static void consider(void *context, uint32_t s)
     finder *find = context;
     const tm_surface *surface = find->path.surface;
     double xyz[3];
-    tm_skin_place(find->path.skin, find->path.octree, s, xyz);
+    tm_boundary_node_point(find->path.boundary, find->path.octree, s, xyz);
     const double *corner = surface->xyz[surface->corner[find->corner]];
     const double size = find->path.size[s];
     const double distance2 = tm_distance2(xyz, corner) / (size * size);
@@ -73,8 +73,8 @@ static tm_status find_corners(finder *find, tm_error *error)
         find->node_of[c] = TM_NONE;
         find->corner = (uint32_t)c;
         if (find->choice.corner[c])
-            tm_skin_cells_near(find->path.cells, surface->xyz[surface->corner[c]],
-                               consider, find);
+            tm_boundary_cells_near(find->path.cells, surface->xyz[surface->corner[c]],
+                                   consider, find);
     }
     if (find->no_memory)
         return tm_fail_memory(error);
@@ -106,7 +106,8 @@ static void join_patches(const tm_surface *surface, uint32_t *parent, uint32_t c
     tm_set_unite(parent, patch[0], patch[1]);
 }
 
-/* The skin node that stands for a corner; TM_NONE where there is no corner. */
+/* The interior boundary node that stands for a corner; TM_NONE where there is no corner.
+ */
 static uint32_t node_at(const finder *find, uint32_t corner)
 {
     return corner == TM_NONE ? TM_NONE : find->node_of[corner];
@@ -116,9 +117,9 @@ static uint32_t node_at(const finder *find, uint32_t corner)
 static void clear_paths(const finder *find)
 {
     const tm_path_finder *p = &find->path;
-    memset(p->on_path, 0, p->skin->faces);
-    memset(p->skin->cut, TM_UNCUT, p->skin->faces);
-    for (size_t s = 0; s < p->skin->nodes; s++) {
+    memset(p->on_path, 0, p->boundary->faces);
+    memset(p->boundary->cut, TM_UNCUT, p->boundary->faces);
+    for (size_t s = 0; s < p->boundary->nodes; s++) {
         if (p->feature->kind[s] != TM_ON_CURVE)
             continue;
         p->feature->kind[s] = TM_ON_PATCH;
@@ -229,17 +230,17 @@ static tm_status find_curves(finder *find, tm_surface *surface, tm_error *error)
     return status;
 }
 
-/* The side of the smallest leaf at each node of the skin. */
-static double *find_sizes(const tm_skin *skin, const tm_octree *octree)
+/* The side of the smallest leaf at each node of the interior boundary. */
+static double *find_sizes(const tm_interior_boundary *boundary, const tm_octree *octree)
 {
-    double *size = tm_new(skin->nodes, sizeof *size);
-    for (size_t s = 0; size && s < skin->nodes; s++)
+    double *size = tm_new(boundary->nodes, sizeof *size);
+    for (size_t s = 0; size && s < boundary->nodes; s++)
         size[s] = octree->side;
-    for (size_t f = 0; size && f < skin->faces; f++) {
-        const double side = tm_leaf_side(octree, &octree->leaf[skin->leaf[f]]);
-        for (unsigned i = 0; i < tm_skin_corners(skin, f); i++)
-            if (side < size[skin->face[f][i]])
-                size[skin->face[f][i]] = side;
+    for (size_t f = 0; size && f < boundary->faces; f++) {
+        const double side = tm_leaf_side(octree, &octree->leaf[boundary->leaf[f]]);
+        for (unsigned i = 0; i < tm_boundary_face_corners(boundary, f); i++)
+            if (side < size[boundary->face[f][i]])
+                size[boundary->face[f][i]] = side;
     }
     return size;
 }
@@ -255,8 +256,8 @@ static tm_status choose(finder *find, tm_error *error)
         const size_t begin = surface->curve_start[c], end = surface->curve_start[c + 1];
         const uint32_t middle = surface->curve_node[(begin + end) / 2];
         double distance2;
-        const uint32_t n = tm_skin_cells_nearest(find->path.cells, surface->xyz[middle],
-                                                 NULL, &distance2);
+        const uint32_t n = tm_boundary_cells_nearest(
+            find->path.cells, surface->xyz[middle], NULL, &distance2);
         size[c] = n == TM_NONE ? find->path.octree->side : find->path.size[n];
     }
     const tm_status status = tm_feature_choose(&find->choice, surface, size, error);
@@ -289,25 +290,25 @@ static void free_finder(finder *find)
     free(find->path.cuts);
 }
 
-tm_status tm_feature_find(tm_feature *feature, tm_skin *skin, const tm_octree *octree,
-                          tm_surface *surface, const tm_surface_point *at,
-                          tm_error *error)
+tm_status tm_feature_find(tm_feature *feature, tm_interior_boundary *boundary,
+                          const tm_octree *octree, tm_surface *surface,
+                          const tm_surface_point *at, tm_error *error)
 {
     *feature = (tm_feature){.lost = TM_NONE};
-    tm_status status = allocate(feature, skin->nodes, error);
+    tm_status status = allocate(feature, boundary->nodes, error);
     if (status != TM_OK || surface->corners + surface->curves == 0)
         return status;
-    tm_skin_cells cells;
-    status = tm_skin_cells_sort(&cells, octree, skin, error);
+    tm_boundary_cells cells;
+    status = tm_boundary_cells_sort(&cells, octree, boundary, error);
     finder find = {.path = {.octree = octree,
                             .surface = surface,
                             .cells = &cells,
-                            .skin = skin,
+                            .boundary = boundary,
                             .feature = feature}};
-    double *size = find_sizes(skin, octree);
+    double *size = find_sizes(boundary, octree);
     find.path.size = size;
-    find.path.on_path = calloc(skin->faces + 1, 1);
-    find.path.visit = calloc(skin->nodes + 1, sizeof *find.path.visit);
+    find.path.on_path = calloc(boundary->faces + 1, 1);
+    find.path.visit = calloc(boundary->nodes + 1, sizeof *find.path.visit);
     if (status == TM_OK && !(size && find.path.on_path && find.path.visit))
         status = tm_fail_memory(error);
     if (status == TM_OK)
@@ -317,12 +318,13 @@ tm_status tm_feature_find(tm_feature *feature, tm_skin *skin, const tm_octree *o
     if (status == TM_OK)
         status = find_curves(&find, surface, error);
     if (status == TM_OK)
-        status = tm_feature_regions(feature, skin, surface, find.path.on_path, at, error);
+        status =
+            tm_feature_regions(feature, boundary, surface, find.path.on_path, at, error);
     if (status == TM_OK)
-        tm_feature_cut_wide(feature, skin, octree, surface, find.path.on_path, at);
+        tm_feature_cut_wide(feature, boundary, octree, surface, find.path.on_path, at);
     free_finder(&find);
     free(size);
-    tm_skin_cells_free(&cells);
+    tm_boundary_cells_free(&cells);
     return status;
 }
 

@@ -7,12 +7,12 @@
 #include <string.h>
 
 /* Where a node of a path will be, about. */
-static void place_of(const tm_feature *feature, const tm_skin *skin,
+static void place_of(const tm_feature *feature, const tm_interior_boundary *boundary,
                      const tm_octree *octree, const tm_surface *surface, uint32_t s,
                      double xyz[3])
 {
     size_t segment;
-    tm_skin_place(skin, octree, s, xyz);
+    tm_boundary_node_point(boundary, octree, s, xyz);
     if (feature->kind[s] == TM_ON_CORNER) {
         memcpy(xyz, surface->xyz[surface->corner[feature->of[s]]], 3 * sizeof *xyz);
     } else if (feature->kind[s] == TM_ON_CURVE) {
@@ -47,14 +47,15 @@ static void normal_at(const tm_surface *surface, const tm_surface_point *at,
                        surface->xyz[t[2]]);
 }
 
-void tm_feature_cut_wide(const tm_feature *feature, tm_skin *skin,
+void tm_feature_cut_wide(const tm_feature *feature, tm_interior_boundary *boundary,
                          const tm_octree *octree, const tm_surface *surface,
                          const uint8_t *on_path, const tm_surface_point *at)
 {
     const double wide = -0.6; /* the cosine of 127° */
-    for (size_t f = 0; f < skin->faces; f++) {
+    for (size_t f = 0; f < boundary->faces; f++) {
         double widest = wide;
-        if (on_path[f] == 0 || skin->cut[f] != TM_UNCUT || tm_skin_corners(skin, f) != 4)
+        if (on_path[f] == 0 || boundary->cut[f] != TM_UNCUT ||
+            tm_boundary_face_corners(boundary, f) != 4)
             continue;
         for (unsigned i = 0; i < 4; i++) {
             const unsigned before = (i + 3) % 4, after = (i + 1) % 4;
@@ -62,14 +63,14 @@ void tm_feature_cut_wide(const tm_feature *feature, tm_skin *skin,
             double normal[3];
             if (!(on_path[f] >> i & 1) || !(on_path[f] >> before & 1))
                 continue;
-            place_of(feature, skin, octree, surface, skin->face[f][before], p[0]);
-            place_of(feature, skin, octree, surface, skin->face[f][i], p[1]);
-            place_of(feature, skin, octree, surface, skin->face[f][after], p[2]);
-            normal_at(surface, &at[skin->face[f][(i + 2) % 4]], normal);
+            place_of(feature, boundary, octree, surface, boundary->face[f][before], p[0]);
+            place_of(feature, boundary, octree, surface, boundary->face[f][i], p[1]);
+            place_of(feature, boundary, octree, surface, boundary->face[f][after], p[2]);
+            normal_at(surface, &at[boundary->face[f][(i + 2) % 4]], normal);
             const double cosine = cosine_at(p[0], p[1], p[2], normal);
             if (cosine < widest) {
                 widest = cosine;
-                skin->cut[f] = i % 2 ? TM_CUT_13 : TM_CUT_02;
+                boundary->cut[f] = i % 2 ? TM_CUT_13 : TM_CUT_02;
             }
         }
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Faces of the skin that paths would flatten. */
+/* Faces of the interior boundary that paths would flatten. */
 #ifndef TM_LAYER_FEATURE_CUT_H
 #define TM_LAYER_FEATURE_CUT_H
 
@@ -9,7 +9,7 @@
  * the node where they do, so that each half has half of the angle. on_path and at as in
  * feature_region.h, which must be done before: these diagonals are on no path. O(faces).
  */
-void tm_feature_cut_wide(const tm_feature *feature, tm_skin *skin,
+void tm_feature_cut_wide(const tm_feature *feature, tm_interior_boundary *boundary,
                          const tm_octree *octree, const tm_surface *surface,
                          const uint8_t *on_path, const tm_surface_point *at);
 

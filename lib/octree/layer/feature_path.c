@@ -19,39 +19,43 @@ static tm_status append(tm_path_finder *p, uint32_t s, tm_error *error)
 }
 
 /* A face that has both nodes; the next one after `last`, which is TM_NONE at first. */
-static uint32_t common_face(const tm_skin *skin, uint32_t s, uint32_t t, uint32_t last)
+static uint32_t common_face(const tm_interior_boundary *boundary, uint32_t s, uint32_t t,
+                            uint32_t last)
 {
     bool past = last == TM_NONE;
-    for (size_t i = skin->around_start[s]; i < skin->around_start[s + 1]; i++) {
-        const uint32_t f = skin->around[i];
+    for (size_t i = boundary->around_start[s]; i < boundary->around_start[s + 1]; i++) {
+        const uint32_t f = boundary->around[i];
         if (!past) {
             past = f == last;
             continue;
         }
-        for (unsigned c = 0; c < tm_skin_corners(skin, f); c++)
-            if (skin->face[f][c] == t)
+        for (unsigned c = 0; c < tm_boundary_face_corners(boundary, f); c++)
+            if (boundary->face[f][c] == t)
                 return f;
     }
     return TM_NONE;
 }
 
 /* Whether two nodes of a face are not neighbours on its border. */
-static bool is_diagonal(const tm_skin *skin, size_t f, uint32_t s, uint32_t t)
+static bool is_diagonal(const tm_interior_boundary *boundary, size_t f, uint32_t s,
+                        uint32_t t)
 {
-    return tm_skin_corners(skin, f) == 4 &&
-           (tm_skin_corner(skin, f, s) + 2) % 4 == tm_skin_corner(skin, f, t);
+    return tm_boundary_face_corners(boundary, f) == 4 &&
+           (tm_boundary_face_corner(boundary, f, s) + 2) % 4 ==
+               tm_boundary_face_corner(boundary, f, t);
 }
 
 /* Whether the path can go from s to t at once, where both are in a face with what is now
  * between them. */
-static bool can_cut_short(const tm_skin *skin, uint32_t s, uint32_t between, uint32_t t)
+static bool can_cut_short(const tm_interior_boundary *boundary, uint32_t s,
+                          uint32_t between, uint32_t t)
 {
-    for (uint32_t f = common_face(skin, s, t, TM_NONE); f != TM_NONE;
-         f = common_face(skin, s, t, f)) {
+    for (uint32_t f = common_face(boundary, s, t, TM_NONE); f != TM_NONE;
+         f = common_face(boundary, s, t, f)) {
         bool has = false;
-        for (unsigned c = 0; c < tm_skin_corners(skin, f); c++)
-            has |= skin->face[f][c] == between;
-        if (has && (!is_diagonal(skin, f, s, t) || skin->cut[f] == TM_UNCUT))
+        for (unsigned c = 0; c < tm_boundary_face_corners(boundary, f); c++)
+            has |= boundary->face[f][c] == between;
+        if (has && (!is_diagonal(boundary, f, s, t) || boundary->cut[f] == TM_UNCUT))
             return true;
     }
     return false;
@@ -91,7 +95,7 @@ static tm_status take(tm_path_finder *p, const tm_path_stop *from, const tm_path
     for (size_t i = begin; i < p->path_count; i++) {
         const uint32_t previous = kept > begin ? p->path[kept - 1] : from->node;
         if (i + 1 < p->path_count &&
-            can_cut_short(p->skin, previous, p->path[i], p->path[i + 1]))
+            can_cut_short(p->boundary, previous, p->path[i], p->path[i + 1]))
             continue;
         p->path[kept++] = p->path[i];
     }
@@ -106,16 +110,17 @@ static tm_status cut_faces(tm_path_finder *p, size_t begin, tm_error *error)
 {
     for (size_t i = begin; i < p->path_count; i++) {
         const uint32_t s = p->path[i - 1], t = p->path[i];
-        const uint32_t f = common_face(p->skin, s, t, TM_NONE);
-        if (f == TM_NONE || !is_diagonal(p->skin, f, s, t) ||
-            common_face(p->skin, s, t, f) != TM_NONE)
+        const uint32_t f = common_face(p->boundary, s, t, TM_NONE);
+        if (f == TM_NONE || !is_diagonal(p->boundary, f, s, t) ||
+            common_face(p->boundary, s, t, f) != TM_NONE)
             continue;
         void *cuts = tm_grow(p->cuts, &p->cut_room, p->cut_count + 1, sizeof *p->cuts);
         if (!cuts)
             return tm_fail_memory(error);
         p->cuts = cuts;
         p->cuts[p->cut_count++] = f;
-        p->skin->cut[f] = tm_skin_corner(p->skin, f, s) % 2 ? TM_CUT_13 : TM_CUT_02;
+        p->boundary->cut[f] =
+            tm_boundary_face_corner(p->boundary, f, s) % 2 ? TM_CUT_13 : TM_CUT_02;
     }
     return TM_OK;
 }
@@ -128,16 +133,16 @@ static void release(tm_path_finder *p)
     for (unsigned i = 0; i < p->stops; i++)
         take_off_curve(p, p->stop[i].node);
     for (size_t i = 0; i < p->cut_count; i++)
-        p->skin->cut[p->cuts[i]] = TM_UNCUT;
+        p->boundary->cut[p->cuts[i]] = TM_UNCUT;
 }
 
 static void mark_edge(tm_path_finder *p, uint32_t s, uint32_t t)
 {
-    for (uint32_t f = common_face(p->skin, s, t, TM_NONE); f != TM_NONE;
-         f = common_face(p->skin, s, t, f)) {
-        const unsigned k = tm_skin_corners(p->skin, f);
-        const unsigned i = tm_skin_corner(p->skin, f, s),
-                       j = tm_skin_corner(p->skin, f, t);
+    for (uint32_t f = common_face(p->boundary, s, t, TM_NONE); f != TM_NONE;
+         f = common_face(p->boundary, s, t, f)) {
+        const unsigned k = tm_boundary_face_corners(p->boundary, f);
+        const unsigned i = tm_boundary_face_corner(p->boundary, f, s),
+                       j = tm_boundary_face_corner(p->boundary, f, t);
         if ((i + 1) % k == j)
             p->on_path[f] |= (uint8_t)(1u << i);
         else if ((j + 1) % k == i)
@@ -200,7 +205,7 @@ static uint32_t node_near(const tm_path_finder *p, double param)
     place_on_curve(p, param, point);
     double distance2;
     const uint32_t s =
-        tm_skin_cells_nearest(p->cells, point, p->feature->kind, &distance2);
+        tm_boundary_cells_nearest(p->cells, point, p->feature->kind, &distance2);
     const double reach = s == TM_NONE ? 0 : tm_path_tube * p->size[s];
     return distance2 <= reach * reach ? s : TM_NONE;
 }

@@ -12,7 +12,7 @@ typedef struct {
 } vote;
 
 typedef struct {
-    const tm_skin *skin;
+    const tm_interior_boundary *boundary;
     const uint8_t *on_path;
     uint32_t *parent; /* [2 * faces]: halves of faces as sets; half 1 only where cut */
 } regions;
@@ -20,7 +20,7 @@ typedef struct {
 /* The half of face f at its edge from corner i. */
 static uint32_t half_at(const regions *r, size_t f, unsigned i)
 {
-    const unsigned cut = r->skin->cut[f];
+    const unsigned cut = r->boundary->cut[f];
     if (cut == TM_UNCUT)
         return (uint32_t)(2 * f);
     const unsigned turned = cut == TM_CUT_02 ? i : (i + 3) % 4;
@@ -30,14 +30,14 @@ static uint32_t half_at(const regions *r, size_t f, unsigned i)
 /* Joins the halves on both sides of each edge that is on no path. */
 static void join_edge(regions *r, size_t f, unsigned i)
 {
-    const tm_skin *skin = r->skin;
-    const unsigned k = tm_skin_corners(skin, f);
-    const uint32_t a = skin->face[f][i], b = skin->face[f][(i + 1) % k];
-    for (size_t j = skin->around_start[a]; j < skin->around_start[a + 1]; j++) {
-        const uint32_t g = skin->around[j];
-        const unsigned n = tm_skin_corners(skin, g);
+    const tm_interior_boundary *boundary = r->boundary;
+    const unsigned k = tm_boundary_face_corners(boundary, f);
+    const uint32_t a = boundary->face[f][i], b = boundary->face[f][(i + 1) % k];
+    for (size_t j = boundary->around_start[a]; j < boundary->around_start[a + 1]; j++) {
+        const uint32_t g = boundary->around[j];
+        const unsigned n = tm_boundary_face_corners(boundary, g);
         for (unsigned c = 0; g != f && c < n; c++)
-            if (skin->face[g][c] == b && skin->face[g][(c + 1) % n] == a)
+            if (boundary->face[g][c] == b && boundary->face[g][(c + 1) % n] == a)
                 tm_set_unite(r->parent, half_at(r, f, i), half_at(r, g, c));
     }
 }
@@ -76,32 +76,33 @@ static void count_votes(const vote *votes, size_t count, uint32_t *winner)
 /* A region of a node that is on no path: all its faces are in it. */
 static uint32_t region_of(const regions *r, uint32_t s)
 {
-    const uint32_t f = r->skin->around[r->skin->around_start[s]];
-    return tm_set_root(r->parent, half_at(r, f, tm_skin_corner(r->skin, f, s)));
+    const uint32_t f = r->boundary->around[r->boundary->around_start[s]];
+    return tm_set_root(r->parent,
+                       half_at(r, f, tm_boundary_face_corner(r->boundary, f, s)));
 }
 
 static void vote_all(const regions *r, tm_feature *feature, const tm_surface *surface,
                      const tm_surface_point *at, vote *votes, uint32_t *winner)
 {
     size_t count = 0;
-    for (uint32_t s = 0; s < r->skin->nodes; s++)
+    for (uint32_t s = 0; s < r->boundary->nodes; s++)
         if (feature->kind[s] == TM_ON_PATCH)
             votes[count++] = (vote){region_of(r, s), surface->patch[at[s].triangle]};
     if (count > 0)
         qsort(votes, count, sizeof *votes, compare_votes);
     count_votes(votes, count, winner);
-    for (uint32_t s = 0; s < r->skin->nodes; s++)
+    for (uint32_t s = 0; s < r->boundary->nodes; s++)
         if (feature->kind[s] == TM_ON_PATCH)
             feature->of[s] = winner[region_of(r, s)];
 }
 
-tm_status tm_feature_regions(tm_feature *feature, const tm_skin *skin,
+tm_status tm_feature_regions(tm_feature *feature, const tm_interior_boundary *boundary,
                              const tm_surface *surface, const uint8_t *on_path,
                              const tm_surface_point *at, tm_error *error)
 {
-    const size_t halves = 2 * skin->faces;
-    regions r = {skin, on_path, tm_new(halves, sizeof *r.parent)};
-    vote *votes = tm_new(skin->nodes, sizeof *votes);
+    const size_t halves = 2 * boundary->faces;
+    regions r = {boundary, on_path, tm_new(halves, sizeof *r.parent)};
+    vote *votes = tm_new(boundary->nodes, sizeof *votes);
     uint32_t *winner = tm_new(halves, sizeof *winner);
     if (!r.parent || !votes || !winner) {
         free(r.parent);
@@ -111,8 +112,8 @@ tm_status tm_feature_regions(tm_feature *feature, const tm_skin *skin,
     }
     for (size_t h = 0; h < halves; h++)
         r.parent[h] = (uint32_t)h;
-    for (size_t f = 0; f < skin->faces; f++)
-        for (unsigned i = 0; i < tm_skin_corners(skin, f); i++)
+    for (size_t f = 0; f < boundary->faces; f++)
+        for (unsigned i = 0; i < tm_boundary_face_corners(boundary, f); i++)
             if (!(on_path[f] & 1u << i))
                 join_edge(&r, f, i);
     vote_all(&r, feature, surface, at, votes, winner);

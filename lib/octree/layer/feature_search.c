@@ -51,7 +51,7 @@ static tm_path_visit *look_at(tm_path_finder *p, uint32_t s)
     double xyz[3];
     double closest[3];
     size_t segment;
-    tm_skin_place(p->skin, p->octree, s, xyz);
+    tm_boundary_node_point(p->boundary, p->octree, s, xyz);
     tm_surface_closest_on_curve(p->surface, curve, xyz, closest, &segment);
     const uint32_t begin =
         p->surface->curve_node[p->surface->curve_start[curve] + segment];
@@ -83,15 +83,16 @@ static bool may_pass(const tm_path_finder *p, const tm_path_visit *v, uint32_t s
 
 /* The neighbours of s: along edges and, of faces that are not cut, diagonals. A
  * quadrilateral's other three corners; each comes up to twice. */
-static unsigned face_neighbours(const tm_skin *skin, size_t f, uint32_t s, uint32_t to[3])
+static unsigned face_neighbours(const tm_interior_boundary *boundary, size_t f,
+                                uint32_t s, uint32_t to[3])
 {
-    const unsigned k = tm_skin_corners(skin, f);
-    const uint32_t *face = skin->face[f];
-    const unsigned i = tm_skin_corner(skin, f, s);
+    const unsigned k = tm_boundary_face_corners(boundary, f);
+    const uint32_t *face = boundary->face[f];
+    const unsigned i = tm_boundary_face_corner(boundary, f, s);
     to[0] = face[(i + 1) % k];
     to[1] = face[(i + k - 1) % k];
     to[2] = face[(i + 2) % k];
-    return k == 4 && skin->cut[f] == TM_UNCUT ? 3 : 2;
+    return k == 4 && boundary->cut[f] == TM_UNCUT ? 3 : 2;
 }
 
 static tm_status relax(tm_path_finder *p, uint32_t s, uint32_t to, tm_error *error)
@@ -101,8 +102,8 @@ static tm_status relax(tm_path_finder *p, uint32_t s, uint32_t to, tm_error *err
     const double nearness = 0.1; /* edges on the curve are not free */
     double here[3];
     double there[3];
-    tm_skin_place(p->skin, p->octree, s, here);
-    tm_skin_place(p->skin, p->octree, to, there);
+    tm_boundary_node_point(p->boundary, p->octree, s, here);
+    tm_boundary_node_point(p->boundary, p->octree, to, there);
     const double edge = sqrt(tm_distance2(here, there));
     const double size = fmin(p->size[s], p->size[to]);
     const double off = (a->distance2 + b->distance2) / (size * size);
@@ -139,10 +140,11 @@ tm_status tm_path_search(tm_path_finder *p, const tm_path_stop *from,
             *found = true;
             break;
         }
-        for (size_t i = p->skin->around_start[s];
-             status == TM_OK && i < p->skin->around_start[s + 1]; i++) {
+        for (size_t i = p->boundary->around_start[s];
+             status == TM_OK && i < p->boundary->around_start[s + 1]; i++) {
             uint32_t next[3];
-            const unsigned n = face_neighbours(p->skin, p->skin->around[i], s, next);
+            const unsigned n =
+                face_neighbours(p->boundary, p->boundary->around[i], s, next);
             for (unsigned j = 0; status == TM_OK && j < n; j++) {
                 const tm_path_visit *v = look_at(p, next[j]);
                 if (next[j] == to->node || may_pass(p, v, next[j], from, to))

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The shortest way along a curve over edges and diagonals of a skin, where an edge costs
- * the length of curve that it runs along and more the farther it is from it (E. W.
- * Dijkstra, 1959). */
+/* The shortest way along a curve over edges and diagonals of an interior boundary, where
+ * an edge costs the length of curve that it runs along and more the farther it is from it
+ * (E. W. Dijkstra, 1959). */
 #ifndef TM_LAYER_FEATURE_SEARCH_H
 #define TM_LAYER_FEATURE_SEARCH_H
 
@@ -24,8 +24,8 @@ typedef struct tm_path_step {
     uint32_t node;
 } tm_path_step;
 
-/* Where the path of a curve begins, passes and ends: a skin node, and the length along
- * the curve up to there. */
+/* Where the path of a curve begins, passes and ends: an interior boundary node, and the
+ * length along the curve up to there. */
 typedef struct tm_path_stop {
     uint32_t node;
     double param;
@@ -36,11 +36,12 @@ enum { TM_PATH_STOPS = 4 };
 typedef struct tm_path_finder {
     const tm_octree *octree;
     const tm_surface *surface;
-    const tm_skin_cells *cells;
-    tm_skin *skin;
+    const tm_boundary_cells *cells;
+    tm_interior_boundary *boundary;
     tm_feature *feature;
-    const double *size; /* [nodes of the skin]: side of the smallest leaf there */
-    uint8_t *on_path;   /* [faces]: bit i where the edge from corner i is on one */
+    const double
+        *size; /* [nodes of the interior boundary]: side of the smallest leaf there */
+    uint8_t *on_path; /* [faces]: bit i where the edge from corner i is on one */
     /* of the search that is under way */
     tm_path_visit *visit; /* [nodes] */
     uint32_t round;

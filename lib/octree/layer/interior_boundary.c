@@ -9,19 +9,19 @@ enum { LEAF_FACES = 6, LEAF_EDGES = 12 };
 
 typedef struct {
     const tm_octree *octree;
-    const tm_solid *solid;
-    tm_skin *skin;
-    uint32_t *skin_node; /* [nodes of the octree]: TM_NONE where it is none */
+    const tm_interior *interior;
+    tm_interior_boundary *boundary;
+    uint32_t *boundary_node; /* [nodes of the octree]: TM_NONE where it is none */
     size_t face_room, leaf_room, piece_room;
 } finder;
 
-tm_leaf_state tm_solid_leaf_state(const tm_solid *solid, const tm_octree *octree,
-                                  size_t leaf)
+tm_leaf_state tm_interior_leaf_state(const tm_interior *interior, const tm_octree *octree,
+                                     size_t leaf)
 {
     tm_leaf_state state = 0;
     for (int i = 0; i < TM_LEAF_STATE_BITS; i++) {
         const uint32_t node = octree->node[leaf][TM_LEAF_EDGE + i];
-        if (node != TM_NONE && solid->used[node])
+        if (node != TM_NONE && interior->used[node])
             state |= 1u << i;
     }
     return state;
@@ -31,21 +31,21 @@ tm_leaf_state tm_solid_leaf_state(const tm_solid *solid, const tm_octree *octree
 static tm_status number_nodes(finder *find, tm_error *error)
 {
     const tm_octree *octree = find->octree;
-    const tm_solid *solid = find->solid;
-    tm_skin *skin = find->skin;
-    find->skin_node = tm_new(octree->nodes, sizeof *find->skin_node);
-    if (!find->skin_node)
+    const tm_interior *interior = find->interior;
+    tm_interior_boundary *boundary = find->boundary;
+    find->boundary_node = tm_new(octree->nodes, sizeof *find->boundary_node);
+    if (!find->boundary_node)
         return tm_fail_memory(error);
     for (size_t n = 0; n < octree->nodes; n++) {
-        const bool on_skin = solid->used[n] && solid->mask[n] != TM_ALL_OCTANTS;
-        find->skin_node[n] = on_skin ? (uint32_t)skin->nodes++ : TM_NONE;
+        const bool on_boundary = interior->used[n] && interior->mask[n] != TM_ALL_OCTANTS;
+        find->boundary_node[n] = on_boundary ? (uint32_t)boundary->nodes++ : TM_NONE;
     }
-    skin->grid_node = tm_new(skin->nodes, sizeof *skin->grid_node);
-    if (!skin->grid_node)
+    boundary->grid_node = tm_new(boundary->nodes, sizeof *boundary->grid_node);
+    if (!boundary->grid_node)
         return tm_fail_memory(error);
     for (size_t n = 0; n < octree->nodes; n++)
-        if (find->skin_node[n] != TM_NONE)
-            skin->grid_node[find->skin_node[n]] = (uint32_t)n;
+        if (find->boundary_node[n] != TM_NONE)
+            boundary->grid_node[find->boundary_node[n]] = (uint32_t)n;
     return TM_OK;
 }
 
@@ -53,10 +53,10 @@ static tm_status number_nodes(finder *find, tm_error *error)
 static bool is_open(const finder *find, size_t leaf, unsigned f, unsigned place)
 {
     const uint32_t node = find->octree->node[leaf][place];
-    const unsigned own = tm_place_octants[place];
+    const unsigned own = tm_point_octants[place];
     const unsigned step = 1u << f / 2;
     const unsigned beyond = f % 2 ? own << step : own >> step;
-    return !(find->solid->mask[node] & beyond);
+    return !(find->interior->mask[node] & beyond);
 }
 
 /* A corner of the leaf on face f that a piece has, or where it has none, any one: then
@@ -72,44 +72,45 @@ static unsigned corner_of(unsigned f, const tm_piece *piece)
 static tm_status add_face(finder *find, size_t leaf, const tm_piece *piece,
                           unsigned which, tm_error *error)
 {
-    tm_skin *skin = find->skin;
-    void *face =
-        tm_grow(skin->face, &find->face_room, skin->faces + 1, sizeof *skin->face);
+    tm_interior_boundary *boundary = find->boundary;
+    void *face = tm_grow(boundary->face, &find->face_room, boundary->faces + 1,
+                         sizeof *boundary->face);
     if (!face)
         return tm_fail_memory(error);
-    skin->face = face;
-    void *leaves =
-        tm_grow(skin->leaf, &find->leaf_room, skin->faces + 1, sizeof *skin->leaf);
+    boundary->face = face;
+    void *leaves = tm_grow(boundary->leaf, &find->leaf_room, boundary->faces + 1,
+                           sizeof *boundary->leaf);
     if (!leaves)
         return tm_fail_memory(error);
-    skin->leaf = leaves;
-    void *pieces =
-        tm_grow(skin->piece, &find->piece_room, skin->faces + 1, sizeof *skin->piece);
+    boundary->leaf = leaves;
+    void *pieces = tm_grow(boundary->piece, &find->piece_room, boundary->faces + 1,
+                           sizeof *boundary->piece);
     if (!pieces)
         return tm_fail_memory(error);
-    skin->piece = pieces;
-    skin->piece[skin->faces] = (uint8_t)which;
-    uint32_t *corner = skin->face[skin->faces];
+    boundary->piece = pieces;
+    boundary->piece[boundary->faces] = (uint8_t)which;
+    uint32_t *corner = boundary->face[boundary->faces];
     corner[3] = TM_NONE;
     for (unsigned i = 0; i < piece->k; i++)
-        corner[i] = find->skin_node[find->octree->node[leaf][piece->place[i]]];
-    skin->leaf[skin->faces++] = (uint32_t)leaf;
+        corner[i] = find->boundary_node[find->octree->node[leaf][piece->place[i]]];
+    boundary->leaf[boundary->faces++] = (uint32_t)leaf;
     return TM_OK;
 }
 
-static bool has_skin(const finder *find, size_t leaf)
+static bool has_boundary(const finder *find, size_t leaf)
 {
     for (int p = 0; p < TM_LEAF_EDGE; p++)
-        if (find->solid->mask[find->octree->node[leaf][p]] != TM_ALL_OCTANTS)
+        if (find->interior->mask[find->octree->node[leaf][p]] != TM_ALL_OCTANTS)
             return true;
     return false;
 }
 
 static tm_status add_faces_of(finder *find, size_t leaf, tm_error *error)
 {
-    if (!has_skin(find, leaf))
+    if (!has_boundary(find, leaf))
         return TM_OK;
-    const tm_leaf_state state = tm_solid_leaf_state(find->solid, find->octree, leaf);
+    const tm_leaf_state state =
+        tm_interior_leaf_state(find->interior, find->octree, leaf);
     for (unsigned f = 0; f < LEAF_FACES; f++) {
         tm_piece piece[TM_FACE_PIECES];
         const unsigned pieces = tm_face_pieces(state, f, piece);
@@ -126,48 +127,50 @@ static tm_status add_faces_of(finder *find, size_t leaf, tm_error *error)
 }
 
 /* The faces around each node. */
-static tm_status find_around(tm_skin *skin, tm_error *error)
+static tm_status find_around(tm_interior_boundary *boundary, tm_error *error)
 {
-    skin->around_start = calloc(skin->nodes + 2, sizeof *skin->around_start);
-    skin->around = tm_new(4 * skin->faces, sizeof *skin->around);
-    skin->cut = calloc(skin->faces + 1, sizeof *skin->cut);
-    if (!skin->around_start || !skin->around || !skin->cut)
+    boundary->around_start = calloc(boundary->nodes + 2, sizeof *boundary->around_start);
+    boundary->around = tm_new(4 * boundary->faces, sizeof *boundary->around);
+    boundary->cut = calloc(boundary->faces + 1, sizeof *boundary->cut);
+    if (!boundary->around_start || !boundary->around || !boundary->cut)
         return tm_fail_memory(error);
-    size_t *end = skin->around_start + 1; /* of the faces of a node, when all are in */
-    for (size_t f = 0; f < skin->faces; f++)
-        for (unsigned i = 0; i < tm_skin_corners(skin, f); i++)
-            end[skin->face[f][i] + 1]++;
-    for (size_t n = 0; n < skin->nodes; n++)
+    size_t *end =
+        boundary->around_start + 1; /* of the faces of a node, when all are in */
+    for (size_t f = 0; f < boundary->faces; f++)
+        for (unsigned i = 0; i < tm_boundary_face_corners(boundary, f); i++)
+            end[boundary->face[f][i] + 1]++;
+    for (size_t n = 0; n < boundary->nodes; n++)
         end[n + 1] += end[n];
-    for (size_t f = 0; f < skin->faces; f++)
-        for (unsigned i = 0; i < tm_skin_corners(skin, f); i++)
-            skin->around[end[skin->face[f][i]]++] = (uint32_t)f;
+    for (size_t f = 0; f < boundary->faces; f++)
+        for (unsigned i = 0; i < tm_boundary_face_corners(boundary, f); i++)
+            boundary->around[end[boundary->face[f][i]]++] = (uint32_t)f;
     return TM_OK;
 }
 
-tm_status tm_skin_find(tm_skin *skin, const tm_octree *octree, const tm_solid *solid,
-                       tm_error *error)
+tm_status tm_interior_boundary_find(tm_interior_boundary *boundary,
+                                    const tm_octree *octree, const tm_interior *interior,
+                                    tm_error *error)
 {
-    *skin = (tm_skin){0};
-    finder find = {.octree = octree, .solid = solid, .skin = skin};
+    *boundary = (tm_interior_boundary){0};
+    finder find = {.octree = octree, .interior = interior, .boundary = boundary};
     tm_status status = number_nodes(&find, error);
     for (size_t l = 0; status == TM_OK && l < octree->leaves; l++)
-        if (solid->chosen[l])
+        if (interior->chosen[l])
             status = add_faces_of(&find, l, error);
     if (status == TM_OK)
-        status = find_around(skin, error);
-    free(find.skin_node);
+        status = find_around(boundary, error);
+    free(find.boundary_node);
     return status;
 }
 
-void tm_skin_free(tm_skin *skin)
+void tm_interior_boundary_free(tm_interior_boundary *boundary)
 {
-    free(skin->grid_node);
-    free(skin->face);
-    free(skin->leaf);
-    free(skin->piece);
-    free(skin->cut);
-    free(skin->around_start);
-    free(skin->around);
-    *skin = (tm_skin){0};
+    free(boundary->grid_node);
+    free(boundary->face);
+    free(boundary->leaf);
+    free(boundary->piece);
+    free(boundary->cut);
+    free(boundary->around_start);
+    free(boundary->around);
+    *boundary = (tm_interior_boundary){0};
 }

@@ -10,50 +10,54 @@
 /* How a quadrilateral is cut into triangles, by the diagonal from its corner 0 or 1. */
 typedef enum tm_cut { TM_UNCUT, TM_CUT_02, TM_CUT_13 } tm_cut;
 
-typedef struct tm_skin {
+typedef struct tm_interior_boundary {
     size_t nodes;
     uint32_t *grid_node; /* [nodes]: the octree's */
     size_t faces;
-    uint32_t (*face)[4];  /* skin nodes; counter-clockwise seen from outside; TM_NONE as
-                             the fourth of a triangle */
+    uint32_t (*face)[4];  /* interior boundary nodes; counter-clockwise seen from outside;
+                             TM_NONE as  the fourth of a triangle */
     uint32_t *leaf;       /* [faces]: the chosen one that it is of, ascending */
     uint8_t *piece;       /* [faces]: it is piece i of the leaf's face f (tm_face_pieces):
                              TM_FACE_PIECES * f + i, ascending for each leaf */
     uint8_t *cut;         /* [faces]: tm_cut; TM_UNCUT at first */
     size_t *around_start; /* [nodes + 1] */
     uint32_t *around;     /* the faces at node n: around[around_start[n]] … */
-} tm_skin;
+} tm_interior_boundary;
 
 /* The corners of a face: 3 or 4. */
-static inline unsigned tm_skin_corners(const tm_skin *skin, size_t f)
+static inline unsigned tm_boundary_face_corners(const tm_interior_boundary *boundary,
+                                                size_t f)
 {
-    return skin->face[f][3] == TM_NONE ? 3 : 4;
+    return boundary->face[f][3] == TM_NONE ? 3 : 4;
 }
 
 /* The corner of a face that node s is, which it must have. */
-static inline unsigned tm_skin_corner(const tm_skin *skin, size_t f, uint32_t s)
+static inline unsigned tm_boundary_face_corner(const tm_interior_boundary *boundary,
+                                               size_t f, uint32_t s)
 {
     unsigned i = 0;
-    while (skin->face[f][i] != s)
+    while (boundary->face[f][i] != s)
         i++;
     return i;
 }
 
 /* The place of a node on the lattice. */
-static inline void tm_skin_place(const tm_skin *skin, const tm_octree *octree, size_t s,
-                                 double xyz[3])
+static inline void tm_boundary_node_point(const tm_interior_boundary *boundary,
+                                          const tm_octree *octree, size_t s,
+                                          double xyz[3])
 {
-    tm_octree_point(octree, octree->grid[skin->grid_node[s]], xyz);
+    tm_octree_point(octree, octree->grid[boundary->grid_node[s]], xyz);
 }
 
 /* The state of a chosen leaf: the middles that the mesh has. */
-tm_leaf_state tm_solid_leaf_state(const tm_solid *solid, const tm_octree *octree,
-                                  size_t leaf);
+tm_leaf_state tm_interior_leaf_state(const tm_interior *interior, const tm_octree *octree,
+                                     size_t leaf);
 
 /* Finds it. Nodes are numbered in the octree's order, faces leaf by leaf.
- * TM_ERROR_SYSTEM where memory is out. *skin is to be freed, after an error too. */
-tm_status tm_skin_find(tm_skin *skin, const tm_octree *octree, const tm_solid *solid,
-                       tm_error *error);
-void tm_skin_free(tm_skin *skin);
+ * TM_ERROR_SYSTEM where memory is out. *boundary is to be freed, after an error too. */
+tm_status tm_interior_boundary_find(tm_interior_boundary *boundary,
+                                    const tm_octree *octree, const tm_interior *interior,
+                                    tm_error *error);
+void tm_interior_boundary_free(tm_interior_boundary *boundary);
 
 #endif

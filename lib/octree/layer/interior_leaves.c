@@ -24,43 +24,44 @@ static bool touch(const tm_octree *octree, const tm_leaf *a, const tm_leaf *b)
 
 /* Between two leaves that touch and that the surface does not meet there is none of it,
  * so the second needs no test. */
-static void classify(tm_solid *solid, const tm_octree *octree, const tm_surface *surface)
+static void classify(tm_interior *interior, const tm_octree *octree,
+                     const tm_surface *surface)
 {
     for (size_t l = 0; l < octree->leaves; l++) {
         const tm_leaf *leaf = &octree->leaf[l];
         if (l > 0 && !leaf->crossed && !leaf[-1].crossed &&
             touch(octree, leaf, leaf - 1)) {
-            solid->chosen[l] = solid->chosen[l - 1];
+            interior->chosen[l] = interior->chosen[l - 1];
             continue;
         }
         double centre[3];
         tm_leaf_centre(octree, leaf, centre);
-        solid->chosen[l] = tm_surface_has_inside(surface, centre);
+        interior->chosen[l] = tm_surface_has_inside(surface, centre);
     }
 }
 
 /* Sets the octants of a leaf's nodes to whether it is chosen. */
-static void put_in_masks(tm_solid *solid, const tm_octree *octree, size_t l)
+static void put_in_masks(tm_interior *interior, const tm_octree *octree, size_t l)
 {
     for (int p = 0; p < TM_LEAF_NODES; p++) {
         const uint32_t node = octree->node[l][p];
         if (node == TM_NONE)
             continue;
-        if (solid->chosen[l])
-            solid->mask[node] |= tm_place_octants[p];
+        if (interior->chosen[l])
+            interior->mask[node] |= tm_point_octants[p];
         else
-            solid->mask[node] &= (tm_octant_mask)~tm_place_octants[p];
+            interior->mask[node] &= (tm_octant_mask)~tm_point_octants[p];
     }
 }
 
-void tm_solid_flip(tm_solid *solid, const tm_octree *octree, size_t leaf)
+void tm_interior_flip(tm_interior *interior, const tm_octree *octree, size_t leaf)
 {
-    solid->chosen[leaf] = !solid->chosen[leaf];
-    if (solid->chosen[leaf])
-        solid->filled++;
+    interior->chosen[leaf] = !interior->chosen[leaf];
+    if (interior->chosen[leaf])
+        interior->filled++;
     else
-        solid->removed++;
-    put_in_masks(solid, octree, leaf);
+        interior->removed++;
+    put_in_masks(interior, octree, leaf);
 }
 
 /* A leaf at a node whose mask is bad. */
@@ -72,7 +73,7 @@ typedef struct {
 typedef struct {
     const tm_octree *octree;
     const tm_surface *surface;
-    tm_solid *solid;
+    tm_interior *interior;
     bool *bad; /* [nodes] */
     size_t contacts, room;
     contact *contact;
@@ -92,7 +93,7 @@ static tm_status find_contacts(cleaner *c, tm_error *error)
 {
     c->contacts = 0;
     for (size_t n = 0; n < c->octree->nodes; n++)
-        c->bad[n] = !tm_octant_mask_is_good(c->solid->mask[n]);
+        c->bad[n] = !tm_octant_mask_is_good(c->interior->mask[n]);
     for (size_t l = 0; l < c->octree->leaves; l++) {
         for (int p = 0; p < TM_LEAF_NODES; p++) {
             const uint32_t node = c->octree->node[l][p];
@@ -135,8 +136,8 @@ static int harm(const cleaner *c, size_t l)
         const uint32_t node = c->octree->node[l][p];
         if (node == TM_NONE)
             continue;
-        const tm_octant_mask now = c->solid->mask[node];
-        const tm_octant_mask then = now ^ tm_place_octants[p];
+        const tm_octant_mask now = c->interior->mask[node];
+        const tm_octant_mask then = now ^ tm_point_octants[p];
         more += !tm_octant_mask_is_good(then) - !tm_octant_mask_is_good(now);
     }
     return more;
@@ -151,7 +152,7 @@ static void mend(cleaner *c, const contact *around, size_t count, bool only_remo
     double least = INFINITY;
     for (size_t i = 0; i < count; i++) {
         const size_t l = around[i].leaf;
-        if (only_remove && !c->solid->chosen[l])
+        if (only_remove && !c->interior->chosen[l])
             continue;
         const double cost = depth(c, l) + good * harm(c, l);
         if (cost < least) {
@@ -160,7 +161,7 @@ static void mend(cleaner *c, const contact *around, size_t count, bool only_remo
         }
     }
     if (best < count)
-        tm_solid_flip(c->solid, c->octree, around[best].leaf);
+        tm_interior_flip(c->interior, c->octree, around[best].leaf);
 }
 
 static tm_status clean(cleaner *c, tm_error *error)
@@ -173,7 +174,7 @@ static tm_status clean(cleaner *c, tm_error *error)
             const uint32_t node = c->contact[i].node;
             for (next = i; next < c->contacts && c->contact[next].node == node;)
                 next++;
-            if (!tm_octant_mask_is_good(c->solid->mask[node]))
+            if (!tm_octant_mask_is_good(c->interior->mask[node]))
                 mend(c, &c->contact[i], next - i, round >= FREE_ROUNDS);
         }
     }
@@ -181,68 +182,68 @@ static tm_status clean(cleaner *c, tm_error *error)
 
 /* The nodes that the mesh has. A face of which a part is shared with a smaller chosen
  * leaf has its centre, and is then divided in four. */
-void tm_solid_find_used(tm_solid *solid, const tm_octree *octree)
+void tm_interior_find_used(tm_interior *interior, const tm_octree *octree)
 {
-    solid->count = 0;
-    memset(solid->used, false, octree->nodes);
+    interior->count = 0;
+    memset(interior->used, false, octree->nodes);
     for (size_t l = 0; l < octree->leaves; l++) {
-        solid->count += solid->chosen[l];
-        for (int p = 0; solid->chosen[l] && p < TM_LEAF_EDGE; p++)
-            solid->used[octree->node[l][p]] = true;
+        interior->count += interior->chosen[l];
+        for (int p = 0; interior->chosen[l] && p < TM_LEAF_EDGE; p++)
+            interior->used[octree->node[l][p]] = true;
     }
     for (size_t l = 0; l < octree->leaves; l++) {
-        for (int f = 0; solid->chosen[l] && f < 6; f++) {
+        for (int f = 0; interior->chosen[l] && f < 6; f++) {
             const uint32_t centre = octree->node[l][TM_LEAF_FACE + f];
-            if (centre == TM_NONE || !solid->used[centre])
+            if (centre == TM_NONE || !interior->used[centre])
                 continue;
             for (int i = 0; i < 4; i++)
-                solid->used[octree->node[l][TM_LEAF_EDGE + tm_face_edge[f][i]]] = true;
+                interior->used[octree->node[l][TM_LEAF_EDGE + tm_face_edge[f][i]]] = true;
         }
     }
 }
 
-tm_status tm_solid_choose(tm_solid *solid, const tm_octree *octree,
-                          const tm_surface *surface, tm_error *error)
+tm_status tm_interior_choose(tm_interior *interior, const tm_octree *octree,
+                             const tm_surface *surface, tm_error *error)
 {
-    *solid = (tm_solid){
-        .chosen = calloc(octree->leaves, sizeof *solid->chosen),
-        .mask = calloc(octree->nodes, sizeof *solid->mask),
-        .used = calloc(octree->nodes, sizeof *solid->used),
+    *interior = (tm_interior){
+        .chosen = calloc(octree->leaves, sizeof *interior->chosen),
+        .mask = calloc(octree->nodes, sizeof *interior->mask),
+        .used = calloc(octree->nodes, sizeof *interior->used),
     };
-    if (!solid->chosen || !solid->mask || !solid->used)
+    if (!interior->chosen || !interior->mask || !interior->used)
         return tm_fail_memory(error);
-    classify(solid, octree, surface);
+    classify(interior, octree, surface);
     for (size_t l = 0; l < octree->leaves; l++)
-        if (solid->chosen[l])
-            put_in_masks(solid, octree, l);
+        if (interior->chosen[l])
+            put_in_masks(interior, octree, l);
     cleaner c = {.octree = octree,
                  .surface = surface,
-                 .solid = solid,
+                 .interior = interior,
                  .bad = malloc(octree->nodes)};
     tm_status status = c.bad ? clean(&c, error) : tm_fail_memory(error);
     free(c.bad);
     free(c.contact);
     if (status == TM_OK)
-        tm_solid_find_used(solid, octree);
+        tm_interior_find_used(interior, octree);
     return status;
 }
 
-void tm_solid_free(tm_solid *solid)
+void tm_interior_free(tm_interior *interior)
 {
-    free(solid->chosen);
-    free(solid->mask);
-    free(solid->used);
-    *solid = (tm_solid){0};
+    free(interior->chosen);
+    free(interior->mask);
+    free(interior->used);
+    *interior = (tm_interior){0};
 }
 
-size_t tm_solid_find_lost(const tm_solid *solid, const tm_octree *octree,
-                          const tm_surface *surface, uint8_t *lost)
+size_t tm_interior_find_lost(const tm_interior *interior, const tm_octree *octree,
+                             const tm_surface *surface, uint8_t *lost)
 {
     size_t count = 0;
     for (size_t l = 0; l < octree->leaves; l++) {
         bool near = !octree->leaf[l].crossed || surface->by_winding;
         for (int p = 0; !near && p < TM_LEAF_EDGE; p++) {
-            const tm_octant_mask mask = solid->mask[octree->node[l][p]];
+            const tm_octant_mask mask = interior->mask[octree->node[l][p]];
             near = mask != 0 && mask != TM_ALL_OCTANTS;
         }
         lost[l] = !near;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The leaves that stand for the solid, chosen so that what they bound is a manifold on
+/* The leaves that stand for the interior, chosen so that what they bound is a manifold on
  * which a layer of elements can be put. */
 #ifndef TM_LAYER_INTERIOR_LEAVES_H
 #define TM_LAYER_INTERIOR_LEAVES_H
@@ -7,34 +7,34 @@
 #include "octant_mask.h"
 #include "../forest/octree.h"
 
-typedef struct tm_solid {
+typedef struct tm_interior {
     bool *chosen;           /* [leaves] */
     tm_octant_mask *mask;   /* [nodes of the octree] */
     bool *used;             /* [nodes]: the mesh has the node: it is a corner of a chosen
                                leaf, or in the middle of an edge of a face with a centre */
     size_t count;           /* leaves chosen */
     size_t filled, removed; /* changed so that the boundary is a manifold */
-} tm_solid;
+} tm_interior;
 
 /* Chooses the leaves whose centres are inside the surface, then adds and takes away some
  * until at each node of their boundary (1) the faces of it make one fan and (2) no two of
  * them face each other, so that the node can move inward and away from all of them. The
  * fewest and those whose centres are closest to the surface are changed.
- * TM_ERROR_SYSTEM where memory is out. *solid is to be freed, after an error too.
+ * TM_ERROR_SYSTEM where memory is out. *interior is to be freed, after an error too.
  * Expected O(leaves). */
-tm_status tm_solid_choose(tm_solid *solid, const tm_octree *octree,
-                          const tm_surface *surface, tm_error *error);
-void tm_solid_free(tm_solid *solid);
+tm_status tm_interior_choose(tm_interior *interior, const tm_octree *octree,
+                             const tm_surface *surface, tm_error *error);
+void tm_interior_free(tm_interior *interior);
 
 /* Makes a leaf chosen that is not, or the other way, with the masks of its nodes; used
- * and count are then as tm_solid_find_used() says again. */
-void tm_solid_flip(tm_solid *solid, const tm_octree *octree, size_t leaf);
-void tm_solid_find_used(tm_solid *solid, const tm_octree *octree);
+ * and count are then as tm_interior_find_used() says again. */
+void tm_interior_flip(tm_interior *interior, const tm_octree *octree, size_t leaf);
+void tm_interior_find_used(tm_interior *interior, const tm_octree *octree);
 
 /* Marks the leaves that the surface crosses but none of whose corners is on the boundary
  * of the chosen ones: there a thin part, or a gap, is lost. Returns how many. None where
- * the inside is by the winding number: there surface may be within the solid. */
-size_t tm_solid_find_lost(const tm_solid *solid, const tm_octree *octree,
-                          const tm_surface *surface, uint8_t *lost);
+ * the inside is by the winding number: there surface may be within the interior. */
+size_t tm_interior_find_lost(const tm_interior *interior, const tm_octree *octree,
+                             const tm_surface *surface, uint8_t *lost);
 
 #endif

@@ -8,11 +8,11 @@ enum { LEAF_CORNERS = 8 };
 
 /* The level of the smallest chosen leaf at each node of the octree; one more than that of
  * a leaf which has it in the middle of an edge or a face. */
-static uint8_t *find_levels(const tm_octree *octree, const tm_solid *solid)
+static uint8_t *find_levels(const tm_octree *octree, const tm_interior *interior)
 {
     uint8_t *level = calloc(octree->nodes + 1, 1);
     for (size_t l = 0; level && l < octree->leaves; l++)
-        for (unsigned p = 0; solid->chosen[l] && p < TM_LEAF_NODES; p++) {
+        for (unsigned p = 0; interior->chosen[l] && p < TM_LEAF_NODES; p++) {
             const uint32_t node = octree->node[l][p];
             const unsigned here = octree->leaf[l].level + (p < TM_LEAF_EDGE ? 0u : 1u);
             if (node != TM_NONE && here > level[node])
@@ -35,23 +35,24 @@ static void place_middles(const tm_assembly *a, const tm_octree *octree, double 
     }
 }
 
-tm_status tm_base_places(const tm_assembly *assembly, const tm_octree *octree,
-                         const tm_solid *solid, const tm_skin *skin, double (*xyz)[3],
-                         tm_error *error)
+tm_status tm_lattice_points(const tm_assembly *assembly, const tm_octree *octree,
+                            const tm_interior *interior,
+                            const tm_interior_boundary *boundary, double (*xyz)[3],
+                            tm_error *error)
 {
     const double share = 0.08;
-    uint8_t *level = find_levels(octree, solid);
+    uint8_t *level = find_levels(octree, interior);
     if (!level)
         return tm_fail_memory(error);
     for (size_t n = 0; n < assembly->core; n++)
         tm_octree_point(octree, octree->grid[assembly->grid_node[n]], xyz[n]);
-    for (size_t s = 0; s < skin->nodes; s++) {
+    for (size_t s = 0; s < boundary->nodes; s++) {
         double *inner = xyz[assembly->inner[s]];
-        const uint32_t node = skin->grid_node[s];
+        const uint32_t node = boundary->grid_node[s];
         const double step = share * octree->side / (double)((uint32_t)1 << level[node]);
         int outward[3];
         memcpy(xyz[assembly->outer + s], inner, sizeof *xyz);
-        tm_octant_mask_outward(solid->mask[node], outward);
+        tm_octant_mask_outward(interior->mask[node], outward);
         for (int i = 0; i < 3; i++)
             inner[i] -= step * outward[i];
     }

@@ -14,7 +14,7 @@ enum { TM_ALL_OCTANTS = 0xff };
 
 /* The octants that a leaf fills around the node at each of its places (octree.h): one at
  * a corner, two at the middle of an edge, four at the centre of a face. */
-extern const tm_octant_mask tm_place_octants[26];
+extern const tm_octant_mask tm_point_octants[26];
 
 /* The edges (0 … 11) of each face. */
 extern const uint8_t tm_face_edge[6][4];

@@ -10,19 +10,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Where the skin's nodes are closest to the surface. Neighbours in number are mostly
- * close to each other, so that each begins where the last one ended. */
+/* Where the interior boundary's nodes are closest to the surface. Neighbours in number
+ * are mostly close to each other, so that each begins where the last one ended. */
 static tm_status find_closest(tm_octree_mesh *m, const tm_octree *octree,
                               const tm_surface *surface, tm_error *error)
 {
-    m->at = tm_new(m->skin.nodes, sizeof *m->at);
-    m->held = calloc(m->skin.nodes + 1, sizeof *m->held);
+    m->at = tm_new(m->boundary.nodes, sizeof *m->at);
+    m->held = calloc(m->boundary.nodes + 1, sizeof *m->held);
     if (!m->at || !m->held)
         return tm_fail_memory(error);
     uint32_t guess = TM_NONE;
-    for (size_t s = 0; s < m->skin.nodes; s++) {
+    for (size_t s = 0; s < m->boundary.nodes; s++) {
         double xyz[3];
-        tm_skin_place(&m->skin, octree, s, xyz);
+        tm_boundary_node_point(&m->boundary, octree, s, xyz);
         m->at[s].triangle = guess;
         tm_surface_closest(surface, xyz, TM_NONE, &m->at[s]);
         guess = m->at[s].triangle;
@@ -33,22 +33,23 @@ static tm_status find_closest(tm_octree_mesh *m, const tm_octree *octree,
 /* The pieces of the boundary, and its Euler number. */
 static tm_status measure_boundary(tm_octree_mesh *m, tm_error *error)
 {
-    const tm_skin *skin = &m->skin;
-    uint32_t *parent = tm_new(skin->nodes, sizeof *parent);
+    const tm_interior_boundary *boundary = &m->boundary;
+    uint32_t *parent = tm_new(boundary->nodes, sizeof *parent);
     if (!parent)
         return tm_fail_memory(error);
-    for (size_t s = 0; s < skin->nodes; s++)
+    for (size_t s = 0; s < boundary->nodes; s++)
         parent[s] = (uint32_t)s;
     int64_t half_edges = 0;
-    for (size_t f = 0; f < skin->faces; f++) {
-        const unsigned k = tm_skin_corners(skin, f);
+    for (size_t f = 0; f < boundary->faces; f++) {
+        const unsigned k = tm_boundary_face_corners(boundary, f);
         half_edges += k;
         for (unsigned i = 1; i < k; i++)
-            tm_set_unite(parent, skin->face[f][0], skin->face[f][i]);
+            tm_set_unite(parent, boundary->face[f][0], boundary->face[f][i]);
     }
-    for (size_t s = 0; s < skin->nodes; s++)
+    for (size_t s = 0; s < boundary->nodes; s++)
         m->report.components += tm_set_root(parent, (uint32_t)s) == s;
-    m->report.euler = (int64_t)skin->nodes - half_edges / 2 + (int64_t)skin->faces;
+    m->report.euler =
+        (int64_t)boundary->nodes - half_edges / 2 + (int64_t)boundary->faces;
     free(parent);
     return TM_OK;
 }
@@ -59,7 +60,7 @@ static tm_status count_lost(tm_octree_mesh *m, const tm_octree *octree,
     uint8_t *lost = tm_new(octree->leaves, sizeof *lost);
     if (!lost)
         return tm_fail_memory(error);
-    m->report.lost = tm_solid_find_lost(&m->solid, octree, surface, lost);
+    m->report.lost = tm_interior_find_lost(&m->interior, octree, surface, lost);
     for (size_t l = 0; m->report.lost > 0 && l < octree->leaves; l++)
         if (lost[l]) {
             tm_leaf_centre(octree, &octree->leaf[l], m->report.lost_at);
@@ -69,16 +70,17 @@ static tm_status count_lost(tm_octree_mesh *m, const tm_octree *octree,
     return TM_OK;
 }
 
-static tm_status find_skin_once(tm_octree_mesh *m, const tm_octree *octree,
-                                const tm_surface *surface, tm_error *error)
+static tm_status find_boundary_once(tm_octree_mesh *m, const tm_octree *octree,
+                                    const tm_surface *surface, tm_error *error)
 {
-    tm_skin_free(&m->skin);
+    tm_interior_boundary_free(&m->boundary);
     free(m->at);
     free(m->held);
     m->at = NULL;
     m->held = NULL;
     m->report.components = 0;
-    tm_status status = tm_skin_find(&m->skin, octree, &m->solid, error);
+    tm_status status =
+        tm_interior_boundary_find(&m->boundary, octree, &m->interior, error);
     if (status == TM_OK)
         status = measure_boundary(m, error);
     if (status == TM_OK)
@@ -86,17 +88,17 @@ static tm_status find_skin_once(tm_octree_mesh *m, const tm_octree *octree,
     return status;
 }
 
-/* The skin, without pieces that the surface does not have. */
-static tm_status find_skin(tm_octree_mesh *m, const tm_octree *octree,
-                           const tm_surface *surface, tm_error *error)
+/* The interior boundary, without pieces that the surface does not have. */
+static tm_status find_boundary(tm_octree_mesh *m, const tm_octree *octree,
+                               const tm_surface *surface, tm_error *error)
 {
     bool changed = false;
-    tm_status status = find_skin_once(m, octree, surface, error);
+    tm_status status = find_boundary_once(m, octree, surface, error);
     if (status == TM_OK && m->report.components > surface->components)
-        status = tm_islands_remove(&m->solid, octree, &m->skin, surface, m->at, &changed,
-                                   error);
+        status = tm_spurious_components_remove(&m->interior, octree, &m->boundary,
+                                               surface, m->at, &changed, error);
     if (status == TM_OK && changed)
-        status = find_skin_once(m, octree, surface, error);
+        status = find_boundary_once(m, octree, surface, error);
     return status;
 }
 
@@ -105,21 +107,23 @@ static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *su
 {
     tm_octree_mesh_report *r = &m->report;
     tm_status status = TM_OK;
-    if (m->solid.count == 0)
+    if (m->interior.count == 0)
         status = tm_fail(error, TM_ERROR_INPUT,
                          "no leaf is inside the surface: it needs a finer level");
     if (status == TM_OK)
-        status = find_skin(m, octree, surface, error);
+        status = find_boundary(m, octree, surface, error);
     if (status == TM_OK)
         status = count_lost(m, octree, surface, error);
     if (status == TM_OK)
-        status = tm_feature_find(&m->feature, &m->skin, octree, surface, m->at, error);
+        status =
+            tm_feature_find(&m->feature, &m->boundary, octree, surface, m->at, error);
     if (status == TM_OK)
-        status = tm_assemble(&m->assembly, octree, &m->solid, &m->skin, error);
+        status = tm_assemble(&m->assembly, octree, &m->interior, &m->boundary, error);
     if (status == TM_OK)
-        status = tm_fit(&m->assembly, &m->skin, &m->feature, surface, m->at, error);
+        status = tm_project_layer(&m->assembly, &m->boundary, &m->feature, surface, m->at,
+                                  error);
     if (status == TM_OK)
-        status = tm_settle(m, octree, surface, error);
+        status = tm_untangle_layer(m, octree, surface, error);
     if (status != TM_OK)
         return status;
     r->corners_lost = m->feature.corners_lost;
@@ -133,19 +137,20 @@ static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *su
 tm_status tm_octree_mesh_make(tm_octree_mesh *mesh, const tm_octree *octree,
                               tm_surface *surface, tm_error *error)
 {
-    tm_solid solid;
-    tm_status status = tm_solid_choose(&solid, octree, surface, error);
-    *mesh = (tm_octree_mesh){.solid = solid};
+    tm_interior interior;
+    tm_status status = tm_interior_choose(&interior, octree, surface, error);
+    *mesh = (tm_octree_mesh){.interior = interior};
     if (status == TM_OK)
-        status = tm_octree_mesh_make_of(mesh, octree, &solid, surface, error);
+        status = tm_octree_mesh_make_of(mesh, octree, &interior, surface, error);
     return status;
 }
 
 tm_status tm_octree_mesh_make_of(tm_octree_mesh *mesh, const tm_octree *octree,
-                                 tm_solid *solid, tm_surface *surface, tm_error *error)
+                                 tm_interior *interior, tm_surface *surface,
+                                 tm_error *error)
 {
-    *mesh = (tm_octree_mesh){.solid = *solid};
-    *solid = (tm_solid){0};
+    *mesh = (tm_octree_mesh){.interior = *interior};
+    *interior = (tm_interior){0};
     const size_t bytes = surface->triangles * sizeof *surface->patch;
     uint32_t *patch = tm_new(surface->triangles, sizeof *patch);
     if (!patch)
@@ -159,8 +164,8 @@ tm_status tm_octree_mesh_make_of(tm_octree_mesh *mesh, const tm_octree *octree,
 
 void tm_octree_mesh_free(tm_octree_mesh *mesh)
 {
-    tm_solid_free(&mesh->solid);
-    tm_skin_free(&mesh->skin);
+    tm_interior_free(&mesh->interior);
+    tm_interior_boundary_free(&mesh->boundary);
     tm_feature_free(&mesh->feature);
     tm_assembly_free(&mesh->assembly);
     free(mesh->at);

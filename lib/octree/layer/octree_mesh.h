@@ -20,12 +20,13 @@ typedef struct tm_octree_mesh_report {
 } tm_octree_mesh_report;
 
 typedef struct tm_octree_mesh {
-    tm_solid solid;
-    tm_skin skin;
+    tm_interior interior;
+    tm_interior_boundary boundary;
     tm_feature feature;
     tm_assembly assembly;
-    tm_surface_point *at; /* [nodes of the skin]: where they are on the surface */
-    bool *held;           /* [nodes of the skin]: it is not there */
+    tm_surface_point
+        *at;    /* [nodes of the interior boundary]: where they are on the surface */
+    bool *held; /* [nodes of the interior boundary]: it is not there */
     tm_octree_mesh_report report;
 } tm_octree_mesh;
 
@@ -35,10 +36,11 @@ typedef struct tm_octree_mesh {
  * an error too. */
 tm_status tm_octree_mesh_make(tm_octree_mesh *mesh, const tm_octree *octree,
                               tm_surface *surface, tm_error *error);
-/* The same where the leaves are chosen already: tm_solid_choose() filled *solid, which
- * becomes the mesh's and is empty then. */
+/* The same where the leaves are chosen already: tm_interior_choose() filled *interior,
+ * which becomes the mesh's and is empty then. */
 tm_status tm_octree_mesh_make_of(tm_octree_mesh *mesh, const tm_octree *octree,
-                                 tm_solid *solid, tm_surface *surface, tm_error *error);
+                                 tm_interior *interior, tm_surface *surface,
+                                 tm_error *error);
 void tm_octree_mesh_free(tm_octree_mesh *mesh);
 
 #endif

@@ -23,7 +23,7 @@ static tm_status give_nodes(tm_octree_mesh *m, tm_stream *stream, tm_error *erro
     node->attribute = calloc(a->mesh.nodes, sizeof *node->attribute);
     if (!node->attribute)
         return tm_fail_memory(error);
-    for (size_t s = 0; s < m->skin.nodes; s++) {
+    for (size_t s = 0; s < m->boundary.nodes; s++) {
         const double place = TM_NODE_ON_PATCH + m->feature.kind[s];
         node->attribute[a->outer + s] = m->held[s] ? -place : place;
     }
@@ -79,8 +79,8 @@ static void add_facet(facet_writer *w, const tm_octree_mesh *m, uint32_t element
 static int32_t marker_of(const tm_octree_mesh *m, const tm_surface *surface, size_t f)
 {
     const double(*xyz)[3] = (const double(*)[3])m->assembly.mesh.xyz + m->assembly.outer;
-    const unsigned k = tm_skin_corners(&m->skin, f);
-    const uint32_t *face = m->skin.face[f];
+    const unsigned k = tm_boundary_face_corners(&m->boundary, f);
+    const uint32_t *face = m->boundary.face[f];
     double middle[3] = {0, 0, 0};
     for (unsigned c = 0; c < k; c++)
         for (int i = 0; i < 3; i++)
@@ -94,12 +94,12 @@ static int32_t marker_of(const tm_octree_mesh *m, const tm_surface *surface, siz
 static tm_status give_facets(const tm_octree_mesh *m, const tm_surface *surface,
                              tm_stream *stream, tm_error *error)
 {
-    const tm_skin *skin = &m->skin;
+    const tm_interior_boundary *boundary = &m->boundary;
     size_t facets = 0, items = 0;
-    for (size_t f = 0; f < skin->faces; f++) {
-        const bool cut = skin->cut[f] != TM_UNCUT;
+    for (size_t f = 0; f < boundary->faces; f++) {
+        const bool cut = boundary->cut[f] != TM_UNCUT;
         facets += cut ? 2 : 1;
-        items += cut ? 2 * 3 : tm_skin_corners(skin, f);
+        items += cut ? 2 * 3 : tm_boundary_face_corners(boundary, f);
     }
     tm_block *facet = add(stream, ".facet", error);
     if (!facet)
@@ -109,16 +109,17 @@ static tm_status give_facets(const tm_octree_mesh *m, const tm_surface *surface,
     if (status != TM_OK)
         return status;
     facet_writer w = {.block = facet};
-    for (size_t f = 0; f < skin->faces; f++) {
-        const uint32_t *face = skin->face[f];
+    for (size_t f = 0; f < boundary->faces; f++) {
+        const uint32_t *face = boundary->face[f];
         const int32_t marker = marker_of(m, surface, f);
         const uint32_t element = m->assembly.layer[f];
-        if (skin->cut[f] == TM_UNCUT) {
-            add_facet(&w, m, element, marker, tm_skin_corners(skin, f), face);
+        if (boundary->cut[f] == TM_UNCUT) {
+            add_facet(&w, m, element, marker, tm_boundary_face_corners(boundary, f),
+                      face);
             continue;
         }
         for (uint32_t t = 0; t < 2; t++) {
-            const uint8_t *corner = tm_cut_triangles[skin->cut[f]][t];
+            const uint8_t *corner = tm_cut_triangles[boundary->cut[f]][t];
             add_facet(&w, m, element + t, marker, 3,
                       (uint32_t[]){face[corner[0]], face[corner[1]], face[corner[2]]});
         }
@@ -147,9 +148,9 @@ static tm_status give_surface(tm_surface *surface, tm_stream *stream, tm_error *
     return TM_OK;
 }
 
-tm_status tm_octree_mesh_give(tm_octree_mesh *mesh, const tm_octree *octree,
-                              tm_surface *surface, bool levels, tm_stream *stream,
-                              tm_error *error)
+tm_status tm_octree_mesh_to_stream(tm_octree_mesh *mesh, const tm_octree *octree,
+                                   tm_surface *surface, bool levels, tm_stream *stream,
+                                   tm_error *error)
 {
     /* Nodes come first, but facets look at them before they are given away. */
     tm_status status = add(stream, ".node", error) ? TM_OK : error->status;
@@ -160,7 +161,7 @@ tm_status tm_octree_mesh_give(tm_octree_mesh *mesh, const tm_octree *octree,
     if (status == TM_OK)
         status = give_elements(mesh, octree, levels, stream, error);
     if (status == TM_OK)
-        status = tm_octree_give_blocks(octree, mesh->assembly.first, stream, error);
+        status = tm_octree_to_stream(octree, mesh->assembly.first, stream, error);
     if (status == TM_OK)
         status = give_surface(surface, stream, error);
     return status;

@@ -7,21 +7,21 @@
 #include "octree_mesh.h"
 
 /* The attribute of a node in .node: where it is. Negative where it should be there, but
- * is held back. */
-typedef enum tm_node_place {
+ * is off the surface. */
+typedef enum tm_node_class {
     TM_NODE_INSIDE,
     TM_NODE_ON_PATCH,
     TM_NODE_ON_CURVE,
     TM_NODE_ON_CORNER
-} tm_node_place;
+} tm_node_class;
 
 /* Appends .node .mix .octant .root surface.node surface.face, and, where the surface has
  * markers, .facet with the boundary faces and the marker of the closest triangle.
  * `levels`: elements have the level of their octant as attribute. Arrays of mesh and
  * surface are taken; both are to be freed still. *stream must be empty. TM_ERROR_SYSTEM
  * where memory is out. */
-tm_status tm_octree_mesh_give(tm_octree_mesh *mesh, const tm_octree *octree,
-                              tm_surface *surface, bool levels, tm_stream *stream,
-                              tm_error *error);
+tm_status tm_octree_mesh_to_stream(tm_octree_mesh *mesh, const tm_octree *octree,
+                                   tm_surface *surface, bool levels, tm_stream *stream,
+                                   tm_error *error);
 
 #endif

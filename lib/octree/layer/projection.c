@@ -9,53 +9,55 @@
 
 /* Measured on the bench's surfaces: more sweeps change the worst elements little. Curves
  * are swept alone first: their nodes may be crowded at an end. */
-enum { CURVE_SWEEPS = 8, SKIN_SWEEPS = 2, CORE_SWEEPS = 6, HEXAHEDRON = 8 };
+enum { CURVE_SWEEPS = 8, BOUNDARY_SWEEPS = 2, CORE_SWEEPS = 6, HEXAHEDRON = 8 };
 
 typedef struct {
     tm_assembly *assembly;
-    const tm_skin *skin;
+    const tm_interior_boundary *boundary;
     const tm_feature *feature;
     const tm_surface *surface;
     tm_surface_point *at;
 } fitter;
 
 /* Puts an outer node to the place that its feature has closest to a point. */
-static void put(const fitter *fit, size_t s, const double point[3])
+static void put(const fitter *projection, size_t s, const double point[3])
 {
-    double *xyz = fit->assembly->mesh.xyz[fit->assembly->outer + s];
-    const uint32_t of = fit->feature->of[s];
-    if (fit->feature->kind[s] == TM_ON_CORNER) {
-        memcpy(xyz, fit->surface->xyz[fit->surface->corner[of]], 3 * sizeof *xyz);
-    } else if (fit->feature->kind[s] == TM_ON_CURVE) {
+    double *xyz = projection->assembly->mesh.xyz[projection->assembly->outer + s];
+    const uint32_t of = projection->feature->of[s];
+    if (projection->feature->kind[s] == TM_ON_CORNER) {
+        memcpy(xyz, projection->surface->xyz[projection->surface->corner[of]],
+               3 * sizeof *xyz);
+    } else if (projection->feature->kind[s] == TM_ON_CURVE) {
         size_t segment;
-        tm_surface_closest_on_curve(fit->surface, of, point, xyz, &segment);
+        tm_surface_closest_on_curve(projection->surface, of, point, xyz, &segment);
     } else {
-        tm_surface_point *at = &fit->at[s];
-        if (of != TM_NONE && fit->surface->patch[at->triangle] != of)
+        tm_surface_point *at = &projection->at[s];
+        if (of != TM_NONE && projection->surface->patch[at->triangle] != of)
             at->triangle = TM_NONE;
-        tm_surface_closest(fit->surface, point, of, at);
+        tm_surface_closest(projection->surface, point, of, at);
         memcpy(xyz, at->xyz, 3 * sizeof *xyz);
     }
 }
 
 /* The mean of the neighbours of an outer node: along its curve, or the corners of the
  * faces around it, of which those across an edge count twice. */
-static void mean_on_skin(const fitter *fit, size_t s, double mean[3])
+static void mean_on_boundary(const fitter *projection, size_t s, double mean[3])
 {
-    const tm_skin *skin = fit->skin;
-    const double(*xyz)[3] = (const double(*)[3])fit->assembly->mesh.xyz;
-    const uint32_t outer = fit->assembly->outer;
+    const tm_interior_boundary *boundary = projection->boundary;
+    const double(*xyz)[3] = (const double(*)[3])projection->assembly->mesh.xyz;
+    const uint32_t outer = projection->assembly->outer;
     double sum[3] = {0, 0, 0};
     size_t count = 0;
-    if (fit->feature->kind[s] == TM_ON_CURVE) {
+    if (projection->feature->kind[s] == TM_ON_CURVE) {
         count = 2;
         for (int j = 0; j < 2; j++)
             for (int i = 0; i < 3; i++)
-                sum[i] += xyz[outer + fit->feature->along[s][j]][i];
+                sum[i] += xyz[outer + projection->feature->along[s][j]][i];
     } else {
-        for (size_t a = skin->around_start[s]; a < skin->around_start[s + 1]; a++) {
-            const uint32_t *face = skin->face[skin->around[a]];
-            const unsigned k = tm_skin_corners(skin, skin->around[a]);
+        for (size_t a = boundary->around_start[s]; a < boundary->around_start[s + 1];
+             a++) {
+            const uint32_t *face = boundary->face[boundary->around[a]];
+            const unsigned k = tm_boundary_face_corners(boundary, boundary->around[a]);
             for (unsigned c = 0; c < k; c++)
                 for (int i = 0; i < 3; i++)
                     sum[i] += xyz[outer + face[c]][i];
@@ -68,31 +70,33 @@ static void mean_on_skin(const fitter *fit, size_t s, double mean[3])
         mean[i] = sum[i] / (double)count;
 }
 
-static void fit_skin(const fitter *fit)
+static void project_boundary(const fitter *projection)
 {
     double point[3];
-    for (size_t s = 0; s < fit->skin->nodes; s++) {
-        double *outer = fit->assembly->mesh.xyz[fit->assembly->outer + s];
-        const uint32_t of = fit->feature->of[s];
-        if (fit->feature->kind[s] == TM_ON_PATCH &&
-            (of == TM_NONE || of == fit->surface->patch[fit->at[s].triangle])) {
-            memcpy(outer, fit->at[s].xyz, sizeof point); /* at is where it is closest */
+    for (size_t s = 0; s < projection->boundary->nodes; s++) {
+        double *outer = projection->assembly->mesh.xyz[projection->assembly->outer + s];
+        const uint32_t of = projection->feature->of[s];
+        if (projection->feature->kind[s] == TM_ON_PATCH &&
+            (of == TM_NONE ||
+             of == projection->surface->patch[projection->at[s].triangle])) {
+            memcpy(outer, projection->at[s].xyz,
+                   sizeof point); /* at is where it is closest */
             continue;
         }
         memcpy(point, outer, sizeof point);
-        put(fit, s, point);
+        put(projection, s, point);
     }
-    for (int sweep = 0; sweep < CURVE_SWEEPS + SKIN_SWEEPS; sweep++)
-        for (size_t s = 0; s < fit->skin->nodes; s++) {
-            const uint8_t kind = fit->feature->kind[s];
+    for (int sweep = 0; sweep < CURVE_SWEEPS + BOUNDARY_SWEEPS; sweep++)
+        for (size_t s = 0; s < projection->boundary->nodes; s++) {
+            const uint8_t kind = projection->feature->kind[s];
             if (kind == TM_ON_CORNER || (kind == TM_ON_PATCH && sweep < CURVE_SWEEPS))
                 continue;
-            mean_on_skin(fit, s, point);
-            put(fit, s, point);
+            mean_on_boundary(projection, s, point);
+            put(projection, s, point);
         }
 }
 
-/* The nodes below the skin that may move, and their neighbours. */
+/* The nodes below the interior boundary that may move, and their neighbours. */
 typedef struct {
     uint32_t *order; /* [nodes of the mesh]: its place in node[], or TM_NONE */
     size_t nodes;
@@ -113,11 +117,11 @@ static bool has_moving(const zone *z, const tm_mixed_mesh *mesh, size_t e)
 
 /* The inner nodes, those in an element with one of them, and those of elements that are
  * no hexahedra, without the outer ones. */
-static tm_status find_moving(const fitter *fit, zone *z, tm_error *error)
+static tm_status find_moving(const fitter *projection, zone *z, tm_error *error)
 {
-    const tm_assembly *a = fit->assembly;
+    const tm_assembly *a = projection->assembly;
     const tm_mixed_mesh *mesh = &a->mesh;
-    const size_t outer_end = a->outer + fit->skin->nodes;
+    const size_t outer_end = a->outer + projection->boundary->nodes;
     z->order = tm_new(mesh->nodes, sizeof *z->order);
     bool *moves = calloc(mesh->nodes + 1, 1);
     if (!z->order || !moves) {
@@ -126,7 +130,7 @@ static tm_status find_moving(const fitter *fit, zone *z, tm_error *error)
     }
     for (size_t n = 0; n < mesh->nodes; n++)
         z->order[n] = TM_NONE;
-    for (size_t s = 0; s < fit->skin->nodes; s++)
+    for (size_t s = 0; s < projection->boundary->nodes; s++)
         z->order[a->inner[s]] = 0;
     for (size_t e = 0; e < mesh->elements; e++)
         if (has_moving(z, mesh, e) || mesh->start[e + 1] - mesh->start[e] != HEXAHEDRON)
@@ -211,13 +215,14 @@ static void mean_of(const zone *z, size_t n, const double (*xyz)[3], double mean
         mean[j] = sum[j] / (double)z->count[n];
 }
 
-/* A node below the skin that has smaller neighbours on one side only is not at their mean
- * on the lattice. The middle of a leaf stays so; other nodes go half of the way: then a
- * leaf is less high than wide over a face that is divided in four, and its elements are
- * better than on the lattice (J_ENS of tetrahedra 0.59 in the mean, not 0.47). */
-static tm_status find_bias(const fitter *fit, zone *z, tm_error *error)
+/* A node below the interior boundary that has smaller neighbours on one side only is not
+ * at their mean on the lattice. The middle of a leaf stays so; other nodes go half of the
+ * way: then a leaf is less high than wide over a face that is divided in four, and its
+ * elements are better than on the lattice (J_ENS of tetrahedra 0.59 in the mean, not
+ * 0.47). */
+static tm_status find_bias(const fitter *projection, zone *z, tm_error *error)
 {
-    const tm_assembly *a = fit->assembly;
+    const tm_assembly *a = projection->assembly;
     const double core_share = 0.5;
     z->bias = calloc(z->nodes + 1, sizeof *z->bias);
     if (!z->bias)
@@ -229,7 +234,7 @@ static tm_status find_bias(const fitter *fit, zone *z, tm_error *error)
         for (int j = 0; j < 3; j++)
             z->bias[n][j] = share * (at[j] - z->bias[n][j]);
     }
-    for (size_t s = 0; s < fit->skin->nodes; s++)
+    for (size_t s = 0; s < projection->boundary->nodes; s++)
         memset(z->bias[z->order[a->inner[s]]], 0, sizeof *z->bias);
     return TM_OK;
 }
@@ -245,18 +250,19 @@ static void average(const zone *z, tm_mixed_mesh *mesh)
         }
 }
 
-tm_status tm_fit(tm_assembly *assembly, const tm_skin *skin, const tm_feature *feature,
-                 const tm_surface *surface, tm_surface_point *at, tm_error *error)
+tm_status tm_project_layer(tm_assembly *assembly, const tm_interior_boundary *boundary,
+                           const tm_feature *feature, const tm_surface *surface,
+                           tm_surface_point *at, tm_error *error)
 {
-    const fitter fit = {assembly, skin, feature, surface, at};
+    const fitter projection = {assembly, boundary, feature, surface, at};
     zone z = {0};
-    tm_status status = find_moving(&fit, &z, error);
+    tm_status status = find_moving(&projection, &z, error);
     if (status == TM_OK)
         status = find_neighbours(&z, &assembly->mesh, error);
     if (status == TM_OK)
-        status = find_bias(&fit, &z, error);
+        status = find_bias(&projection, &z, error);
     if (status == TM_OK) {
-        fit_skin(&fit);
+        project_boundary(&projection);
         average(&z, &assembly->mesh);
     }
     free(z.order);

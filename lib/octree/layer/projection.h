@@ -10,8 +10,10 @@
  * between these they are spread by averaging, so that no face is squashed. Then the inner
  * nodes and those next to them are averaged. at[s] is where outer node s is on the
  * surface, before and after. Elements may be inverted by this. TM_ERROR_SYSTEM where
- * memory is out. O(nodes of the skin) queries of the surface, O(elements). */
-tm_status tm_fit(tm_assembly *assembly, const tm_skin *skin, const tm_feature *feature,
-                 const tm_surface *surface, tm_surface_point *at, tm_error *error);
+ * memory is out. O(nodes of the interior boundary) queries of the surface, O(elements).
+ */
+tm_status tm_project_layer(tm_assembly *assembly, const tm_interior_boundary *boundary,
+                           const tm_feature *feature, const tm_surface *surface,
+                           tm_surface_point *at, tm_error *error);
 
 #endif

@@ -45,7 +45,7 @@ static bool mark_nodes(retreat *r, size_t e)
     return any;
 }
 
-static void go_back(retreat *r, size_t n)
+static void restore(retreat *r, size_t n)
 {
     double *xyz = r->mesh->xyz[n];
     r->steps[n]++;
@@ -69,7 +69,7 @@ static bool take_back(retreat *r)
     for (size_t n = 0; n < mesh->nodes; n++) {
         r->changed[n] = r->to_change[n];
         if (r->to_change[n])
-            go_back(r, n);
+            restore(r, n);
         r->to_change[n] = false;
     }
     return any;
@@ -81,7 +81,7 @@ static void retreat_all(tm_octree_mesh *m, retreat *r)
     while (take_back(r))
         ;
     m->report.invalid = r->invalid;
-    for (size_t s = 0; s < m->skin.nodes; s++) {
+    for (size_t s = 0; s < m->boundary.nodes; s++) {
         m->held[s] = r->steps[m->assembly.outer + s] > 0;
         m->report.held_back += m->held[s];
     }
@@ -99,7 +99,8 @@ static tm_status hold_back(tm_octree_mesh *m, const tm_octree *octree, tm_error 
     tm_status status =
         base && r.steps && r.changed && r.to_change ? TM_OK : tm_fail_memory(error);
     if (status == TM_OK)
-        status = tm_base_places(&m->assembly, octree, &m->solid, &m->skin, base, error);
+        status = tm_lattice_points(&m->assembly, octree, &m->interior, &m->boundary, base,
+                                   error);
     if (status == TM_OK)
         retreat_all(m, &r);
     free(base);
@@ -119,14 +120,14 @@ static tm_node_rule *find_rules(const tm_octree_mesh *m)
     tm_node_rule *rule = tm_new(a->mesh.nodes, sizeof *rule);
     for (size_t n = 0; rule && n < a->mesh.nodes; n++)
         rule[n] = (tm_node_rule){.where = TM_NONE, .freedom = TM_MOVES_FREELY};
-    for (size_t s = 0; rule && s < m->skin.nodes; s++)
+    for (size_t s = 0; rule && s < m->boundary.nodes; s++)
         rule[a->outer + s] = (tm_node_rule){.where = m->feature.of[s],
                                             .freedom = freedom[m->feature.kind[s]]};
     return rule;
 }
 
-tm_status tm_settle(tm_octree_mesh *mesh, const tm_octree *octree,
-                    const tm_surface *surface, tm_error *error)
+tm_status tm_untangle_layer(tm_octree_mesh *mesh, const tm_octree *octree,
+                            const tm_surface *surface, tm_error *error)
 {
     const double threshold = 0.2;
     const tm_boundary boundary = tm_boundary_of_surface(surface);

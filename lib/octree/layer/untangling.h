@@ -10,7 +10,7 @@
  * time, until all elements are valid; on the lattice they are. Outer nodes that then are
  * not on the surface are marked as held and counted. TM_ERROR_SYSTEM where memory is
  * out. */
-tm_status tm_settle(tm_octree_mesh *mesh, const tm_octree *octree,
-                    const tm_surface *surface, tm_error *error);
+tm_status tm_untangle_layer(tm_octree_mesh *mesh, const tm_octree *octree,
+                            const tm_surface *surface, tm_error *error);
 
 #endif

@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* With how much effort nodes are moved, one after the other; and by which share of the
- * threshold elements are measured that a node leaves behind that was held back. */
+ * threshold elements are measured that a node leaves behind that was off the surface. */
 static const unsigned efforts[] = {1, 3};
 static const double held_shares[] = {0x1p-2,  0x1p-4,  0x1p-6,  0x1p-8, 0x1p-10,
                                      0x1p-12, 0x1p-14, 0x1p-16, 0};
@@ -17,8 +17,8 @@ enum {
     HELD_SHARES = sizeof held_shares / sizeof *held_shares
 };
 
-/* Where so many nodes are held back and such a part of them remains so, the octree is too
- * coarse for the surface. */
+/* Where so many nodes are off the surface and such a part of them remains so, the octree
+ * is too coarse for the surface. */
 enum { FEW_HELD = 500 };
 static const double hopeless = 0.9;
 
@@ -58,12 +58,13 @@ static tm_status mend(const repair *r, tm_repair_state *state, tm_repair_score *
         status =
             tm_repair_move(state, r->surface, t, held_shares[i] * t, 1, score, error);
     if (status == TM_OK && score->held > 0) {
-        tm_repair_free_held(state);
+        tm_repair_free_off_surface(state);
         status = tm_repair_move(state, r->surface, t, 0, 1, score, error);
     }
     const bool some = score->bad > 0 && score->bad <= FEW_BAD;
     if (status == TM_OK && some)
-        status = tm_repair_tips(state, r->surface, t, score, &r->report->tips, error);
+        status = tm_repair_sharp_corners(state, r->surface, t, score, &r->report->corners,
+                                         error);
     if (status == TM_OK && score->bad > 0)
         status =
             tm_repair_divide(state, r->surface, t, score, &r->report->divided, error);

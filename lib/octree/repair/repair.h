@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Makes every element of an octree's mesh valid, and none worse than asked, and brings
- * nodes to the surface that were held back. */
+ * nodes to the surface that were off the surface. */
 #ifndef TM_REPAIR_REPAIR_H
 #define TM_REPAIR_REPAIR_H
 
@@ -28,7 +28,7 @@ typedef struct tm_repair_options {
 typedef struct tm_repair_report {
     tm_repair_score before, after;
     unsigned iterations;
-    size_t tips;    /* that were made anew, also in states that were not kept */
+    size_t corners; /* that were made anew, also in states that were not kept */
     size_t divided; /* elements, also there */
 } tm_repair_report;
 
@@ -37,7 +37,7 @@ typedef struct tm_repair_report {
  * (tm_repair_better()), and a step that does not make it better is taken back.
  *
  * 1. Nodes move (../mixed/optimise.h), with more and more effort, until no element is
- *    bad and no node held back. 2. Elements that stay bad are divided
+ *    bad and no node off the surface. 2. Elements that stay bad are divided
  *    (repair_divide.h). 3. Octants that hold a bad element, or one at a node that is held
  *    back, are split once, balanced, and all is meshed again and repaired as before,
  *    while that makes it better and there are not more elements than allowed.

@@ -59,9 +59,9 @@ static bool add(tm_block *to, const tm_mixed_mesh *mesh, const tm_node_elements 
 }
 
 /* The two triangles of a quadrilateral, by one diagonal or the other. */
-static void add_halves(tm_block *to, const tm_mixed_mesh *mesh,
-                       const tm_node_elements *around, const uint32_t *n,
-                       const tm_block *from, size_t row)
+static void add_nonconforming(tm_block *to, const tm_mixed_mesh *mesh,
+                              const tm_node_elements *around, const uint32_t *n,
+                              const tm_block *from, size_t row)
 {
     for (size_t o = 0; o < 2; o++) {
         const uint32_t a = n[o], b = n[o + 1], c = n[o + 2],
@@ -96,7 +96,7 @@ tm_status tm_repair_move_facets(tm_block *facet, const tm_mixed_mesh *mesh,
             const uint32_t *node = facet->item + facet->start[f];
             const size_t k = facet->start[f + 1] - facet->start[f];
             if (k > 0 && !add(to, mesh, &around, k, node, facet, f) && k == QUADRILATERAL)
-                add_halves(to, mesh, &around, node, facet, f);
+                add_nonconforming(to, mesh, &around, node, facet, f);
         }
         const tm_block old = *facet;
         *facet = *to;

@@ -125,10 +125,11 @@ static tm_status find_rules(tm_repair_state *state, const tm_block *node,
     return status;
 }
 
-tm_status tm_repair_take(tm_repair_state *state, tm_stream *stream, tm_error *error)
+tm_status tm_repair_from_stream(tm_repair_state *state, tm_stream *stream,
+                                tm_error *error)
 {
     *state = (tm_repair_state){0};
-    tm_status status = tm_mixed_mesh_take(&state->mesh, stream, error);
+    tm_status status = tm_mixed_mesh_from_stream(&state->mesh, stream, error);
     if (status == TM_OK && state->mesh.elements == 0)
         status = tm_fail(error, TM_ERROR_INPUT,
                          "the stream has no elements (the blocks .node and .mix)");

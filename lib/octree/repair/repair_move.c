@@ -40,7 +40,7 @@ tm_status tm_repair_move(tm_repair_state *state, const tm_surface *surface,
     tm_boundary boundary = {0};
     if (surface)
         boundary = tm_boundary_of_surface(surface);
-    tm_repair_places best = {0};
+    tm_repair_points best = {0};
     double *thresholds = tm_new(state->mesh.elements, sizeof *thresholds);
     tm_status status =
         thresholds ? tm_repair_save(&best, state, error) : tm_fail_memory(error);
@@ -59,7 +59,7 @@ tm_status tm_repair_move(tm_repair_state *state, const tm_surface *surface,
         is_best = tm_repair_better(&now, score);
         if (is_best) {
             *score = now;
-            tm_repair_places_free(&best);
+            tm_repair_points_free(&best);
             status = tm_repair_save(&best, state, error);
         }
         if (now.invalid == 0)
@@ -67,7 +67,7 @@ tm_status tm_repair_move(tm_repair_state *state, const tm_surface *surface,
     }
     if (status == TM_OK && !is_best)
         tm_repair_restore(&best, state);
-    tm_repair_places_free(&best);
+    tm_repair_points_free(&best);
     free(thresholds);
     return status;
 }

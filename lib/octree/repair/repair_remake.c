@@ -64,7 +64,7 @@ static tm_status take_mesh(tm_repair_state *to, tm_octree_mesh *made,
     }
     for (size_t e = 0; e < elements; e++)
         to->origin[e] = (uint32_t)e;
-    for (size_t s = 0; s < made->skin.nodes; s++) {
+    for (size_t s = 0; s < made->boundary.nodes; s++) {
         const double place = TM_NODE_ON_PATCH + made->feature.kind[s];
         given[made->assembly.outer + s] = made->held[s] ? -place : place;
     }

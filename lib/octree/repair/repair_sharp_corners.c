@@ -18,9 +18,9 @@ typedef struct {
     double threshold;
     tm_node_elements around;
     tm_trial trial;
-} tips;
+} corners;
 
-static bool is_bad_at(const tips *t, uint32_t v)
+static bool is_bad_at(const corners *t, uint32_t v)
 {
     const tm_mixed_mesh *mesh = &t->state->mesh;
     for (size_t a = t->around.start[v]; a < t->around.start[v + 1]; a++) {
@@ -42,11 +42,11 @@ static bool has_node(const tm_mixed_mesh *mesh, size_t e, uint32_t v)
 
 /* The node inside that all elements at a node of the boundary have; TM_NONE where there
  * is none, or there are many. */
-static uint32_t find_middle(const tips *t, uint32_t tip)
+static uint32_t find_middle(const corners *t, uint32_t corner)
 {
     enum { FEW = 4 };
     const tm_mixed_mesh *mesh = &t->state->mesh;
-    const size_t from = t->around.start[tip], to = t->around.start[tip + 1];
+    const size_t from = t->around.start[corner], to = t->around.start[corner + 1];
     if (to - from < 3 || to - from > FEW)
         return TM_NONE;
     const size_t first = t->around.element[from];
@@ -71,7 +71,7 @@ static uint32_t local_of(const tm_trial *trial, uint32_t v)
 
 /* Puts parts in place of the first `cores` elements of a mesh; the arrays are large
  * enough. */
-static void replace_first(tm_mixed_mesh *mesh, size_t cores, const tm_tip *parts)
+static void replace_first(tm_mixed_mesh *mesh, size_t cores, const tm_sharp_corner *parts)
 {
     const size_t old = mesh->start[cores], now = parts->start[parts->parts];
     const size_t rest = mesh->elements - cores;
@@ -119,8 +119,8 @@ static void copy_element(tm_repair_state *to, const tm_repair_state *from,
 
 /* Puts the parts, with nodes of the trial, in the place of the first element of `core`,
  * and drops the others. */
-static tm_status replace(const tips *t, const uint32_t *core, size_t cores,
-                         const tm_tip *parts, tm_error *error)
+static tm_status replace(const corners *t, const uint32_t *core, size_t cores,
+                         const tm_sharp_corner *parts, tm_error *error)
 {
     tm_repair_state *state = t->state, to = {0};
     const tm_mixed_mesh *mesh = &state->mesh;
@@ -160,8 +160,8 @@ static tm_status replace(const tips *t, const uint32_t *core, size_t cores,
 }
 
 /* Tries one tip; *done says whether it is other now. */
-static tm_status try_tip(tips *t, uint32_t tip, uint32_t middle, bool *done,
-                         tm_error *error)
+static tm_status try_sharp_corner(corners *t, uint32_t corner, uint32_t middle,
+                                  bool *done, tm_error *error)
 {
     uint32_t core[CORE_MOST];
     const size_t from = t->around.start[middle];
@@ -171,12 +171,12 @@ static tm_status try_tip(tips *t, uint32_t tip, uint32_t middle, bool *done,
     tm_status status = tm_trial_gather(&t->trial, core, cores, RINGS, error);
     if (status != TM_OK)
         return status;
-    tm_tip parts;
+    tm_sharp_corner parts;
     uint32_t first[CORE_MOST];
     for (size_t i = 0; i < cores; i++)
         first[i] = (uint32_t)i;
-    if (!tm_tip_divide(&parts, &part->mesh, first, cores, local_of(&t->trial, tip),
-                       local_of(&t->trial, middle)))
+    if (!tm_sharp_corner_divide(&parts, &part->mesh, first, cores,
+                                local_of(&t->trial, corner), local_of(&t->trial, middle)))
         return TM_OK;
     const tm_repair_score before = tm_repair_measure(part, t->threshold);
     replace_first(&part->mesh, cores, &parts);
@@ -190,11 +190,11 @@ static tm_status try_tip(tips *t, uint32_t tip, uint32_t middle, bool *done,
     return replace(t, core, cores, &parts, error);
 }
 
-tm_status tm_repair_tips(tm_repair_state *state, const tm_surface *surface,
-                         double threshold, tm_repair_score *score, size_t *count,
-                         tm_error *error)
+tm_status tm_repair_sharp_corners(tm_repair_state *state, const tm_surface *surface,
+                                  double threshold, tm_repair_score *score, size_t *count,
+                                  tm_error *error)
 {
-    tips t = {.state = state, .surface = surface, .threshold = threshold};
+    corners t = {.state = state, .surface = surface, .threshold = threshold};
     bool any = false;
     tm_status status = tm_node_elements_find(&t.around, &state->mesh, error);
     t.trial = (tm_trial){.whole = state, .around = &t.around};
@@ -204,7 +204,7 @@ tm_status tm_repair_tips(tm_repair_state *state, const tm_surface *surface,
         const uint32_t middle = find_middle(&t, v);
         bool done = false;
         if (middle != TM_NONE)
-            status = try_tip(&t, v, middle, &done, error);
+            status = try_sharp_corner(&t, v, middle, &done, error);
         if (!done || status != TM_OK)
             continue;
         any = true;

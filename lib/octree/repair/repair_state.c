@@ -129,14 +129,14 @@ tm_status tm_repair_widen(const tm_repair_state *state, uint32_t **octant, size_
     return TM_OK;
 }
 
-void tm_repair_free_held(tm_repair_state *state)
+void tm_repair_free_off_surface(tm_repair_state *state)
 {
     for (size_t v = 0; v < state->mesh.nodes; v++)
         if (state->rule[v].held && state->rule[v].freedom == TM_MOVES_ON_SURFACE)
             state->rule[v].where = TM_NONE;
 }
 
-tm_status tm_repair_save(tm_repair_places *places, const tm_repair_state *state,
+tm_status tm_repair_save(tm_repair_points *places, const tm_repair_state *state,
                          tm_error *error)
 {
     const size_t nodes = state->mesh.nodes;
@@ -149,18 +149,18 @@ tm_status tm_repair_save(tm_repair_places *places, const tm_repair_state *state,
     return TM_OK;
 }
 
-void tm_repair_restore(const tm_repair_places *places, tm_repair_state *state)
+void tm_repair_restore(const tm_repair_points *places, tm_repair_state *state)
 {
     const size_t nodes = state->mesh.nodes;
     memcpy(state->mesh.xyz, places->xyz, nodes * sizeof *places->xyz);
     memcpy(state->rule, places->rule, nodes * sizeof *places->rule);
 }
 
-void tm_repair_places_free(tm_repair_places *places)
+void tm_repair_points_free(tm_repair_points *places)
 {
     free(places->xyz);
     free(places->rule);
-    *places = (tm_repair_places){0};
+    *places = (tm_repair_points){0};
 }
 
 void tm_repair_state_free(tm_repair_state *state)

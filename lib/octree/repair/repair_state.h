@@ -15,7 +15,7 @@
 typedef struct tm_repair_state {
     tm_mixed_mesh mesh;
     tm_node_rule *rule; /* [nodes]; of repair_boundary.h */
-    uint8_t *place;     /* [nodes]: tm_node_place */
+    uint8_t *place;     /* [nodes]: tm_node_class */
     uint32_t *octant;   /* [elements]: TM_NONE where it is in none */
     uint32_t *origin;   /* [elements]: of which it is a part, ascending, until `remade` */
     tm_octree octree;   /* no leaves: there is none */
@@ -39,12 +39,12 @@ bool tm_repair_is_bad(const tm_mixed_mesh *mesh, size_t e, double jens, double t
 /* Measures all elements. O(elements). */
 tm_repair_score tm_repair_measure(const tm_repair_state *state, double threshold);
 
-/* Fewer invalid elements, else fewer nodes that are held back, else fewer bad elements,
- * else a better worst one. */
+/* Fewer invalid elements, else fewer nodes that are off the surface, else fewer bad
+ * elements, else a better worst one. */
 bool tm_repair_better(const tm_repair_score *a, const tm_repair_score *b);
 
-/* The octants that hold a bad element, or, with `held`, one at a node that is held back:
- * ascending, malloc'ed. */
+/* The octants that hold a bad element, or, with `held`, one at a node that is off the
+ * surface: ascending, malloc'ed. */
 tm_status tm_repair_bad_octants(const tm_repair_state *state, double threshold, bool held,
                                 uint32_t **octant, size_t *count, tm_error *error);
 
@@ -52,23 +52,23 @@ tm_status tm_repair_bad_octants(const tm_repair_state *state, double threshold, 
 tm_status tm_repair_widen(const tm_repair_state *state, uint32_t **octant, size_t *count,
                           tm_error *error);
 
-/* Lets nodes that are held back before one patch go to any. */
-void tm_repair_free_held(tm_repair_state *state);
+/* Lets nodes that are off the surface before one patch go to any. */
+void tm_repair_free_off_surface(tm_repair_state *state);
 
 /* For qsort() and bsearch(). */
 int tm_repair_compare_octants(const void *a, const void *b);
 
 /* A copy without the octree: what tm_repair_restore() needs to take back moves of nodes,
  * as long as there are the same. */
-typedef struct tm_repair_places {
+typedef struct tm_repair_points {
     double (*xyz)[3];
     tm_node_rule *rule;
-} tm_repair_places;
+} tm_repair_points;
 
-tm_status tm_repair_save(tm_repair_places *places, const tm_repair_state *state,
+tm_status tm_repair_save(tm_repair_points *places, const tm_repair_state *state,
                          tm_error *error);
-void tm_repair_restore(const tm_repair_places *places, tm_repair_state *state);
-void tm_repair_places_free(tm_repair_places *places);
+void tm_repair_restore(const tm_repair_points *places, tm_repair_state *state);
+void tm_repair_points_free(tm_repair_points *places);
 
 void tm_repair_state_free(tm_repair_state *state);
 

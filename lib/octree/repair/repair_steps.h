@@ -6,18 +6,18 @@
 #include "../../surface/surface.h"
 #include "repair_state.h"
 
-/* Moves nodes, with that effort, so that bad elements become good; nodes that are held
- * back may leave elements of `held_threshold` behind. *score is that of the state, before
- * and after; it does not become worse. */
+/* Moves nodes, with that effort, so that bad elements become good; nodes that are off
+ * the surface may leave elements of `held_threshold` behind. *score is that of the state,
+ * before and after; it does not become worse. */
 tm_status tm_repair_move(tm_repair_state *state, const tm_surface *surface,
                          double threshold, double held_threshold, unsigned effort,
                          tm_repair_score *score, tm_error *error);
 
 /* Makes elements at sharp tips of the surface anew (sharp_corner.h), where that makes
  * those around better; *count counts. */
-tm_status tm_repair_tips(tm_repair_state *state, const tm_surface *surface,
-                         double threshold, tm_repair_score *score, size_t *count,
-                         tm_error *error);
+tm_status tm_repair_sharp_corners(tm_repair_state *state, const tm_surface *surface,
+                                  double threshold, tm_repair_score *score, size_t *count,
+                                  tm_error *error);
 
 /* Divides bad elements that are no tetrahedra from a node in their middle where the worst
  * part is better than they are, a quadrilateral on the boundary along a diagonal where

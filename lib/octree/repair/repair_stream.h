@@ -18,18 +18,19 @@ typedef struct tm_repair_notes {
 /* Takes the arrays of .node and .mix; the blocks stay. TM_ERROR_INPUT: there are no
  * elements, or an element names a node twice. *state need not be initialised; it is to be
  * freed, after an error too. */
-tm_status tm_repair_take(tm_repair_state *state, tm_stream *stream, tm_error *error);
+tm_status tm_repair_from_stream(tm_repair_state *state, tm_stream *stream,
+                                tm_error *error);
 
 /* Whether there is something to do: an element is bad, or there is a surface and a node
- * is held back, or may be, as the attribute of .node does not say that none is. */
+ * is off the surface, or may be, as the attribute of .node does not say that none is. */
 bool tm_repair_is_needed(const tm_repair_state *state, const tm_stream *stream,
                          double threshold);
 
 /* Finds what nodes may do, and the octree. The place of a node is that of the only
- * attribute of .node, as tm_octree_mesh_give() writes it, if the nodes of the boundary,
- * and no others, have one; else it is found. With surface NULL nodes of the boundary do
- * not move, and there is no octree. *notes need not be initialised. TM_ERROR_SYSTEM where
- * memory is out. */
+ * attribute of .node, as tm_octree_mesh_to_stream() writes it, if the nodes of the
+ * boundary, and no others, have one; else it is found. With surface NULL nodes of the
+ * boundary do not move, and there is no octree. *notes need not be initialised.
+ * TM_ERROR_SYSTEM where memory is out. */
 tm_status tm_repair_prepare(tm_repair_state *state, const tm_stream *stream,
                             const tm_surface *surface, tm_repair_notes *notes,
                             tm_error *error);
@@ -38,8 +39,8 @@ tm_status tm_repair_prepare(tm_repair_state *state, const tm_stream *stream,
  * attributes follow; where all is remade .octant, .root and .facet are new; blocks of the
  * mesh that refer to elements that are no more, or that nobody knows, are removed.
  * *state is to be freed still. */
-tm_status tm_repair_give(tm_repair_state *state, tm_stream *stream,
-                         const tm_surface *surface, tm_repair_notes *notes,
-                         tm_error *error);
+tm_status tm_repair_to_stream(tm_repair_state *state, tm_stream *stream,
+                              const tm_surface *surface, tm_repair_notes *notes,
+                              tm_error *error);
 
 #endif

@@ -194,7 +194,7 @@ static tm_status give_octants(const tm_repair_state *state, tm_stream *stream,
         first[l + 1] += first[l];
     tm_stream_remove(stream, tm_stream_find(stream, ".octant"));
     tm_stream_remove(stream, tm_stream_find(stream, ".root"));
-    const tm_status status = tm_octree_give_blocks(&state->octree, first, stream, error);
+    const tm_status status = tm_octree_to_stream(&state->octree, first, stream, error);
     free(first);
     return status;
 }
@@ -275,9 +275,9 @@ static tm_status give_remade(tm_repair_state *state, tm_stream *stream,
 /* Moves an array. */
 #define MOVE(to, from) (free(to), (to) = (void *)(from), (from) = NULL)
 
-tm_status tm_repair_give(tm_repair_state *state, tm_stream *stream,
-                         const tm_surface *surface, tm_repair_notes *notes,
-                         tm_error *error)
+tm_status tm_repair_to_stream(tm_repair_state *state, tm_stream *stream,
+                              const tm_surface *surface, tm_repair_notes *notes,
+                              tm_error *error)
 {
     tm_status status = TM_OK;
     if (state->remade)

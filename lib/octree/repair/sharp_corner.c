@@ -13,9 +13,9 @@ typedef struct {
 
 /* The element between a face, which turns counter-clockwise seen from outside, and an
  * apex inside. */
-static bool add_part(tm_tip *to, size_t k, const uint32_t *face, uint32_t apex)
+static bool add_part(tm_sharp_corner *to, size_t k, const uint32_t *face, uint32_t apex)
 {
-    if (to->parts == TM_TIP_PARTS)
+    if (to->parts == TM_SHARP_CORNER_PARTS)
         return false;
     size_t items = to->start[to->parts];
     for (size_t i = 0; i < k; i++)
@@ -26,11 +26,11 @@ static bool add_part(tm_tip *to, size_t k, const uint32_t *face, uint32_t apex)
 }
 
 /* A face of the elements that the middle is not in. */
-static bool add_face(tm_tip *to, fan *f, size_t k, const uint32_t *face, uint32_t tip,
-                     uint32_t middle)
+static bool add_face(tm_sharp_corner *to, fan *f, size_t k, const uint32_t *face,
+                     uint32_t corner, uint32_t middle)
 {
     size_t i = 0;
-    while (i < k && face[i] != tip)
+    while (i < k && face[i] != corner)
         i++;
     if (i == k)
         return add_part(to, k, face, middle);
@@ -64,8 +64,9 @@ static bool close_fan(const fan *f, uint32_t polygon[FAN_MOST])
     return next == polygon[0];
 }
 
-bool tm_tip_divide(tm_tip *parts, const tm_mixed_mesh *mesh, const uint32_t *element,
-                   size_t count, uint32_t tip, uint32_t middle)
+bool tm_sharp_corner_divide(tm_sharp_corner *parts, const tm_mixed_mesh *mesh,
+                            const uint32_t *element, size_t count, uint32_t corner,
+                            uint32_t middle)
 {
     fan f = {.count = 0};
     parts->parts = 0;
@@ -82,15 +83,15 @@ bool tm_tip_divide(tm_tip *parts, const tm_mixed_mesh *mesh, const uint32_t *ele
                 face[c] = item[shape->face[i][c]];
                 has_middle |= face[c] == middle;
             }
-            if (!has_middle && !add_face(parts, &f, k, face, tip, middle))
+            if (!has_middle && !add_face(parts, &f, k, face, corner, middle))
                 return false;
         }
     }
-    uint32_t polygon[FAN_MOST], on_tip[FAN_MOST];
+    uint32_t polygon[FAN_MOST], on_sharp_corner[FAN_MOST];
     if (!close_fan(&f, polygon))
         return false;
     for (unsigned i = 0; i < f.count; i++)
-        on_tip[i] = polygon[f.count - 1 - i]; /* seen from the tip's element */
+        on_sharp_corner[i] = polygon[f.count - 1 - i]; /* seen from the tip's element */
     return add_part(parts, f.count, polygon, middle) &&
-           add_part(parts, f.count, on_tip, tip);
+           add_part(parts, f.count, on_sharp_corner, corner);
 }

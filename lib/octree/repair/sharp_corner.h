@@ -5,13 +5,13 @@
 
 #include "repair_trial.h"
 
-enum { TM_TIP_PARTS = 48, TM_TIP_ITEMS = 5 * TM_TIP_PARTS };
+enum { TM_SHARP_CORNER_PARTS = 48, TM_SHARP_CORNER_ITEMS = 5 * TM_SHARP_CORNER_PARTS };
 
-typedef struct tm_tip {
+typedef struct tm_sharp_corner {
     size_t parts;
-    size_t start[TM_TIP_PARTS + 1];
-    uint32_t item[TM_TIP_ITEMS];
-} tm_tip;
+    size_t start[TM_SHARP_CORNER_PARTS + 1];
+    uint32_t item[TM_SHARP_CORNER_ITEMS];
+} tm_sharp_corner;
 
 /* `tip` is a node of the boundary, all of whose elements have an edge to the node
  * `middle` inside. The boundary at the tip is three or four faces; the ends of its edges
@@ -19,7 +19,8 @@ typedef struct tm_tip {
  * `count` elements, which are all at the middle, is divided from the middle: where
  * an element had the dihedral angle of a third of the tip, this one has all of it.
  * Quadrilaterals of the boundary at the tip are cut. False where that cannot be. */
-bool tm_tip_divide(tm_tip *parts, const tm_mixed_mesh *mesh, const uint32_t *element,
-                   size_t count, uint32_t tip, uint32_t middle);
+bool tm_sharp_corner_divide(tm_sharp_corner *parts, const tm_mixed_mesh *mesh,
+                            const uint32_t *element, size_t count, uint32_t corner,
+                            uint32_t middle);
 
 #endif

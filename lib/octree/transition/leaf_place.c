@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "../forest/octree.h"
 
-const unsigned char tm_leaf_place[27][3] = {
+const unsigned char tm_leaf_point[27][3] = {
     /* corners */
     {0, 0, 0},
     {2, 0, 0},

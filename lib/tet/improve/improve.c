@@ -52,13 +52,13 @@ static bool find_targets(tm_improver *m)
 {
     const tm_tet_mesh *mesh = m->mesh;
     size_t bad = count_bad(m), count = 0;
-    tm_placed *placed = tm_new(bad, sizeof *placed);
+    tm_curve_point *placed = tm_new(bad, sizeof *placed);
     uint32_t *target = tm_grow(m->target, &m->target_room, bad + 1, sizeof *target);
     m->target = target ? target : m->target;
     for (uint32_t t = 0; t < mesh->slots && placed; t++)
         if (is_bad(m, t) && is_due(m, t))
-            placed[count++] =
-                (tm_placed){tm_space_place(&m->space, mesh->xyz[mesh->tet[t][0]]), t};
+            placed[count++] = (tm_curve_point){
+                tm_space_position(&m->space, mesh->xyz[mesh->tet[t][0]]), t};
     bool done = placed && target && tm_space_sort(placed, count);
     for (size_t k = 0; k < count && done; k++)
         target[k] = placed[k].item;
@@ -146,13 +146,13 @@ static void coarsen(tm_improver *m)
 
 /* Keeps the mesh if it is the best so far, or goes back to that. Returns how many are
  * bad. */
-static size_t keep_best(tm_improver *m)
+static size_t snapshot_best(tm_improver *m)
 {
     size_t bad = count_bad(m);
     if (bad > m->best.bad)
-        tm_improve_go_back(m, &m->best);
+        tm_improve_restore(m, &m->best);
     if (bad < m->best.bad)
-        tm_improve_keep(m, &m->best, bad);
+        tm_improve_snapshot(m, &m->best, bad);
     return m->best.bad;
 }
 
@@ -177,7 +177,7 @@ static void kick(tm_improver *m)
 {
     bool converge = m->options->converge;
     double price = kick_price;
-    size_t after = keep_best(m);
+    size_t after = snapshot_best(m);
     for (int k = 0; k < KICKS_MAX && after > 0 && !is_over(m); k++) {
         size_t before = after;
         if (!kick_once(m, price))
@@ -185,7 +185,7 @@ static void kick(tm_improver *m)
         if (m->fails % 2 == 0)
             settle(m, MOVE, 0);
         settle(m, ALL, 0);
-        after = keep_best(m);
+        after = snapshot_best(m);
         m->report->kicks++;
         if (is_gain(before, after, converge ? least_gain : enough_gain)) {
             m->fails = 0;
@@ -203,7 +203,7 @@ static void reach(tm_improver *m)
 {
     m->best.bad = SIZE_MAX;
     if (m->mesh->tets <= m->most_tets)
-        keep_best(m);
+        snapshot_best(m);
     settle(m, MOVE, 0);
     settle(m, SHRINK, 0);
     if (m->mesh->tets > m->most_tets)
@@ -213,7 +213,7 @@ static void reach(tm_improver *m)
         settle(m, ALL, 0);
         kick(m);
     }
-    keep_best(m);
+    snapshot_best(m);
 }
 
 /* Targets above the first one, step by step, as long as nothing is left behind; then the
@@ -224,11 +224,11 @@ static void climb(tm_improver *m, double first, double last)
     double reached = first;
     while (reached < last && count_bad(m) == 0 && !is_over(m)) {
         double degrees = fmin(reached + step, last);
-        tm_improve_keep(m, &m->reached, 0);
+        tm_improve_snapshot(m, &m->reached, 0);
         tm_improve_set_target(m, degrees);
         reach(m);
         if (count_bad(m) > 0) {
-            tm_improve_go_back(m, &m->reached);
+            tm_improve_restore(m, &m->reached);
             tm_improve_forbid(m, reached);
             break;
         }
@@ -246,7 +246,7 @@ static void run(tm_improver *m)
     const double first = 30, last = m->options->angle;
     m->input.bad = SIZE_MAX;
     if (first < last && m->mesh->tets <= m->most_tets)
-        tm_improve_keep(m, &m->input, count_bad(m));
+        tm_improve_snapshot(m, &m->input, count_bad(m));
     tm_improve_set_target(m, fmin(first, last));
     reach(m);
     if (first >= last)
@@ -254,7 +254,7 @@ static void run(tm_improver *m)
     climb(m, first, last);
     tm_improve_set_target(m, last);
     if (count_bad(m) > m->input.bad)
-        tm_improve_go_back(m, &m->input);
+        tm_improve_restore(m, &m->input);
 }
 
 /* Those that the report calls bad: by their angles. */

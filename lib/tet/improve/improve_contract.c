@@ -3,7 +3,7 @@
 #include "../operation/contraction.h"
 #include "improve_engine.h"
 
-/* Whether b is in a kept face at the node of the ball. */
+/* Whether b is in a constrained face at the node of the ball. */
 static bool is_in_facet(const tm_tet_mesh *mesh, const tm_ball *ball, uint32_t b)
 {
     for (size_t k = 0; k < ball->size; k++)
@@ -45,14 +45,14 @@ static uint32_t best_neighbour(tm_improver *m)
     uint32_t best = TM_NONE;
     double least, gain = TM_IMPROVE_GAIN;
     double old = tm_improve_old_cost(m, ball->tet, ball->size, &least);
-    m->look++;
+    m->stamp++;
     for (size_t k = 0; k < ball->size; k++)
         for (int i = 0; i < 3; i++) {
             size_t gone;
             uint32_t b = ball->face[k][i];
-            if (m->seen[b] == m->look)
+            if (m->seen[b] == m->stamp)
                 continue;
-            m->seen[b] = m->look;
+            m->seen[b] = m->stamp;
             if (!may_go_to(m, b))
                 continue;
             double most = old - gain + m->price * (double)ball->size;

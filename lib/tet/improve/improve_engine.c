@@ -155,7 +155,7 @@ static void note_all(tm_improver *m)
             note(m, t);
 }
 
-void tm_improve_keep(tm_improver *m, tm_improve_state *state, size_t bad)
+void tm_improve_snapshot(tm_improver *m, tm_improve_state *state, size_t bad)
 {
     if (m->status != TM_OK)
         return;
@@ -166,7 +166,7 @@ void tm_improve_keep(tm_improver *m, tm_improve_state *state, size_t bad)
         tm_improve_no_memory(m);
 }
 
-void tm_improve_go_back(tm_improver *m, const tm_improve_state *state)
+void tm_improve_restore(tm_improver *m, const tm_improve_state *state)
 {
     if (m->status != TM_OK)
         return;

@@ -48,7 +48,7 @@ typedef struct tm_improver {
      * which it was tried; a mark: == look. */
     uint32_t *tet_at, *changed, *smoothed, *contracted, *seen;
     size_t node_room;
-    uint32_t change, look; /* counters */
+    uint32_t change, stamp; /* counters */
 
     tm_improve_state best;    /* for this target, so far */
     tm_improve_state reached; /* the last target that left nothing bad */
@@ -84,10 +84,10 @@ double tm_improve_target(const tm_improver *m, double degrees);
 void tm_improve_set_target(tm_improver *m, double degrees);
 
 /* Keeps the mesh, which has so many bad tetrahedra. */
-void tm_improve_keep(tm_improver *m, tm_improve_state *state, size_t bad);
+void tm_improve_snapshot(tm_improver *m, tm_improve_state *state, size_t bad);
 
 /* Goes back to the mesh that was kept. */
-void tm_improve_go_back(tm_improver *m, const tm_improve_state *state);
+void tm_improve_restore(tm_improver *m, const tm_improve_state *state);
 
 /* From here on no operation makes an angle below so many degrees, or above 180 less
  * that. */

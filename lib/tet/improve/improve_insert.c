@@ -12,7 +12,7 @@
 enum { EDGES = 6, NOTHING = -1 };
 
 /* The cavity of the tetrahedra around edge e of t that are reached without crossing a
- * kept face; p is the mean of their centroids. */
+ * constrained face; p is the mean of their centroids. */
 static bool start_cavity(tm_improver *m, uint32_t t, unsigned e, double p[3])
 {
     const tm_tet_mesh *mesh = m->mesh;
@@ -51,28 +51,28 @@ static double plan_cavity(tm_improver *m, uint32_t t, unsigned e, double needed,
     const double beyond_target = 1.1;
     double least, enough = m->cost.target * beyond_target;
     bool done = start_cavity(m, t, e, p);
-    tm_hull hull = tm_cavity_hull(&m->cavity, m->mesh);
+    tm_cavity_boundary boundary = tm_boundary_of_cavity(&m->cavity, m->mesh);
     if (done) {
-        tm_hull_climb(&hull, m->cost.measure, &anywhere, enough, STEPS, p);
+        tm_cavity_boundary_climb(&boundary, m->cost.measure, &anywhere, enough, STEPS, p);
         done = tm_cavity_grow(&m->cavity, m->mesh, &m->marks, m->quality, &m->cost, p);
     }
     if (!done) {
         tm_improve_no_memory(m);
         return 0;
     }
-    bool grown = m->cavity.faces != hull.count;
-    hull = tm_cavity_hull(&m->cavity, m->mesh);
+    bool grown = m->cavity.faces != boundary.count;
+    boundary = tm_boundary_of_cavity(&m->cavity, m->mesh);
     if (grown)
-        tm_hull_climb(&hull, m->cost.measure, &anywhere, enough, STEPS, p);
+        tm_cavity_boundary_climb(&boundary, m->cost.measure, &anywhere, enough, STEPS, p);
     double old = tm_improve_old_cost(m, m->cavity.tet, m->cavity.size, &least);
     ptrdiff_t growth = (ptrdiff_t)m->cavity.faces - (ptrdiff_t)m->cavity.size;
     double most = old - m->price * (double)growth - needed;
-    double cost = tm_hull_cost(&hull, &m->cost, p, least, most);
+    double cost = tm_cavity_boundary_cost(&boundary, &m->cost, p, least, most);
     return cost < most && tm_improve_may_grow(m, growth) ? most + needed - cost : 0;
 }
 
-/* Whether an edge is on the cavity's hull. */
-static bool hull_has_edge(const tm_cavity *cavity, uint32_t a, uint32_t b)
+/* Whether an edge is on the cavity's boundary. */
+static bool boundary_has_edge(const tm_cavity *cavity, uint32_t a, uint32_t b)
 {
     for (size_t f = 0; f < cavity->faces; f++) {
         const uint32_t *n = cavity->face[f];
@@ -92,7 +92,7 @@ static bool has_marked_edge(const tm_improver *m)
             const uint32_t *n = m->mesh->tet[cavity->tet[k]];
             uint32_t a = n[tm_edge_corner[e][0]], b = n[tm_edge_corner[e][1]];
             const tm_marked_edge *edge = tm_tet_mesh_edge(m->mesh, a, b);
-            if (edge && edge->marker != 0 && !hull_has_edge(cavity, a, b))
+            if (edge && edge->marker != 0 && !boundary_has_edge(cavity, a, b))
                 return true;
         }
     return false;
@@ -104,18 +104,18 @@ static bool find_swallowed(tm_improver *m, size_t *count)
 {
     const tm_cavity *cavity = &m->cavity;
     *count = 0;
-    m->look++;
+    m->stamp++;
     for (size_t f = 0; f < cavity->faces; f++)
         for (int i = 0; i < 3; i++)
-            m->seen[cavity->face[f][i]] = m->look;
+            m->seen[cavity->face[f][i]] = m->stamp;
     for (size_t k = 0; k < cavity->size; k++)
         for (int i = 0; i < 4; i++) {
             uint32_t v = m->mesh->tet[cavity->tet[k]][i];
-            if (m->seen[v] == m->look)
+            if (m->seen[v] == m->stamp)
                 continue;
             if (m->features.dimension[v] != 3)
                 return false;
-            m->seen[v] = m->look;
+            m->seen[v] = m->stamp;
             m->swallowed[(*count)++] = v;
         }
     return true;
@@ -126,8 +126,8 @@ static bool fill(tm_improver *m, const double p[3])
 {
     tm_tet_mesh *mesh = m->mesh;
     size_t faces = m->cavity.faces, swallowed, width = mesh->node_attributes;
-    tm_hull hull = tm_cavity_hull(&m->cavity, mesh);
-    if (!tm_hull_sees(&hull, p) || has_marked_edge(m) ||
+    tm_cavity_boundary boundary = tm_boundary_of_cavity(&m->cavity, mesh);
+    if (!tm_cavity_boundary_sees(&boundary, p) || has_marked_edge(m) ||
         !tm_improve_reserve(m, faces + m->cavity.size, 1) ||
         !find_swallowed(m, &swallowed))
         return false;
@@ -141,7 +141,7 @@ static bool fill(tm_improver *m, const double p[3])
         tm_cavity_fill(mesh, &m->cavity, v, &m->table, m->node, m->created, m->error);
     if (m->status != TM_OK)
         return false;
-    tm_features_place_node(&m->features, v, TM_EDGE_INSIDE, 0, 0);
+    tm_features_classify_node(&m->features, v, TM_EDGE_INSIDE, 0, 0);
     for (size_t k = 0; k < swallowed; k++)
         tm_tet_mesh_delete_node(mesh, m->swallowed[k]);
     tm_improve_note(m, m->created, faces);
@@ -161,7 +161,7 @@ static double plan_split(tm_improver *m, uint32_t t, unsigned e, double needed,
         tm_improve_no_memory(m);
         return 0;
     }
-    if (!s->kept_face || tm_edge_map_get(&m->mesh->locked, s->a, s->b) ||
+    if (!s->constrained_face || tm_edge_map_get(&m->mesh->locked, s->a, s->b) ||
         !tm_star_is_simple(m->mesh, s) || !tm_improve_may_grow(m, (ptrdiff_t)s->size))
         return 0;
     double least, sum = m->price * (double)s->size;
@@ -183,15 +183,15 @@ static bool split(tm_improver *m, const double p[3])
 {
     size_t made = 2 * m->star.size, kept[2];
     uint32_t a = m->star.a, b = m->star.b;
-    tm_edge_place place = tm_features_place(&m->features, m->mesh, &m->star, kept);
+    tm_edge_class place = tm_features_classify(&m->features, m->mesh, &m->star, kept);
     if (!tm_improve_reserve(m, made, 1))
         return false;
     uint32_t corner = tm_tet_corner(m->mesh, m->star.tet[0], b);
     m->status = tm_star_insert(m->mesh, &m->star, p, true, m->created, m->error);
     if (m->status != TM_OK)
         return false;
-    tm_features_place_node(&m->features, m->mesh->tet[m->created[0]][corner], place, a,
-                           b);
+    tm_features_classify_node(&m->features, m->mesh->tet[m->created[0]][corner], place, a,
+                              b);
     tm_improve_note(m, m->created, made);
     m->report->done.edge_splits++;
     m->report->done.op[TM_OP_INSERTION]++;

@@ -13,10 +13,11 @@
 static const double beyond_target = 1.1;
 
 /* The mean of the neighbours, as far as the node may go there. */
-static void go_to_centre(const tm_hull *hull, const tm_freedom *freedom, double p[3])
+static void go_to_centre(const tm_cavity_boundary *boundary, const tm_freedom *freedom,
+                         double p[3])
 {
     double centre[3], way[3];
-    tm_hull_centre(hull, centre);
+    tm_cavity_boundary_centre(boundary, centre);
     tm_subtract(way, centre, p);
     tm_freedom_restrict(freedom, way);
     for (int x = 0; x < 3; x++)
@@ -40,7 +41,7 @@ static void move(tm_improver *m, const double p[3])
 }
 
 /* The place with the least cost, below `most`; false where there is none. */
-static bool find_place(const tm_improver *m, const tm_hull *hull,
+static bool find_place(const tm_improver *m, const tm_cavity_boundary *boundary,
                        const tm_freedom *freedom, double least, double most,
                        double place[3])
 {
@@ -51,12 +52,12 @@ static bool find_place(const tm_improver *m, const tm_hull *hull,
     for (int way = 0; way < 2 && !found; way++) {
         memcpy(p, found ? place : from, sizeof p);
         if (way == 0)
-            go_to_centre(hull, freedom, p);
+            go_to_centre(boundary, freedom, p);
         else
-            tm_hull_climb(hull, m->cost.measure, freedom, m->cost.target * beyond_target,
-                          STEPS, p);
-        double cost = tm_hull_cost(hull, &m->cost, p, least, most);
-        if (!(cost < most) || !tm_hull_sees(hull, p))
+            tm_cavity_boundary_climb(boundary, m->cost.measure, freedom,
+                                     m->cost.target * beyond_target, STEPS, p);
+        double cost = tm_cavity_boundary_cost(boundary, &m->cost, p, least, most);
+        if (!(cost < most) || !tm_cavity_boundary_sees(boundary, p))
             continue;
         most = cost;
         memcpy(place, p, sizeof p);
@@ -76,11 +77,11 @@ static bool smooth_node(tm_improver *m, uint32_t t, uint32_t v)
     if (!tm_improve_reserve(m, 0, 1))
         return false;
     tm_freedom freedom = tm_features_freedom(&m->features, m->mesh, &m->ball);
-    tm_hull hull = tm_ball_hull(&m->ball, m->mesh);
+    tm_cavity_boundary boundary = tm_boundary_of_ball(&m->ball, m->mesh);
     double least, place[3];
     double old = tm_improve_old_cost(m, m->ball.tet, m->ball.size, &least);
     if (freedom.dimension == 0 ||
-        !find_place(m, &hull, &freedom, least, old - TM_IMPROVE_GAIN, place))
+        !find_place(m, &boundary, &freedom, least, old - TM_IMPROVE_GAIN, place))
         return false;
     move(m, place);
     return true;

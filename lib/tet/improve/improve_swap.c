@@ -6,7 +6,7 @@
 
 enum { EDGES = 6, NOTHING = -1 };
 
-/* What is between two kept faces of a closed star, as an open star. */
+/* What is between two constrained faces of a closed star, as an open star. */
 static tm_star part_of(const tm_star *star, size_t from, size_t to)
 {
     tm_star part = *star;
@@ -45,7 +45,7 @@ static int take_apart(tm_improver *m, tm_star part[2])
 {
     tm_star *star = &m->star;
     size_t kept[2];
-    tm_edge_place place = tm_features_place(&m->features, m->mesh, star, kept);
+    tm_edge_class place = tm_features_classify(&m->features, m->mesh, star, kept);
     if (place == TM_EDGE_OF_FEATURE ||
         !tm_improve_has(m, place == TM_EDGE_INSIDE ? TM_OP_EDGE_REMOVAL
                                                    : TM_OP_BOUNDARY_SWAP) ||
@@ -96,8 +96,8 @@ static double plan_edge(tm_improver *m, uint32_t t, unsigned e, double needed)
     return old - sum > needed ? old - sum : 0;
 }
 
-/* The kept faces at the ends of a part, abr and abs, which become rsb and ras. They are
- * renewed with the first part; the second one finds them so. */
+/* The constrained faces at the ends of a part, abr and abs, which become rsb and ras.
+ * They are renewed with the first part; the second one finds them so. */
 static void renew_faces(const tm_tet_mesh *mesh, const tm_star *part, bool first,
                         tm_face_renewal renewal[2])
 {

@@ -53,14 +53,14 @@ static tm_status find_targets(tm_lepp_engine *e)
 {
     const tm_tet_mesh *mesh = e->mesh;
     tm_space space = tm_space_around((const double(*)[3])mesh->xyz, mesh->nodes);
-    tm_placed *placed = tm_new(count_bad(e), sizeof *placed);
+    tm_curve_point *placed = tm_new(count_bad(e), sizeof *placed);
     if (!placed)
         return tm_fail_memory(e->error);
     size_t count = 0;
     for (uint32_t t = 0; t < mesh->slots; t++)
         if (tm_tet_lives(mesh, t) && (e->mark[t] & TM_LEPP_BAD))
-            placed[count++] =
-                (tm_placed){tm_space_place(&space, mesh->xyz[mesh->tet[t][0]]), t};
+            placed[count++] = (tm_curve_point){
+                tm_space_position(&space, mesh->xyz[mesh->tet[t][0]]), t};
     tm_status status = TM_OK;
     if (!tm_space_sort(placed, count))
         status = tm_fail_memory(e->error);

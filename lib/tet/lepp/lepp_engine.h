@@ -61,7 +61,7 @@ typedef struct tm_lepp_sweeper {
     tm_replacement_table table;
     uint32_t *tet_at; /* [nodes]: a tetrahedron that has the node, or TM_NONE */
     uint32_t *seen;   /* [nodes]: look, if met */
-    uint32_t look;
+    uint32_t stamp;
     double *value; /* [node_attributes] */
     size_t tet_at_room, seen_room, value_room;
 } tm_lepp_sweeper;

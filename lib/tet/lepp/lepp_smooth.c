@@ -66,9 +66,9 @@ typedef struct mean {
 
 static void add_to_mean(tm_lepp_sweeper *s, mean *m, uint32_t v)
 {
-    if (s->seen[v] == s->look)
+    if (s->seen[v] == s->stamp)
         return;
-    s->seen[v] = s->look;
+    s->seen[v] = s->stamp;
     for (int k = 0; k < 3; k++)
         m->sum[k] += m->mesh->xyz[v][k] - m->from[k];
     m->count++;
@@ -94,11 +94,11 @@ static void find_mean(tm_lepp_engine *e, int dimension, double p[3])
 {
     tm_lepp_sweeper *s = &e->sweeper;
     mean m = {.mesh = e->mesh, .from = e->mesh->xyz[s->ball.node]};
-    if (++s->look == 0) {
+    if (++s->stamp == 0) {
         memset(s->seen, 0, s->seen_room * sizeof *s->seen);
-        s->look = 1;
+        s->stamp = 1;
     }
-    s->seen[s->ball.node] = s->look;
+    s->seen[s->ball.node] = s->stamp;
     if (dimension == 1) {
         add_to_mean(s, &m, s->features.line[s->ball.node][0]);
         add_to_mean(s, &m, s->features.line[s->ball.node][1]);
@@ -114,7 +114,8 @@ static void find_mean(tm_lepp_engine *e, int dimension, double p[3])
 }
 
 /* Whether the worst tetrahedron of the ball is better with its node at p. */
-static bool is_better(const tm_lepp_engine *e, const tm_hull *hull, const double p[3])
+static bool is_better(const tm_lepp_engine *e, const tm_cavity_boundary *boundary,
+                      const double p[3])
 {
     const tm_ball *ball = &e->sweeper.ball;
     tm_tet_measure measure = e->options->measure;
@@ -122,12 +123,12 @@ static bool is_better(const tm_lepp_engine *e, const tm_hull *hull, const double
     for (size_t k = 0; k < ball->size; k++)
         worst = fmin(worst, e->quality[ball->tet[k]]);
     double least = tm_tet_measure_times(measure, worst, 1 + TM_LEPP_GAIN);
-    if (!(tm_hull_quality(hull, measure, p, least) > worst))
+    if (!(tm_cavity_boundary_quality(boundary, measure, p, least) > worst))
         return false;
-    for (size_t k = 0; k < hull->count; k++) {
-        const uint32_t *f = hull->face[k];
-        if (!tm_angles_are_within(&e->sweeper.limits, hull->xyz[f[0]], hull->xyz[f[1]],
-                                  hull->xyz[f[2]], p))
+    for (size_t k = 0; k < boundary->count; k++) {
+        const uint32_t *f = boundary->face[k];
+        if (!tm_angles_are_within(&e->sweeper.limits, boundary->xyz[f[0]],
+                                  boundary->xyz[f[1]], boundary->xyz[f[2]], p))
             return false;
     }
     return true;
@@ -164,12 +165,12 @@ static tm_status smooth_node(tm_lepp_engine *e, uint32_t v, size_t sweep)
         return tm_fail_memory(e->error);
     report->tried++;
     find_mean(e, dimension, p);
-    tm_hull hull = tm_ball_hull(&s->ball, e->mesh);
-    if (!tm_hull_sees(&hull, p)) {
+    tm_cavity_boundary boundary = tm_boundary_of_ball(&s->ball, e->mesh);
+    if (!tm_cavity_boundary_sees(&boundary, p)) {
         report->invalid++;
         return TM_OK;
     }
-    if (!is_better(e, &hull, p))
+    if (!is_better(e, &boundary, p))
         return TM_OK;
     report->done[sweep]++;
     report->on_surface += dimension < 3;

@@ -137,7 +137,7 @@ static tm_status swap_edges(tm_lepp_engine *e, uint32_t t, size_t sweep)
         if (!tm_star_around(e->mesh, t, i, star))
             return tm_fail_memory(e->error);
         if (star->closed || star->size != 2 || (star->tet[0] < t || star->tet[1] < t) ||
-            tm_features_place(&e->sweeper.features, e->mesh, star, kept) !=
+            tm_features_classify(&e->sweeper.features, e->mesh, star, kept) !=
                 TM_EDGE_IN_FACET)
             continue;
         swap s = in_facet(e->mesh, star);

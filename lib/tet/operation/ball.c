@@ -65,7 +65,7 @@ bool tm_ball_around(const tm_tet_mesh *mesh, uint32_t t, uint32_t v, tm_tet_mark
 {
     ball->node = v;
     ball->size = 0;
-    ball->kept_face = false;
+    ball->constrained_face = false;
     if (!tm_tet_marks_clear(marks, mesh->slots) || !reserve(ball, 1))
         return false;
     tm_tet_mark(marks, t);
@@ -79,7 +79,7 @@ bool tm_ball_around(const tm_tet_mesh *mesh, uint32_t t, uint32_t v, tm_tet_mark
                 continue;
             uint32_t across = mesh->neighbour[u][i];
             if (across & TM_FACE_BIT) {
-                ball->kept_face = true;
+                ball->constrained_face = true;
                 across = tm_tet_across(mesh, u, i);
                 if (across == TM_NONE)
                     continue;

@@ -37,7 +37,7 @@ static inline bool tm_tet_is_marked(const tm_tet_marks *marks, uint32_t t)
 typedef struct tm_ball {
     uint32_t node;
     size_t size;
-    bool kept_face; /* a face that has to stay is at the node */
+    bool constrained_face; /* a face that has to stay is at the node */
     uint32_t *tet;
     uint32_t (*face)[3];
     size_t room;
@@ -51,10 +51,11 @@ bool tm_ball_around(const tm_tet_mesh *mesh, uint32_t t, uint32_t v, tm_tet_mark
                     tm_ball *ball);
 
 /* The faces around the ball; they hold until the ball or the mesh is changed. */
-static inline tm_hull tm_ball_hull(const tm_ball *ball, const tm_tet_mesh *mesh)
+static inline tm_cavity_boundary tm_boundary_of_ball(const tm_ball *ball,
+                                                     const tm_tet_mesh *mesh)
 {
-    return (tm_hull){(const double(*)[3])mesh->xyz, (const uint32_t(*)[3])ball->face,
-                     ball->size};
+    return (tm_cavity_boundary){(const double(*)[3])mesh->xyz,
+                                (const uint32_t(*)[3])ball->face, ball->size};
 }
 
 /* The face opposite corner i of t, as in a ball. */

@@ -9,8 +9,8 @@
 #include "cavity_boundary.h"
 #include "replacement.h"
 
-/* A face of the cavity's hull: (face[i], point) is a positive order. beyond[i] is the
- * half face outside, or a kept face with TM_FACE_BIT. */
+/* A face of the cavity's boundary: (face[i], point) is a positive order. beyond[i] is the
+ * half face outside, or a constrained face with TM_FACE_BIT. */
 typedef struct tm_cavity {
     size_t size;
     uint32_t *tet;
@@ -29,11 +29,12 @@ bool tm_cavity_start(tm_cavity *cavity, const tm_tet_mesh *mesh, tm_tet_marks *m
 bool tm_cavity_add(tm_cavity *cavity, const tm_tet_mesh *mesh, tm_tet_marks *marks,
                    uint32_t t);
 
-/* The hull; it holds until the cavity or the mesh is changed. */
-static inline tm_hull tm_cavity_hull(const tm_cavity *cavity, const tm_tet_mesh *mesh)
+/* The boundary; it holds until the cavity or the mesh is changed. */
+static inline tm_cavity_boundary tm_boundary_of_cavity(const tm_cavity *cavity,
+                                                       const tm_tet_mesh *mesh)
 {
-    return (tm_hull){(const double(*)[3])mesh->xyz, (const uint32_t(*)[3])cavity->face,
-                     cavity->faces};
+    return (tm_cavity_boundary){(const double(*)[3])mesh->xyz,
+                                (const uint32_t(*)[3])cavity->face, cavity->faces};
 }
 
 /* Adds tetrahedra beyond faces while that makes the whole cheaper for the point p; each
@@ -42,7 +43,7 @@ static inline tm_hull tm_cavity_hull(const tm_cavity *cavity, const tm_tet_mesh 
 bool tm_cavity_grow(tm_cavity *cavity, const tm_tet_mesh *mesh, tm_tet_marks *marks,
                     const double *quality, const tm_cost *cost, const double p[3]);
 
-/* Joins node v, which sees all of it, to the hull; created[0 … faces) are the
+/* Joins node v, which sees all of it, to the boundary; created[0 … faces) are the
  * tetrahedra made. TM_ERROR_SYSTEM, with nothing changed, where memory is out. */
 tm_status tm_cavity_fill(tm_tet_mesh *mesh, const tm_cavity *cavity, uint32_t v,
                          tm_replacement_table *table, uint32_t (*node)[4],

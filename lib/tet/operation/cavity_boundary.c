@@ -3,14 +3,14 @@
 
 #include "../../geom/predicates.h"
 
-double tm_hull_quality(const tm_hull *hull, tm_tet_measure measure, const double p[3],
-                       double least)
+double tm_cavity_boundary_quality(const tm_cavity_boundary *boundary,
+                                  tm_tet_measure measure, const double p[3], double least)
 {
     double worst = HUGE_VAL;
-    for (size_t i = 0; i < hull->count; i++) {
-        const uint32_t *f = hull->face[i];
-        double quality = tm_tet_measure_of(measure, hull->xyz[f[0]], hull->xyz[f[1]],
-                                           hull->xyz[f[2]], p);
+    for (size_t i = 0; i < boundary->count; i++) {
+        const uint32_t *f = boundary->face[i];
+        double quality = tm_tet_measure_of(measure, boundary->xyz[f[0]],
+                                           boundary->xyz[f[1]], boundary->xyz[f[2]], p);
         if (quality < least)
             return 0;
         worst = quality < worst ? quality : worst;
@@ -18,14 +18,14 @@ double tm_hull_quality(const tm_hull *hull, tm_tet_measure measure, const double
     return worst;
 }
 
-double tm_hull_cost(const tm_hull *hull, const tm_cost *cost, const double p[3],
-                    double least, double most)
+double tm_cavity_boundary_cost(const tm_cavity_boundary *boundary, const tm_cost *cost,
+                               const double p[3], double least, double most)
 {
     double sum = 0;
-    for (size_t i = 0; i < hull->count; i++) {
-        const uint32_t *f = hull->face[i];
-        double quality = tm_cost_quality(cost, least, hull->xyz[f[0]], hull->xyz[f[1]],
-                                         hull->xyz[f[2]], p);
+    for (size_t i = 0; i < boundary->count; i++) {
+        const uint32_t *f = boundary->face[i];
+        double quality = tm_cost_quality(cost, least, boundary->xyz[f[0]],
+                                         boundary->xyz[f[1]], boundary->xyz[f[2]], p);
         if (quality < least)
             return HUGE_VAL;
         sum += tm_cost_of(cost, quality);
@@ -35,23 +35,24 @@ double tm_hull_cost(const tm_hull *hull, const tm_cost *cost, const double p[3],
     return sum;
 }
 
-bool tm_hull_sees(const tm_hull *hull, const double p[3])
+bool tm_cavity_boundary_sees(const tm_cavity_boundary *boundary, const double p[3])
 {
-    for (size_t i = 0; i < hull->count; i++) {
-        const uint32_t *f = hull->face[i];
-        if (tm_orient3d(hull->xyz[f[0]], hull->xyz[f[1]], hull->xyz[f[2]], p) <= 0)
+    for (size_t i = 0; i < boundary->count; i++) {
+        const uint32_t *f = boundary->face[i];
+        if (tm_orient3d(boundary->xyz[f[0]], boundary->xyz[f[1]], boundary->xyz[f[2]],
+                        p) <= 0)
             return false;
     }
     return true;
 }
 
-void tm_hull_centre(const tm_hull *hull, double p[3])
+void tm_cavity_boundary_centre(const tm_cavity_boundary *boundary, double p[3])
 {
     double sum[3] = {0, 0, 0};
-    for (size_t i = 0; i < hull->count; i++)
+    for (size_t i = 0; i < boundary->count; i++)
         for (int k = 0; k < 3; k++)
             for (int x = 0; x < 3; x++)
-                sum[x] += hull->xyz[hull->face[i][k]][x];
+                sum[x] += boundary->xyz[boundary->face[i][k]][x];
     for (int x = 0; x < 3; x++)
-        p[x] = sum[x] / (3 * (double)hull->count);
+        p[x] = sum[x] / (3 * (double)boundary->count);
 }

@@ -10,26 +10,27 @@
 #include <stdint.h>
 
 /* (face[i], point) is a positive order of a tetrahedron. */
-typedef struct tm_hull {
+typedef struct tm_cavity_boundary {
     const double (*xyz)[3];
     const uint32_t (*face)[3];
     size_t count;
-} tm_hull;
+} tm_cavity_boundary;
 
-/* The least measure of the tetrahedra of p and the hull; 0 as soon as one is below
+/* The least measure of the tetrahedra of p and the boundary; 0 as soon as one is below
  * `least`. O(count), as all of these. */
-double tm_hull_quality(const tm_hull *hull, tm_tet_measure measure, const double p[3],
-                       double least);
+double tm_cavity_boundary_quality(const tm_cavity_boundary *boundary,
+                                  tm_tet_measure measure, const double p[3],
+                                  double least);
 
 /* What these tetrahedra cost together; HUGE_VAL where one is below `least`, or the sum
  * not below `most`. */
-double tm_hull_cost(const tm_hull *hull, const tm_cost *cost, const double p[3],
-                    double least, double most);
+double tm_cavity_boundary_cost(const tm_cavity_boundary *boundary, const tm_cost *cost,
+                               const double p[3], double least, double most);
 
 /* Whether p sees all faces from inside: all these tetrahedra are exactly positive. */
-bool tm_hull_sees(const tm_hull *hull, const double p[3]);
+bool tm_cavity_boundary_sees(const tm_cavity_boundary *boundary, const double p[3]);
 
-/* The mean of the hull's nodes, each counted by its faces. */
-void tm_hull_centre(const tm_hull *hull, double p[3]);
+/* The mean of the boundary's nodes, each counted by its faces. */
+void tm_cavity_boundary_centre(const tm_cavity_boundary *boundary, double p[3]);
 
 #endif

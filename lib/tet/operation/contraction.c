@@ -17,7 +17,7 @@ double tm_contraction_cost(const tm_tet_mesh *mesh, const tm_ball *ball, uint32_
     for (size_t i = 0; i < ball->size; i++) {
         const uint32_t *f = ball->face[i];
         if (has_node(f, b)) {
-            /* A kept face opposite b would be flat with b. */
+            /* A constrained face opposite b would be flat with b. */
             uint32_t t = ball->tet[i];
             if (mesh->neighbour[t][tm_tet_corner(mesh, t, b)] & TM_FACE_BIT)
                 return HUGE_VAL;
@@ -39,10 +39,10 @@ double tm_contraction_cost(const tm_tet_mesh *mesh, const tm_ball *ball, uint32_
     return sum;
 }
 
-/* A kept face of the ball: renamed, or forgotten where it has both nodes. */
+/* A constrained face of the ball: renamed, or forgotten where it has both nodes. */
 static void move_face(tm_tet_mesh *mesh, uint32_t f, uint32_t a, uint32_t b)
 {
-    tm_kept_face *face = &mesh->face[f];
+    tm_constrained_face *face = &mesh->face[f];
     if (has_node(face->node, a) && has_node(face->node, b)) {
         face->side[0] = face->side[1] = TM_NONE;
         face->listed = false;
@@ -85,7 +85,7 @@ void tm_contract(tm_tet_mesh *mesh, const tm_ball *ball, uint32_t b, uint32_t *c
     for (size_t i = 0; i < ball->size; i++)
         for (int k = 0; k < 3 && mesh->edge_of.count > 0; k++)
             move_edge(mesh, a, ball->face[i][k], b);
-    for (size_t i = 0; i < ball->size && ball->kept_face; i++)
+    for (size_t i = 0; i < ball->size && ball->constrained_face; i++)
         for (uint32_t k = 0; k < 4; k++) {
             uint32_t across = mesh->neighbour[ball->tet[i]][k];
             if (across & TM_FACE_BIT && mesh->tet[ball->tet[i]][k] != a)

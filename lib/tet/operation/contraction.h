@@ -12,8 +12,8 @@
  * sum not below `most`. *gone is how many have b already. O(size).
  *
  * The tetrahedra that stay fill the ball exactly if they are positive and b is in every
- * kept face's plane that the node is in: the ball is bounded by their outer faces, the
- * faces that b has, and those flat ones. */
+ * constrained face's plane that the node is in: the ball is bounded by their outer faces,
+ * the faces that b has, and those flat ones. */
 double tm_contraction_cost(const tm_tet_mesh *mesh, const tm_ball *ball, uint32_t b,
                            const tm_cost *cost, double least, double most, size_t *gone);
 

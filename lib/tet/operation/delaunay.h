@@ -3,8 +3,8 @@
  *
  * A face inside a mesh is *locally Delaunay* if neither of its two tetrahedra has the far
  * node of the other strictly inside its circumscribed sphere. A mesh counts as Delaunay
- * here if all its faces are but those that have to stay (tm_kept_face). What that is
- * worth:
+ * here if all its faces are but those that have to stay (tm_constrained_face). What that
+ * is worth:
  *
  *   - In a convex mesh without faces that have to stay inside, every sphere is empty: B.
  *     Delaunay, Sur la sphère vide, Bulletin de l'Académie des Sciences de l'URSS (1934).
@@ -28,7 +28,7 @@ typedef struct tm_delaunay_report {
     size_t insertions;
     size_t removed;  /* tetrahedra in their cavities */
     size_t flipped;  /* faces that continued a facet */
-    size_t stopped;  /* kept faces with a sphere beyond that held the node */
+    size_t stopped;  /* constrained faces with a sphere beyond that held the node */
     size_t refused;  /* points that would have been cut back, and were not inserted */
     size_t cut_back; /* cavities that left a tetrahedron out whose sphere held the node,
                         because that did not see all of it, or it held what has to stay */

@@ -16,7 +16,7 @@ void tm_delaunay_cavity_free(tm_delaunay_cavity *cavity)
 {
     free(cavity->tet);
     free(cavity->face);
-    free(cavity->kept);
+    free(cavity->constrained);
     free(cavity->seen);
     tm_tet_marks_free(&cavity->inside);
     tm_tet_marks_free(&cavity->left_out);
@@ -68,11 +68,12 @@ static bool spread(tm_delaunay_cavity *cavity, const tm_tet_mesh *mesh)
     return true;
 }
 
-static tm_delaunay_kept *find_kept(const tm_delaunay_cavity *cavity, uint32_t f)
+static tm_delaunay_constrained *find_constrained(const tm_delaunay_cavity *cavity,
+                                                 uint32_t f)
 {
-    for (size_t k = 0; k < cavity->kepts; k++)
-        if (cavity->kept[k].face == f)
-            return &cavity->kept[k];
+    for (size_t k = 0; k < cavity->constrained_count; k++)
+        if (cavity->constrained[k].face == f)
+            return &cavity->constrained[k];
     return NULL;
 }
 
@@ -84,48 +85,50 @@ static int corner_of(const uint32_t node[3], uint32_t v)
     return -1;
 }
 
-/* Appends kept face f with nodes of its own, and with `to` in the place of one. */
-static bool append_kept(tm_delaunay_cavity *cavity, const tm_tet_mesh *mesh, uint32_t f,
-                        int corner, uint32_t to)
+/* Appends constrained face f with nodes of its own, and with `to` in the place of one. */
+static bool append_constrained(tm_delaunay_cavity *cavity, const tm_tet_mesh *mesh,
+                               uint32_t f, int corner, uint32_t to)
 {
-    tm_delaunay_kept *kept =
-        tm_grow(cavity->kept, &cavity->kept_room, cavity->kepts + 1, sizeof *kept);
-    if (!kept)
+    tm_delaunay_constrained *constrained =
+        tm_grow(cavity->constrained, &cavity->constrained_room,
+                cavity->constrained_count + 1, sizeof *constrained);
+    if (!constrained)
         return false;
-    cavity->kept = kept;
-    kept += cavity->kepts++;
-    *kept = (tm_delaunay_kept){.face = f, .sides = 1};
-    memcpy(kept->node, mesh->face[f].node, sizeof kept->node);
+    cavity->constrained = constrained;
+    constrained += cavity->constrained_count++;
+    *constrained = (tm_delaunay_constrained){.face = f, .sides = 1};
+    memcpy(constrained->node, mesh->face[f].node, sizeof constrained->node);
     if (corner >= 0)
-        kept->node[corner] = to;
-    kept->open = corner_of(kept->node, cavity->node) >= 0;
+        constrained->node[corner] = to;
+    constrained->open = corner_of(constrained->node, cavity->node) >= 0;
     return true;
 }
 
 /* A face at the edge that the node is to split is two. */
-static bool add_kept(tm_delaunay_cavity *cavity, const tm_tet_mesh *mesh, uint32_t f)
+static bool add_constrained(tm_delaunay_cavity *cavity, const tm_tet_mesh *mesh,
+                            uint32_t f)
 {
-    tm_delaunay_kept *kept = find_kept(cavity, f);
-    if (kept) {
-        kept->sides++;
+    tm_delaunay_constrained *constrained = find_constrained(cavity, f);
+    if (constrained) {
+        constrained->sides++;
         return true;
     }
     int a = corner_of(mesh->face[f].node, cavity->edge[0]);
     int b = corner_of(mesh->face[f].node, cavity->edge[1]);
     if (a < 0 || b < 0)
-        return append_kept(cavity, mesh, f, -1, TM_NONE);
-    return append_kept(cavity, mesh, f, b, cavity->node) &&
-           append_kept(cavity, mesh, f, a, cavity->node);
+        return append_constrained(cavity, mesh, f, -1, TM_NONE);
+    return append_constrained(cavity, mesh, f, b, cavity->node) &&
+           append_constrained(cavity, mesh, f, a, cavity->node);
 }
 
-/* The kept faces at the tetrahedra. */
-static bool list_kept(tm_delaunay_cavity *cavity, const tm_tet_mesh *mesh)
+/* The constrained faces at the tetrahedra. */
+static bool list_constrained(tm_delaunay_cavity *cavity, const tm_tet_mesh *mesh)
 {
-    cavity->kepts = 0;
+    cavity->constrained_count = 0;
     for (size_t k = 0; k < cavity->size; k++)
         for (uint32_t i = 0; i < 4; i++) {
             uint32_t g = mesh->neighbour[cavity->tet[k]][i];
-            if (g & TM_FACE_BIT && !add_kept(cavity, mesh, g & ~TM_FACE_BIT))
+            if (g & TM_FACE_BIT && !add_constrained(cavity, mesh, g & ~TM_FACE_BIT))
                 return false;
         }
     return true;
@@ -138,18 +141,18 @@ static unsigned sides_of(const tm_tet_mesh *mesh, uint32_t f)
 }
 
 /* The one face of the cavity that is at edge ab and not f; NULL where there are more. */
-static tm_delaunay_kept *only_other_at(const tm_delaunay_cavity *cavity, uint32_t f,
-                                       uint32_t a, uint32_t b)
+static tm_delaunay_constrained *only_other_at(const tm_delaunay_cavity *cavity,
+                                              uint32_t f, uint32_t a, uint32_t b)
 {
-    tm_delaunay_kept *found = NULL;
-    for (size_t k = 0; k < cavity->kepts; k++) {
-        tm_delaunay_kept *kept = &cavity->kept[k];
-        if (kept->face == f || corner_of(kept->node, a) < 0 ||
-            corner_of(kept->node, b) < 0)
+    tm_delaunay_constrained *found = NULL;
+    for (size_t k = 0; k < cavity->constrained_count; k++) {
+        tm_delaunay_constrained *constrained = &cavity->constrained[k];
+        if (constrained->face == f || corner_of(constrained->node, a) < 0 ||
+            corner_of(constrained->node, b) < 0)
             continue;
         if (found)
             return NULL;
-        found = kept;
+        found = constrained;
     }
     return found;
 }
@@ -158,19 +161,19 @@ static tm_delaunay_kept *only_other_at(const tm_delaunay_cavity *cavity, uint32_
  * node, if there is one: of the two triangles (v a b) and (a b d) come (v a d) and
  * (v d b). */
 static bool open_next(tm_delaunay_cavity *cavity, const tm_tet_mesh *mesh,
-                      tm_delaunay_kept *kept)
+                      tm_delaunay_constrained *constrained)
 {
-    int i = corner_of(kept->node, cavity->node);
-    uint32_t a = kept->node[(i + 1) % 3], b = kept->node[(i + 2) % 3];
-    tm_delaunay_kept *next = only_other_at(cavity, kept->face, a, b);
+    int i = corner_of(constrained->node, cavity->node);
+    uint32_t a = constrained->node[(i + 1) % 3], b = constrained->node[(i + 2) % 3];
+    tm_delaunay_constrained *next = only_other_at(cavity, constrained->face, a, b);
     if (!next || next->open || next->sides != sides_of(mesh, next->face))
         return false;
     int at_a = corner_of(next->node, a), at_b = corner_of(next->node, b);
     uint32_t d = next->node[0 + 1 + 2 - at_a - at_b];
-    if (!tm_facet_continues(mesh, kept->face, next->face, a, b, cavity->node, d,
+    if (!tm_facet_continues(mesh, constrained->face, next->face, a, b, cavity->node, d,
                             cavity->flatness))
         return false;
-    kept->node[(i + 2) % 3] = d;
+    constrained->node[(i + 2) % 3] = d;
     next->node[at_a] = cavity->node;
     next->open = true;
     return true;
@@ -178,9 +181,9 @@ static bool open_next(tm_delaunay_cavity *cavity, const tm_tet_mesh *mesh,
 
 static void open_facets(tm_delaunay_cavity *cavity, const tm_tet_mesh *mesh)
 {
-    for (size_t k = 0; k < cavity->kepts && !cavity->no_facets;) {
-        tm_delaunay_kept *kept = &cavity->kept[k];
-        if (kept->open && open_next(cavity, mesh, kept))
+    for (size_t k = 0; k < cavity->constrained_count && !cavity->no_facets;) {
+        tm_delaunay_constrained *constrained = &cavity->constrained[k];
+        if (constrained->open && open_next(cavity, mesh, constrained))
             k = 0;
         else
             k++;
@@ -207,7 +210,7 @@ static bool is_seen(const tm_delaunay_cavity *cavity, const tm_tet_mesh *mesh,
 static void leave_out(tm_delaunay_cavity *cavity, size_t k)
 {
     if (k < cavity->ball)
-        cavity->only_ball = true; /* it may not be without kept faces beside it */
+        cavity->only_ball = true; /* it may not be without constrained faces beside it */
     else
         tm_tet_mark(&cavity->left_out, cavity->tet[k]);
 }
@@ -234,7 +237,7 @@ static bool list_faces(tm_delaunay_cavity *cavity, const tm_tet_mesh *mesh, bool
         for (uint32_t i = 0; i < 4; i++) {
             uint32_t t = cavity->tet[k], g = mesh->neighbour[t][i], node[3];
             bool stays = g & TM_FACE_BIT;
-            if (stays ? find_kept(cavity, g & ~TM_FACE_BIT)->open
+            if (stays ? find_constrained(cavity, g & ~TM_FACE_BIT)->open
                       : tm_tet_is_marked(&cavity->inside, g / 4))
                 continue;
             tm_tet_face_below(mesh, t, i, node);
@@ -254,7 +257,7 @@ static bool clear_sides(tm_delaunay_cavity *cavity)
     if (side->room > 0)
         memset(side->slot, 0, side->room * sizeof *side->slot);
     side->count = 0;
-    return tm_edge_map_reserve(side, 3 * cavity->faces + cavity->kepts);
+    return tm_edge_map_reserve(side, 3 * cavity->faces + cavity->constrained_count);
 }
 
 /* Finds what is across the side face at the edge of face k opposite its node i. */
@@ -273,7 +276,7 @@ static bool match_side(tm_delaunay_cavity *cavity, uint32_t k, uint32_t i,
         return false;
     face->partner[i] = *other;
     if (*other & TM_FACE_BIT) {
-        cavity->kept[*other & ~TM_FACE_BIT].joined++;
+        cavity->constrained[*other & ~TM_FACE_BIT].joined++;
         return true;
     }
     cavity->face[*other / 4].partner[*other % 4] = 4 * k + i;
@@ -282,25 +285,26 @@ static bool match_side(tm_delaunay_cavity *cavity, uint32_t k, uint32_t i,
     return true;
 }
 
-/* Whether the side faces of the new tetrahedra fit together and on the open kept faces.
- * They do not where those bend round the end of a kept face, or are not a disc. */
+/* Whether the side faces of the new tetrahedra fit together and on the open constrained
+ * faces. They do not where those bend round the end of a constrained face, or are not a
+ * disc. */
 static bool match_sides(tm_delaunay_cavity *cavity, const tm_tet_mesh *mesh)
 {
     size_t waiting = 0;
-    for (uint32_t k = 0; k < cavity->kepts; k++) {
-        const tm_delaunay_kept *kept = &cavity->kept[k];
-        int i = corner_of(kept->node, cavity->node);
-        if (kept->open)
-            tm_edge_map_put(&cavity->side, kept->node[(i + 1) % 3],
-                            kept->node[(i + 2) % 3], k | TM_FACE_BIT);
+    for (uint32_t k = 0; k < cavity->constrained_count; k++) {
+        const tm_delaunay_constrained *constrained = &cavity->constrained[k];
+        int i = corner_of(constrained->node, cavity->node);
+        if (constrained->open)
+            tm_edge_map_put(&cavity->side, constrained->node[(i + 1) % 3],
+                            constrained->node[(i + 2) % 3], k | TM_FACE_BIT);
     }
     for (uint32_t k = 0; k < cavity->faces; k++)
         for (uint32_t i = 0; i < 3; i++)
             if (!match_side(cavity, k, i, &waiting))
                 return false;
-    for (size_t k = 0; k < cavity->kepts; k++)
-        if (cavity->kept[k].open &&
-            cavity->kept[k].joined != sides_of(mesh, cavity->kept[k].face))
+    for (size_t k = 0; k < cavity->constrained_count; k++)
+        if (cavity->constrained[k].open &&
+            cavity->constrained[k].joined != sides_of(mesh, cavity->constrained[k].face))
             return false;
     return waiting == 0;
 }
@@ -315,14 +319,14 @@ static bool look_at_nodes(tm_delaunay_cavity *cavity, const tm_tet_mesh *mesh)
     memset(seen + cavity->seen_room, 0, (room - cavity->seen_room) * sizeof *seen);
     cavity->seen = seen;
     cavity->seen_room = room;
-    if (++cavity->look == 0) {
+    if (++cavity->stamp == 0) {
         memset(seen, 0, room * sizeof *seen);
-        cavity->look = 1;
+        cavity->stamp = 1;
     }
     for (size_t k = 0; k < cavity->faces; k++)
         for (int i = 0; i < 3; i++)
-            seen[cavity->face[k].node[i]] = cavity->look;
-    seen[cavity->node] = cavity->look;
+            seen[cavity->face[k].node[i]] = cavity->stamp;
+    seen[cavity->node] = cavity->stamp;
     return true;
 }
 
@@ -331,7 +335,7 @@ static bool loses(const tm_delaunay_cavity *cavity, const tm_tet_mesh *mesh, uin
 {
     const uint32_t *n = mesh->tet[t];
     for (int i = 0; i < 4; i++) {
-        if (cavity->seen[n[i]] != cavity->look)
+        if (cavity->seen[n[i]] != cavity->stamp)
             return true;
         for (int j = 0; j < i && mesh->edge_of.count > 0; j++) {
             const tm_marked_edge *edge = tm_tet_mesh_edge(mesh, n[i], n[j]);
@@ -347,7 +351,7 @@ static bool loses(const tm_delaunay_cavity *cavity, const tm_tet_mesh *mesh, uin
 static bool try_cavity(tm_delaunay_cavity *cavity, const tm_tet_mesh *mesh, bool *fits)
 {
     *fits = true;
-    if (!spread(cavity, mesh) || !list_kept(cavity, mesh))
+    if (!spread(cavity, mesh) || !list_constrained(cavity, mesh))
         return false;
     if (cavity->only_ball)
         return true;
@@ -434,11 +438,11 @@ void tm_delaunay_cavity_count(tm_delaunay_cavity *cavity, const tm_tet_mesh *mes
     report->insertions++;
     report->removed += cavity->size;
     report->cut_back += cavity->is_cut_back;
-    for (size_t k = 0; k < cavity->kepts; k++) {
-        const tm_delaunay_kept *kept = &cavity->kept[k];
-        const tm_kept_face *face = &mesh->face[kept->face];
-        report->flipped += kept->open && corner_of(face->node, cavity->node) < 0;
-        if (kept->open || sides_of(mesh, kept->face) != 2)
+    for (size_t k = 0; k < cavity->constrained_count; k++) {
+        const tm_delaunay_constrained *constrained = &cavity->constrained[k];
+        const tm_constrained_face *face = &mesh->face[constrained->face];
+        report->flipped += constrained->open && corner_of(face->node, cavity->node) < 0;
+        if (constrained->open || sides_of(mesh, constrained->face) != 2)
             continue;
         int s = tm_tet_is_marked(&cavity->inside, face->side[0] / 4);
         report->stopped += holds(cavity, mesh, face->side[s] / 4);

@@ -15,21 +15,21 @@
 typedef struct tm_delaunay_face {
     uint32_t node[3];
     uint32_t half, beyond; /* the half face in the cavity, and its neighbour entry */
-    /* Across the side face opposite node[i]: 4 × another face + its i, or a kept face of
-     * the cavity with TM_FACE_BIT. */
+    /* Across the side face opposite node[i]: 4 × another face + its i, or a constrained
+     * face of the cavity with TM_FACE_BIT. */
     uint32_t partner[3];
 } tm_delaunay_face;
 
-/* A kept face at a tetrahedron of the cavity. Those at the node are open: the tetrahedra
- * on them are made new. So are those that continue their facet, which the node takes in
- * the same way in its plane; the node becomes a corner of theirs. */
-typedef struct tm_delaunay_kept {
+/* A constrained face at a tetrahedron of the cavity. Those at the node are open: the
+ * tetrahedra on them are made new. So are those that continue their facet, which the node
+ * takes in the same way in its plane; the node becomes a corner of theirs. */
+typedef struct tm_delaunay_constrained {
     uint32_t face;
     uint32_t node[3]; /* it is to have */
     unsigned sides;   /* of it in the cavity */
     unsigned joined;  /* new tetrahedra on it */
     bool open;
-} tm_delaunay_kept;
+} tm_delaunay_constrained;
 
 /* The cavity with all that finding it needs; {0} but for the flatness of facet.h. */
 typedef struct tm_delaunay_cavity {
@@ -43,15 +43,15 @@ typedef struct tm_delaunay_cavity {
     bool is_cut_back; /* a tetrahedron was left out whose sphere holds the node */
     tm_delaunay_face *face;
     size_t faces;
-    tm_delaunay_kept *kept;
-    size_t kepts;
+    tm_delaunay_constrained *constrained;
+    size_t constrained_count;
 
     tm_tet_marks inside, left_out;
     bool only_ball, no_facets; /* how a cavity that does not fit is tried again */
     tm_edge_map side;          /* edges of the faces: the first new side face there */
     uint32_t *seen;            /* [nodes]: look, if on a face */
-    uint32_t look;
-    size_t tet_room, face_room, kept_room, seen_room;
+    uint32_t stamp;
+    size_t tet_room, face_room, constrained_room, seen_room;
 } tm_delaunay_cavity;
 
 void tm_delaunay_cavity_free(tm_delaunay_cavity *cavity);
@@ -70,8 +70,8 @@ bool tm_delaunay_cavity_foresee(tm_delaunay_cavity *cavity, const tm_tet_mesh *m
                                 uint32_t node, const tm_star *star);
 
 /* Whether all faces between the tetrahedra that the node will have are locally Delaunay.
- * Without kept faces they always are; but not every point can be inserted where some are,
- * for not every surface is that of a constrained Delaunay mesh. */
+ * Without constrained faces they always are; but not every point can be inserted where
+ * some are, for not every surface is that of a constrained Delaunay mesh. */
 bool tm_delaunay_cavity_is_delaunay(const tm_delaunay_cavity *cavity,
                                     const tm_tet_mesh *mesh);
 

@@ -63,14 +63,14 @@ static void take_slots(tm_tet_mesh *mesh, tm_delaunay *d)
     d->made = cavity->faces;
 }
 
-/* Gives the open kept faces their nodes; their sides are to come. */
-static void renew_kept(tm_tet_mesh *mesh, const tm_delaunay_cavity *cavity)
+/* Gives the open constrained faces their nodes; their sides are to come. */
+static void renew_constrained(tm_tet_mesh *mesh, const tm_delaunay_cavity *cavity)
 {
-    for (size_t k = 0; k < cavity->kepts; k++) {
-        tm_kept_face *face = &mesh->face[cavity->kept[k].face];
-        if (!cavity->kept[k].open)
+    for (size_t k = 0; k < cavity->constrained_count; k++) {
+        tm_constrained_face *face = &mesh->face[cavity->constrained[k].face];
+        if (!cavity->constrained[k].open)
             continue;
-        memcpy(face->node, cavity->kept[k].node, sizeof face->node);
+        memcpy(face->node, cavity->constrained[k].node, sizeof face->node);
         face->side[0] = face->side[1] = TM_NONE;
     }
 }
@@ -79,7 +79,7 @@ static void renew_kept(tm_tet_mesh *mesh, const tm_delaunay_cavity *cavity)
 static void fill(tm_tet_mesh *mesh, tm_delaunay *d)
 {
     const tm_delaunay_cavity *cavity = &d->cavity;
-    renew_kept(mesh, cavity);
+    renew_constrained(mesh, cavity);
     for (size_t k = 0; k < cavity->faces; k++) {
         const tm_delaunay_face *face = &cavity->face[k];
         uint32_t t = d->created[k];
@@ -92,9 +92,9 @@ static void fill(tm_tet_mesh *mesh, tm_delaunay *d)
                 mesh->neighbour[t][i] = 4 * d->created[partner / 4] + partner % 4;
                 continue;
             }
-            uint32_t f = cavity->kept[partner & ~TM_FACE_BIT].face;
-            tm_kept_face *kept = &mesh->face[f];
-            kept->side[kept->side[0] != TM_NONE] = half;
+            uint32_t f = cavity->constrained[partner & ~TM_FACE_BIT].face;
+            tm_constrained_face *constrained = &mesh->face[f];
+            constrained->side[constrained->side[0] != TM_NONE] = half;
             mesh->neighbour[t][i] = f | TM_FACE_BIT;
         }
     }

@@ -27,9 +27,9 @@ tm_status tm_delaunay_foresee(tm_tet_mesh *mesh, const tm_star *star, const doub
  * by tm_star_insert(), and then the node's cavity is joined to it.
  *
  * A Delaunay mesh stays Delaunay if no cavity is cut back; none is in a convex mesh
- * without kept faces inside, but for what the rounding of midpoints does to its boundary.
- * In any mesh all tetrahedra made are exactly positive. TM_ERROR_SYSTEM where memory is
- * out: the mesh is valid, with p or without. Expected O(n) for n tetrahedra. */
+ * without constrained faces inside, but for what the rounding of midpoints does to its
+ * boundary. In any mesh all tetrahedra made are exactly positive. TM_ERROR_SYSTEM where
+ * memory is out: the mesh is valid, with p or without. Expected O(n) for n tetrahedra. */
 tm_status tm_delaunay_insert(tm_tet_mesh *mesh, const tm_star *star, const double p[3],
                              tm_delaunay *d, tm_error *error);
 

@@ -225,7 +225,7 @@ static void build(removal *r, size_t i, size_t j, uint32_t above, uint32_t below
 }
 
 /* The slots of the new tetrahedra: those of the star, then new ones. All are of the one
- * region that a star without kept faces is in. */
+ * region that a star without constrained faces is in. */
 static void take_slots(removal *r)
 {
     tm_tet_mesh *mesh = r->mesh;
@@ -253,7 +253,7 @@ tm_status tm_edge_removal_apply(tm_tet_mesh *mesh, const tm_star *star,
     save_outer_faces(&r);
     take_slots(&r);
     build(&r, 0, star->size - 1, TM_NONE, TM_NONE);
-    if (mesh->inner_edges || !star->closed || star->kept_face)
+    if (mesh->inner_edges || !star->closed || star->constrained_face)
         tm_tet_mesh_forget_edge(mesh, star->a, star->b);
     return TM_OK;
 }

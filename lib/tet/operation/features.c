@@ -43,7 +43,7 @@ bool tm_features_copy(tm_features *to, const tm_features *from)
     return true;
 }
 
-static uint32_t third_node(const tm_kept_face *face, uint32_t a, uint32_t b)
+static uint32_t third_node(const tm_constrained_face *face, uint32_t a, uint32_t b)
 {
     for (int i = 0; i < 2; i++)
         if (face->node[i] != a && face->node[i] != b)
@@ -66,7 +66,7 @@ static bool is_same_facet(const tm_tet_mesh *mesh, uint32_t f, uint32_t g, uint3
 static bool map_edges(const tm_tet_mesh *mesh, double flatness, tm_edge_map *edges)
 {
     for (uint32_t f = 0; f < mesh->faces; f++) {
-        const tm_kept_face *face = &mesh->face[f];
+        const tm_constrained_face *face = &mesh->face[f];
         if (face->side[0] == TM_NONE && face->side[1] == TM_NONE)
             continue;
         if (!tm_edge_map_reserve(edges, 3))
@@ -280,12 +280,12 @@ static bool has_line_to(const tm_features *features, uint32_t a, uint32_t b)
            (features->line[a][0] == b || features->line[a][1] == b);
 }
 
-tm_edge_place tm_features_place(const tm_features *features, const tm_tet_mesh *mesh,
-                                const tm_star *star, size_t kept[2])
+tm_edge_class tm_features_classify(const tm_features *features, const tm_tet_mesh *mesh,
+                                   const tm_star *star, size_t kept[2])
 {
     uint32_t a = star->a, b = star->b, face[2] = {0, 0};
     size_t count = 0;
-    if (!star->kept_face)
+    if (!star->constrained_face)
         return tm_star_is_free(mesh, star) ? TM_EDGE_INSIDE : TM_EDGE_OF_FEATURE;
     /* The face with ring[i] is opposite ring[i + 1] in tetrahedron i; the last one of an
      * open star opposite ring[size - 1]. */
@@ -314,8 +314,8 @@ static void replace_on_line(tm_features *features, uint32_t v, uint32_t old, uin
             features->line[v][i] = new;
 }
 
-void tm_features_place_node(tm_features *features, uint32_t node, tm_edge_place place,
-                            uint32_t a, uint32_t b)
+void tm_features_classify_node(tm_features *features, uint32_t node, tm_edge_class place,
+                               uint32_t a, uint32_t b)
 {
     features->line[node][0] = features->line[node][1] = TM_NONE;
     features->dimension[node] = place == TM_EDGE_INSIDE     ? INSIDE

@@ -37,20 +37,20 @@ tm_freedom tm_features_freedom(const tm_features *features, const tm_tet_mesh *m
                                const tm_ball *ball);
 
 /* What an edge is in. */
-typedef enum tm_edge_place {
+typedef enum tm_edge_class {
     TM_EDGE_INSIDE,
     TM_EDGE_IN_FACET,  /* of two flat faces */
     TM_EDGE_OF_FEATURE /* has to stay */
-} tm_edge_place;
+} tm_edge_class;
 
 /* Where the edge of a star is. kept[0] and kept[1] are the two faces of TM_EDGE_IN_FACET,
  * as the places in the ring of their third nodes. */
-tm_edge_place tm_features_place(const tm_features *features, const tm_tet_mesh *mesh,
-                                const tm_star *star, size_t kept[2]);
+tm_edge_class tm_features_classify(const tm_features *features, const tm_tet_mesh *mesh,
+                                   const tm_star *star, size_t kept[2]);
 
 /* A new node was put inside, or on the edge ab, which was in the place. */
-void tm_features_place_node(tm_features *features, uint32_t node, tm_edge_place place,
-                            uint32_t a, uint32_t b);
+void tm_features_classify_node(tm_features *features, uint32_t node, tm_edge_class place,
+                               uint32_t a, uint32_t b);
 
 /* Node a of a feature edge goes, and its neighbour b is joined to the one beyond. */
 void tm_features_join(tm_features *features, uint32_t a, uint32_t b);

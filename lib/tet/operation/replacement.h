@@ -19,7 +19,7 @@ typedef struct tm_replacement {
     size_t old_count;
     const uint32_t (*node)[4]; /* positive, and filling the cavity exactly */
     size_t count;
-    const tm_face_renewal *renewal; /* of kept faces at the cavity */
+    const tm_face_renewal *renewal; /* of constrained faces at the cavity */
     size_t renewals;                /* 0 or 2 */
     uint32_t *created;              /* [count]: the tetrahedra made */
 } tm_replacement;

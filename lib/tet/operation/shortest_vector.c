@@ -15,8 +15,8 @@ typedef struct {
     int corners;
 } simplex;
 
-/* The point of the affine hull of the corners that is nearest to the origin, as weights;
- * false where they are affinely dependent. */
+/* The point of the affine boundary of the corners that is nearest to the origin, as
+ * weights; false where they are affinely dependent. */
 static bool nearest_of_line_or_plane(const simplex *s, double weight[CORNERS])
 {
     const double dependent = 1e-12;

@@ -24,16 +24,16 @@ void tm_freedom_restrict(const tm_freedom *freedom, double vector[3])
 }
 
 /* The slopes at p that are below the limit; *worst is the least. */
-static size_t collect(const tm_hull *hull, tm_tet_measure measure,
+static size_t collect(const tm_cavity_boundary *boundary, tm_tet_measure measure,
                       const tm_freedom *freedom, const double p[3], double limit,
                       tm_slope *slope, double *worst)
 {
     size_t count = 0;
     *worst = HUGE_VAL;
-    for (size_t i = 0; i < hull->count && count + TM_SLOPES <= SLOPES_MAX; i++) {
-        const uint32_t *f = hull->face[i];
-        count += tm_tet_slopes(measure, hull->xyz[f[0]], hull->xyz[f[1]], hull->xyz[f[2]],
-                               p, limit, slope + count);
+    for (size_t i = 0; i < boundary->count && count + TM_SLOPES <= SLOPES_MAX; i++) {
+        const uint32_t *f = boundary->face[i];
+        count += tm_tet_slopes(measure, boundary->xyz[f[0]], boundary->xyz[f[1]],
+                               boundary->xyz[f[2]], p, limit, slope + count);
     }
     for (size_t k = 0; k < count; k++) {
         tm_freedom_restrict(freedom, slope[k].gradient);
@@ -60,7 +60,7 @@ static double step_length(const tm_slope *slope, size_t count, double worst,
 
 /* The direction in which all active slopes rise most, and how far it is worth going;
  * false where there is none. */
-static bool find_step(const tm_hull *hull, tm_tet_measure measure,
+static bool find_step(const tm_cavity_boundary *boundary, tm_tet_measure measure,
                       const tm_freedom *freedom, const double p[3], double limit,
                       double d[3], double *step)
 {
@@ -69,34 +69,37 @@ static bool find_step(const tm_hull *hull, tm_tet_measure measure,
     const double *active[SLOPES_MAX];
     double worst;
     size_t actives = 0;
-    size_t count = collect(hull, measure, freedom, p, limit, slope, &worst);
+    size_t count = collect(boundary, measure, freedom, p, limit, slope, &worst);
     for (size_t k = 0; k < count; k++)
         if (slope[k].value <= worst + active_window)
             active[actives++] = slope[k].gradient;
     if (actives == 0)
         return false;
     tm_shortest_vector(active, actives, d);
-    double size2 = tm_distance2(p, hull->xyz[hull->face[0][0]]);
+    double size2 = tm_distance2(p, boundary->xyz[boundary->face[0][0]]);
     if (!(tm_norm2(d) * size2 > flat))
         return false;
     *step = step_length(slope, count, worst, d);
     return true;
 }
 
-void tm_hull_climb(const tm_hull *hull, tm_tet_measure measure, const tm_freedom *freedom,
-                   double enough, int steps, double p[3])
+void tm_cavity_boundary_climb(const tm_cavity_boundary *boundary, tm_tet_measure measure,
+                              const tm_freedom *freedom, double enough, int steps,
+                              double p[3])
 {
     enum { HALVINGS = 4 };
-    double quality = tm_hull_quality(hull, measure, p, 0), d[3], q[3], step;
+    double quality = tm_cavity_boundary_quality(boundary, measure, p, 0), d[3], q[3],
+           step;
     for (int s = 0; s < steps && quality < enough && freedom->dimension > 0; s++) {
         double value = measure == TM_MEASURE_DIHEDRAL ? sqrt(quality) : quality;
         double there = 0;
-        if (!find_step(hull, measure, freedom, p, value + window, d, &step))
+        if (!find_step(boundary, measure, freedom, p, value + window, d, &step))
             return;
         for (int i = 0; i < HALVINGS && there == 0; i++, step /= 2) {
             for (int x = 0; x < 3; x++)
                 q[x] = p[x] + step * d[x];
-            there = tm_hull_quality(hull, measure, q, quality * (1 + least_gain));
+            there = tm_cavity_boundary_quality(boundary, measure, q,
+                                               quality * (1 + least_gain));
         }
         if (there == 0)
             return;

@@ -18,11 +18,12 @@ typedef struct tm_freedom {
 /* Takes from a vector what the node is not free to follow. */
 void tm_freedom_restrict(const tm_freedom *freedom, double vector[3]);
 
-/* Moves p, step by step, to where tm_hull_quality() is greatest nearby; stops where it
- * is `enough`, or after so many steps. The quality at p is never less than before. The
- * place is rounded, so it is for the caller to see that tetrahedra are exactly positive.
- * Some 50 ns per face and step. */
-void tm_hull_climb(const tm_hull *hull, tm_tet_measure measure, const tm_freedom *freedom,
-                   double enough, int steps, double p[3]);
+/* Moves p, step by step, to where tm_cavity_boundary_quality() is greatest nearby; stops
+ * where it is `enough`, or after so many steps. The quality at p is never less than
+ * before. The place is rounded, so it is for the caller to see that tetrahedra are
+ * exactly positive. Some 50 ns per face and step. */
+void tm_cavity_boundary_climb(const tm_cavity_boundary *boundary, tm_tet_measure measure,
+                              const tm_freedom *freedom, double enough, int steps,
+                              double p[3]);
 
 #endif

@@ -91,7 +91,7 @@ static int32_t marker_on_edge(const tm_tet_mesh *mesh, const tm_star *star)
         return edge->marker;
     int32_t marker = 0;
     bool found = false;
-    for (size_t i = 0; i < star->size && star->kept_face; i++)
+    for (size_t i = 0; i < star->size && star->constrained_face; i++)
         for (size_t end = 0; end < 2; end++) {
             /* The face with ring[i + 1 - end] is opposite ring[i + end]. */
             uint32_t t = star->tet[i];

@@ -21,7 +21,7 @@ static bool is_on_side(piece_face face)
     for (unsigned f = 0; f < 6; f++) {
         bool all = true;
         for (unsigned p = 0; p < PLACES; p++) {
-            if ((face >> p & 1) != 0 && tm_leaf_place[p][f / 2] != 2 * (f % 2))
+            if ((face >> p & 1) != 0 && tm_leaf_point[p][f / 2] != 2 * (f % 2))
                 all = false;
         }
         if (all)

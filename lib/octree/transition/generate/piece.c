@@ -46,7 +46,7 @@ static const kind *kind_of(const tm_piece *piece)
 static void edge_of(unsigned from, unsigned to, int edge[3])
 {
     for (int i = 0; i < 3; i++)
-        edge[i] = tm_leaf_place[to][i] - tm_leaf_place[from][i];
+        edge[i] = tm_leaf_point[to][i] - tm_leaf_point[from][i];
 }
 
 static void normal_of(const uint8_t place[3], int n[3])
@@ -156,7 +156,7 @@ uint64_t points_in(const tm_piece *piece)
     uint64_t in = UINT64_MAX;
     for (unsigned f = 0; f < kind_of(piece)->faces; f++) {
         const tm_piece face = face_at(piece, f);
-        const unsigned char *origin = tm_leaf_place[face.place[0]];
+        const unsigned char *origin = tm_leaf_point[face.place[0]];
         int n[3];
         normal_of(face.place, n);
         for (unsigned i = 0; i < POINTS; i++) {

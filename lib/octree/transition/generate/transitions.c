@@ -18,7 +18,7 @@ static unsigned faces_of(unsigned edges)
     for (unsigned f = 0; f < FACES; f++) {
         bool all = true;
         for (unsigned e = 0; e < EDGES; e++) {
-            const unsigned char *at = tm_leaf_place[TM_LEAF_EDGE + e];
+            const unsigned char *at = tm_leaf_point[TM_LEAF_EDGE + e];
             if (at[f / 2] == 2 * (f % 2) && (edges >> e & 1) == 0)
                 all = false;
         }
