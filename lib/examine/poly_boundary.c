@@ -200,13 +200,13 @@ unsigned tm_poly_boundary_causes(const tm_poly_boundary *b)
     unsigned causes = 0;
     for (size_t e = 0; e < b->edges; e++)
         if (!tm_poly_edge_is_good(&b->edge[e]))
-            causes |= 1u << TM_POLY_EDGE;
+            causes |= 1u << TM_CAUSE_EDGE;
     for (size_t v = 0; v < b->nodes; v++)
         if (b->fans[v] != 1)
-            causes |= 1u << TM_POLY_VERTEX;
+            causes |= 1u << TM_CAUSE_VERTEX;
     if (b->pieces != 1)
-        causes |= 1u << TM_POLY_PIECES;
+        causes |= 1u << TM_CAUSE_PIECES;
     if (b->nodes + b->faces != b->edges + 2)
-        causes |= 1u << TM_POLY_EULER;
+        causes |= 1u << TM_CAUSE_EULER;
     return causes;
 }

@@ -59,10 +59,10 @@ static inline bool tm_poly_edge_is_good(const tm_poly_edge *e)
 
 /* What keeps the surface from being a sphere, and what it bounds from being a ball. */
 typedef enum tm_poly_cause {
-    TM_POLY_EDGE,   /* an edge that has not two faces in opposite senses */
-    TM_POLY_VERTEX, /* the faces at a node are more than one fan: its link is no cycle */
-    TM_POLY_PIECES, /* it is not connected */
-    TM_POLY_EULER,  /* nodes - edges + faces is not 2 */
+    TM_CAUSE_EDGE,   /* an edge that has not two faces in opposite senses */
+    TM_CAUSE_VERTEX, /* the faces at a node are more than one fan: its link is no cycle */
+    TM_CAUSE_PIECES, /* it is not connected */
+    TM_CAUSE_EULER,  /* nodes - edges + faces is not 2 */
     TM_POLY_CAUSES
 } tm_poly_cause;
 

@@ -107,7 +107,7 @@ void tm_poly_statistics_json(tm_json *json, const tm_poly_statistics *s)
     size_json(json, "nodes", s->size.nodes);
     size_json(json, "non_simple", s->non_simple);
     causes_json(json, s);
-    size_json(json, "euler_failures", s->cause[TM_POLY_EULER]);
+    size_json(json, "euler_failures", s->cause[TM_CAUSE_EULER]);
     size_json(json, "not_star_shaped", s->not_star_shaped);
     size_json(json, "swallowed_vertices", s->swallowed);
     tm_json_double(json, "faces_per_polyhedron", s->faces_per_polyhedron);

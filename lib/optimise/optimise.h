@@ -11,13 +11,13 @@
 #include <stddef.h>
 #include <stdint.h>
 
-typedef enum tm_freedom {
+typedef enum tm_node_freedom {
     TM_MOVES_NOT,
     TM_MOVES_FREELY,
     TM_MOVES_ON_SURFACE, /* slides on one patch of a surface, or on all of it */
     TM_MOVES_ON_CURVE,   /* slides along a curve of it */
     TM_MOVES_AT_CORNER   /* stays at a corner of it */
-} tm_freedom;
+} tm_node_freedom;
 
 /* What a node may do. One that is off the surface is not on its surface, curve or corner
  * yet: it is to be brought there. */

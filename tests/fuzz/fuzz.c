@@ -234,7 +234,7 @@ static void check_polyhedra(const tm_stream *stream)
             "polyhedra are not examined");
     const size_t wrong =
         found.defect[TM_UNCLOSED_EDGE].count + found.defect[TM_UNORIENTED_EDGE].count;
-    require((wrong == 0) == (statistics.cause[TM_POLY_EDGE] == 0) &&
+    require((wrong == 0) == (statistics.cause[TM_CAUSE_EDGE] == 0) &&
                 statistics.swallowed == found.unused_nodes &&
                 statistics.non_simple <= mesh.cells,
             "polyhedra are examined and measured differently");

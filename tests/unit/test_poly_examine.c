@@ -17,10 +17,10 @@
 
 enum {
     SIMPLE = 0,
-    EDGE = 1 << TM_POLY_EDGE,
-    VERTEX = 1 << TM_POLY_VERTEX,
-    PIECES = 1 << TM_POLY_PIECES,
-    EULER = 1 << TM_POLY_EULER
+    EDGE = 1 << TM_CAUSE_EDGE,
+    VERTEX = 1 << TM_CAUSE_VERTEX,
+    PIECES = 1 << TM_CAUSE_PIECES,
+    EULER = 1 << TM_CAUSE_EULER
 };
 
 static unsigned causes_of(const voxels *v, uint32_t cell, long *euler)

@@ -216,10 +216,10 @@ static void test_statistics(void **state)
     assert_int_equal(s.swallowed, 0);
     assert_int_equal(s.unmatched, 0);
     assert_int_equal(s.non_simple, 3);
-    assert_int_equal(s.cause[TM_POLY_EULER], 3);
-    assert_int_equal(s.cause[TM_POLY_PIECES], 0);
-    assert_int_equal(s.cause[TM_POLY_VERTEX], 0);
-    assert_int_equal(s.cause[TM_POLY_EDGE], 2);
+    assert_int_equal(s.cause[TM_CAUSE_EULER], 3);
+    assert_int_equal(s.cause[TM_CAUSE_PIECES], 0);
+    assert_int_equal(s.cause[TM_CAUSE_VERTEX], 0);
+    assert_int_equal(s.cause[TM_CAUSE_EDGE], 2);
     assert_int_equal(s.not_star_shaped, 3);
     assert_true(close_to(s.volume, 30) && s.min_volume == 1);
     assert_true(s.min_edge == 1 && s.min_face_area == 1);
