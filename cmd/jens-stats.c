@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* jens-stats: how good tetrahedra, pyramids, wedges and hexahedra are, by J_ENS and other
  * measures, and whether they are proved to be valid. */
-#include "common/app/filter.h"
+#include "common/input/mesh_input.h"
 #include "common/plot/gnuplot.h"
 #include "common/app/jens_list.h"
 #include "common/plot/jens_plot.h"
-
-#include "../lib/format/tetgen_orient.h"
 
 #include <string.h>
 
@@ -112,12 +110,7 @@ static tm_elements read_elements(const filter *f, tm_stream *stream)
         elements.start = mix->start;
         elements.item = mix->item;
     } else if (has_tetrahedra) {
-        const tm_turned turned = tm_tetgen_orient(node, ele);
-        if (turned.turned > 0)
-            filter_note(f,
-                        "%s: %zu of %zu tetrahedra were left-handed and are counted "
-                        "turned",
-                        filter_input_name(f), turned.turned, ele->count);
+        mesh_input_turn(f, stream, ele, "are counted turned");
         elements.count = ele->count;
         elements.item = ele->integer;
     } else if (cell && cell->count > 0) {
@@ -145,7 +138,7 @@ static void write_report(filter *f, const options *o, const tm_elements *element
                                  [JENS_LIST_ASPECT] = 'a',
                                  [JENS_LIST_NODES] = 'l',
                                  [JENS_LIST_VERDICT] = VERDICT};
-    if (!f->output && f->json && strcmp(f->json, "-") == 0)
+    if (!filter_has_report(f))
         return;
     tm_error error;
     tm_text text = {0};
@@ -178,19 +171,6 @@ static void write_files(const filter *f, const options *o, const tm_jens_statist
             filter_fail(f, &error);
         tm_text_free(&text);
     }
-}
-
-static void write_json(filter *f, const options *o, const tm_jens_statistics *s,
-                       unsigned base)
-{
-    tm_text text = {0};
-    tm_json json = {.text = &text};
-    tm_json_open(&json, NULL, '{');
-    tm_jens_statistics_json(&json, s, &o->request, base);
-    tm_json_close(&json, '}');
-    tm_text_string(&text, "\n");
-    filter_write_json(f, &text);
-    tm_text_free(&text);
 }
 
 /* Whether the elements are as good as was asked for; says what is not. */
@@ -236,8 +216,11 @@ int main(int argc, char **argv)
         filter_fail(&f, &error);
     write_files(&f, &o, &statistics);
     write_report(&f, &o, &elements, &statistics, stream.base);
-    if (f.json)
-        write_json(&f, &o, &statistics, stream.base);
+    if (f.json) {
+        tm_jens_statistics_json(filter_json_begin(&f), &statistics, &o.request,
+                                stream.base);
+        filter_json_end(&f);
+    }
     const bool good = is_good(&f, &o, &statistics);
     tm_stream_free(&stream);
     return filter_finish(&f, good ? 0 : EXIT_GOAL);

@@ -5,7 +5,6 @@
 #include "common/app/repair_files.h"
 #include "common/input/surface_input.h"
 
-#include "../lib/base/json.h"
 #include "../lib/octree/repair/repair.h"
 #include "../lib/octree/repair/repair_stream.h"
 
@@ -152,40 +151,33 @@ static void note_left(const program *p, const tm_repair_state *state,
         left->bad, left->invalid, left->worst, left->held);
 }
 
-static void score_json(tm_json *json, const char *key, const tm_repair_score *score,
-                       size_t elements, size_t octants)
-{
-    tm_json_open(json, key, '{');
-    tm_json_integer(json, "bad", (int64_t)score->bad);
-    tm_json_integer(json, "invalid", (int64_t)score->invalid);
-    tm_json_integer(json, "held", (int64_t)score->held);
-    tm_json_double(json, "worst", score->worst);
-    tm_json_double(json, "average", score->average);
-    tm_json_integer(json, "elements", (int64_t)elements);
-    tm_json_integer(json, "octants", (int64_t)octants);
-    tm_json_close(json, '}');
-}
-
 typedef struct {
     size_t elements, octants;
 } size;
 
-static void write_json(program *p, const tm_repair_report *report, size before,
-                       size after, double seconds)
+typedef struct {
+    tm_repair_report repair;
+    size before, after;
+    double seconds;
+} result;
+
+static void write_json(filter *f, const result *r)
 {
-    tm_text text = {0};
-    tm_json json = {.text = &text};
-    tm_json_open(&json, NULL, '{');
-    score_json(&json, "before", &report->before, before.elements, before.octants);
-    score_json(&json, "after", &report->after, after.elements, after.octants);
-    tm_json_integer(&json, "iterations", (int64_t)report->iterations);
-    tm_json_integer(&json, "tips", (int64_t)report->corners);
-    tm_json_integer(&json, "divided", (int64_t)report->divided);
-    tm_json_double(&json, "seconds", seconds);
-    tm_json_close(&json, '}');
-    tm_text_string(&text, "\n");
-    filter_write_json(&p->f, &text);
-    tm_text_free(&text);
+#define ROW(key, member) TM_REPORT_ROW(key, NULL, NULL, result, member)
+#define SCORE(when)                                                                      \
+    TM_REPORT_OPEN_ROW(#when), ROW("bad", repair.when.bad),                              \
+        ROW("invalid", repair.when.invalid), ROW("held", repair.when.held),              \
+        ROW("worst", repair.when.worst), ROW("average", repair.when.average),            \
+        ROW("elements", when.elements), ROW("octants", when.octants),                    \
+        TM_REPORT_CLOSE_ROW
+    static const tm_report_row rows[] = {SCORE(before),
+                                         SCORE(after),
+                                         ROW("iterations", repair.iterations),
+                                         ROW("tips", repair.corners),
+                                         ROW("divided", repair.divided),
+                                         ROW("seconds", seconds),
+                                         {0}};
+    filter_write_json(f, rows, r);
 }
 
 static size size_of(const tm_repair_state *state, const tm_stream *stream)
@@ -218,31 +210,31 @@ static bool run(program *p, tm_stream *stream)
     tm_error error;
     tm_repair_state state;
     tm_repair_notes notes = {0};
-    tm_repair_report report;
+    result r;
     const clock_t start = clock();
     if (tm_repair_from_stream(&state, stream, &error) != TM_OK)
         fail(p, &error);
     if (tm_repair_is_needed(&state, stream, p->repair.threshold) || p->trace)
         prepare(p, stream, &state, &notes);
     tm_surface *surface = p->has_surface ? &p->boundary : NULL;
-    const size before = size_of(&state, stream);
+    r.before = size_of(&state, stream);
     p->repair.visit = visit;
     p->repair.context = p;
-    if (tm_repair(&state, surface, &p->repair, &report, &error) != TM_OK)
+    if (tm_repair(&state, surface, &p->repair, &r.repair, &error) != TM_OK)
         fail(p, &error);
-    const size after = size_of(&state, stream);
-    const bool done = report.after.bad == 0 && report.after.held == 0;
+    r.after = size_of(&state, stream);
+    const bool done = r.repair.after.bad == 0 && r.repair.after.held == 0;
     if (!done)
-        note_left(p, &state, &report.after, stream->base);
+        note_left(p, &state, &r.repair.after, stream->base);
     if (tm_repair_to_stream(&state, stream, surface, &notes, &error) != TM_OK)
         filter_fail(&p->f, &error);
     if (notes.dropped[0])
         filter_note(&p->f, "dropped, as they refer to what is no more: %s",
                     notes.dropped);
-    filter_write(&p->f, stream, "%zu elements of %zu, bad %zu of %zu", after.elements,
-                 before.elements, report.after.bad, report.before.bad);
-    if (p->f.json)
-        write_json(p, &report, before, after, (double)(clock() - start) / CLOCKS_PER_SEC);
+    filter_write(&p->f, stream, "%zu elements of %zu, bad %zu of %zu", r.after.elements,
+                 r.before.elements, r.repair.after.bad, r.repair.before.bad);
+    r.seconds = (double)(clock() - start) / CLOCKS_PER_SEC;
+    write_json(&p->f, &r);
     tm_repair_state_free(&state);
     return done;
 }

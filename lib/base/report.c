@@ -6,19 +6,21 @@
 
 static const char whole[] = "%.0f"; /* a count, as a double */
 
-static size_t count_of(const tm_report_row *row, const void *of)
+static int64_t integer_of(const tm_report_row *row, const void *of)
 {
-    return *(const size_t *)((const char *)of + row->offset);
+    const char *member = (const char *)of + row->offset;
+    if (row->type == TM_REPORT_UNSIGNED)
+        return *(const unsigned *)member;
+    if (row->type == TM_REPORT_INTEGER)
+        return *(const int64_t *)member;
+    return (int64_t) * (const size_t *)member;
 }
 
 static double number_of(const tm_report_row *row, const void *of)
 {
-    const char *member = (const char *)of + row->offset;
     if (row->type == TM_REPORT_NUMBER)
-        return *(const double *)member;
-    if (row->type == TM_REPORT_INTEGER)
-        return (double)*(const int64_t *)member;
-    return (double)count_of(row, of);
+        return *(const double *)((const char *)of + row->offset);
+    return (double)integer_of(row, of);
 }
 
 static void counts_json(tm_json *json, const tm_report_row *row, const void *of)
@@ -34,17 +36,10 @@ static void row_json(tm_json *json, const tm_report_row *row, const void *of)
 {
     switch (row->type) {
     case TM_REPORT_KNOWN:
-        if (count_of(row, of) == 0)
+        if (integer_of(row, of) == 0)
             tm_json_double(json, row->key, NAN);
         else
-            tm_json_integer(json, row->key, (int64_t)count_of(row, of));
-        break;
-    case TM_REPORT_COUNT:
-        tm_json_integer(json, row->key, (int64_t)count_of(row, of));
-        break;
-    case TM_REPORT_INTEGER:
-        tm_json_integer(json, row->key,
-                        *(const int64_t *)((const char *)of + row->offset));
+            tm_json_integer(json, row->key, integer_of(row, of));
         break;
     case TM_REPORT_NUMBER:
         tm_json_double(json, row->key, number_of(row, of));
@@ -59,7 +54,7 @@ static void row_json(tm_json *json, const tm_report_row *row, const void *of)
         tm_json_close(json, '}');
         break;
     default:
-        break;
+        tm_json_integer(json, row->key, integer_of(row, of));
     }
 }
 
@@ -121,7 +116,8 @@ void tm_report_table(tm_text *text, const tm_report_row *row, const void *const 
         tm_text_format(text, "%-*s", label_width, row->label);
         for (size_t c = 0; c < columns; c++)
             cell(text, row->format ? row->format : whole, number_of(row, column[c]));
-        if (columns == 2 && row->type == TM_REPORT_COUNT && count_of(row, column[0]) > 0)
+        if (columns == 2 && row->type == TM_REPORT_COUNT &&
+            integer_of(row, column[0]) > 0)
             tm_text_format(text, "   %.2f times",
                            number_of(row, column[1]) / number_of(row, column[0]));
         tm_text_string(text, "\n");

@@ -19,9 +19,10 @@
 
 typedef enum tm_report_type {
     TM_REPORT_END,
-    TM_REPORT_COUNT,   /* size_t */
-    TM_REPORT_COUNTS,  /* an array of them: an array in JSON, not in tables */
-    TM_REPORT_KNOWN,   /* size_t: 0 is not known, null in JSON */
+    TM_REPORT_COUNT,  /* size_t */
+    TM_REPORT_COUNTS, /* an array of them: an array in JSON, not in tables */
+    TM_REPORT_KNOWN,  /* size_t: 0 is not known, null in JSON */
+    TM_REPORT_UNSIGNED,
     TM_REPORT_INTEGER, /* int64_t */
     TM_REPORT_NUMBER,  /* double */
     TM_REPORT_OPEN,    /* an object in JSON, up to */
@@ -42,7 +43,8 @@ typedef struct tm_report_row {
 /* The type is that of the member. */
 #define TM_REPORT_TYPE(type, member) \
     _Generic(((type *)0)->member, size_t: TM_REPORT_COUNT, size_t *: TM_REPORT_COUNTS, \
-             int64_t: TM_REPORT_INTEGER, double: TM_REPORT_NUMBER)
+             unsigned: TM_REPORT_UNSIGNED, int64_t: TM_REPORT_INTEGER, \
+             double: TM_REPORT_NUMBER)
 #define TM_REPORT_ROW(key, label, format, type, member) \
     {key, label, format, TM_REPORT_TYPE(type, member), offsetof(type, member), \
      sizeof(((type *)0)->member)}

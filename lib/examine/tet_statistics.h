@@ -57,6 +57,10 @@ size_t tm_count_through(const size_t *histogram, size_t bin);
  * the two histograms as [[upper end, count], …]. */
 void tm_tet_statistics_json(tm_json *json, const tm_tet_statistics *statistics);
 
+/* The same as an object of its own. */
+void tm_tet_statistics_object(tm_json *json, const char *key,
+                              const tm_tet_statistics *statistics);
+
 /* Writes the tables to read; with before not NULL in two columns, and the sizes' ratio.
  */
 void tm_tet_statistics_table(tm_text *text, const tm_tet_statistics *before,

@@ -105,6 +105,13 @@ void tm_tet_statistics_json(tm_json *json, const tm_tet_statistics *s)
                         TM_VOLUME_QUALITY_BINS, volume_quality_end);
 }
 
+void tm_tet_statistics_object(tm_json *json, const char *key, const tm_tet_statistics *s)
+{
+    tm_json_open(json, key, '{');
+    tm_tet_statistics_json(json, s);
+    tm_json_close(json, '}');
+}
+
 /* A table of one column or of two. */
 typedef struct table {
     tm_text *text;
