@@ -4,17 +4,11 @@
 
 #include "../lib/format/m3d.h"
 
-static tm_status write_mvm(tm_text *text, const tm_stream *stream, unsigned threads,
-                           tm_error *error)
-{
-    return tm_m3d_write(text, stream, TM_MVM, threads, error);
-}
-
 int main(int argc, char **argv)
 {
     return mesh_export(
         argc, argv, "mvm-export",
         "Writes mixed elements or tetrahedra as an .mvm mesh of the mixed-element\n"
         "octree mesher.",
-        write_mvm);
+        tm_mvm_write);
 }

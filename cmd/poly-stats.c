@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* poly-stats: how many polyhedra are simple and star-shaped, and how good they are. */
 #include "common/app/filter.h"
-#include "common/plot/gnuplot.h"
-#include "common/plot/poly_plot.h"
-
-#include "../lib/examine/poly_statistics.h"
+#include "common/plot/plot.h"
 
 enum { OPTION_PLOT = FILTER_OWN };
 
@@ -28,12 +25,9 @@ static void refuse_other_elements(const filter *f, const tm_stream *stream)
 
 static void write_plot(const filter *f, const char *file, const tm_poly_statistics *s)
 {
-    tm_error error;
     tm_text script = {0};
     poly_plot_script(&script, s);
-    if (gnuplot_plot(&script, file, &error) != TM_OK)
-        filter_fail(f, &error);
-    tm_text_free(&script);
+    plot_write(f, &script, file);
 }
 
 /* What standard output or -o gets; nothing where standard output is for the JSON. */

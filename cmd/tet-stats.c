@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* tet-stats: how good the tetrahedra of a mesh are, or of two meshes side by side. */
 #include "common/input/mesh_input.h"
-#include "common/plot/gnuplot.h"
-#include "common/plot/tet_plot.h"
+#include "common/plot/plot.h"
 
 #include "../lib/element/tet_quality.h"
-#include "../lib/examine/tet_statistics.h"
 
 #include <math.h>
 #include <string.h>
@@ -94,12 +92,9 @@ static void write_json(filter *f, const tm_tet_statistics *before,
 static void write_plot(const filter *f, const options *o, const tm_tet_statistics *before,
                        const tm_tet_statistics *s)
 {
-    tm_error error;
     tm_text script = {0};
     tet_plot_script(&script, before, s);
-    if (gnuplot_plot(&script, o->plot, &error) != TM_OK)
-        filter_fail(f, &error);
-    tm_text_free(&script);
+    plot_write(f, &script, o->plot);
 }
 
 /* What standard output or -o gets; nothing where standard output is for the JSON. */

@@ -2,7 +2,7 @@
 /* tetgen-mesh: tetrahedra of a surface or of points, made by TetGen. */
 #include "common/input/mesh_input.h"
 #include "common/input/surface_input.h"
-#include "common/process/tetgen_run.h"
+#include "common/process/tetgen.h"
 
 #include "../lib/surface/surface_defects.h"
 #include "../lib/format/tetgen_orient.h"

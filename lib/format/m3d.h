@@ -16,8 +16,6 @@
 
 #include "../stream/stream.h"
 
-typedef enum tm_m3d_form { TM_M3D, TM_MVM } tm_m3d_form;
-
 /* Reads a file of either form, which its first word tells, as the blocks .node and .mix,
  * base 0. Sections come in any order, those of other names are skipped. The numbers
  * before the coordinates are not looked at; *materials is how many elements have other
@@ -26,9 +24,11 @@ typedef enum tm_m3d_form { TM_M3D, TM_MVM } tm_m3d_form;
 tm_status tm_m3d_read(tm_stream *stream, const char *bytes, size_t size, const char *name,
                       size_t *materials, tm_error *error);
 
-/* Appends the file to *text: the elements of .mix, or of .ele where that has none.
- * TM_ERROR_INPUT where the stream has neither. `threads` format. O(n). */
-tm_status tm_m3d_write(tm_text *text, const tm_stream *stream, tm_m3d_form form,
-                       unsigned threads, tm_error *error);
+/* Appends a file of that form to *text: the elements of .mix, or of .ele where that has
+ * none. TM_ERROR_INPUT where the stream has neither. `threads` format. O(n). */
+tm_status tm_m3d_write(tm_text *text, const tm_stream *stream, unsigned threads,
+                       tm_error *error);
+tm_status tm_mvm_write(tm_text *text, const tm_stream *stream, unsigned threads,
+                       tm_error *error);
 
 #endif

@@ -236,7 +236,7 @@ static void read_m3d(const char *bytes, size_t size)
         for (size_t i = 0; i < mix->start[mix->count]; i++)
             assert_true(mix->item[i] < tm_stream_find(&stream, ".node")->count);
         assert_true(materials <= mix->count);
-        assert_int_equal(tm_m3d_write(&text, &stream, TM_MVM, 1, &error),
+        assert_int_equal(tm_mvm_write(&text, &stream, 1, &error),
                          mix->count > 0 ? TM_OK : TM_ERROR_INPUT);
         tm_text_free(&text);
     } else {

@@ -299,7 +299,9 @@ void filter_read(const filter *f, tm_stream *stream)
         close(fd);
 }
 
-int filter_open_output(filter *f)
+/* Standard output, or a temporary file beside -o FILE that filter_finish() renames, so
+ * that FILE is whole or not there. */
+static int open_output(filter *f)
 {
     int fd = STDOUT_FILENO;
     tm_error error;
@@ -326,7 +328,7 @@ void filter_write(filter *f, tm_stream *stream, const char *summary, ...)
         tm_text_free(&line);
     }
     tm_error error;
-    int fd = filter_open_output(f);
+    int fd = open_output(f);
     if (tm_stream_write(stream, fd, f->threads, &error) != TM_OK)
         filter_fail(f, &error);
 }
@@ -346,7 +348,7 @@ static void write_or_fail(const filter *f, int fd, const tm_text *text, const ch
 
 void filter_write_text(filter *f, const tm_text *text)
 {
-    int fd = filter_open_output(f);
+    int fd = open_output(f);
     write_or_fail(f, fd, text, f->output);
 }
 

@@ -116,10 +116,6 @@ const char *filter_input_name(const filter *f);
 void filter_read_bytes(const filter *f, tm_text *bytes);
 void filter_read_file(const filter *f, const char *file, tm_text *bytes);
 
-/* Opens where the output goes: standard output, or a temporary file beside -o FILE
- * that filter_finish() renames, so that FILE is whole or not there. */
-int filter_open_output(filter *f);
-
 /* Reads the stream from FILE or standard input. */
 void filter_read(const filter *f, tm_stream *stream);
 
