@@ -61,14 +61,21 @@ typedef struct {
 
 static const double most_degrees = 30;
 
-static const char *const modes[] = {"terminal", "edge", "face", "cavity"};
 static const char *const metrics[] = {"area", "inradius"};
+
+static tm_poly_mode read_mode(const filter *f, const char *text)
+{
+    const char *name[TM_POLY_MODES];
+    for (int m = 0; m < TM_POLY_MODES; m++)
+        name[m] = tm_poly_modes[m].name;
+    return (tm_poly_mode)filter_word(f, "--mode", name, TM_POLY_MODES, text);
+}
 
 static void set_option(filter *f, settings *o, int c)
 {
     tm_poly_options *p = &o->poly;
     if (c == MODE)
-        p->mode = (tm_poly_mode)filter_word(f, "--mode", modes, 4, optarg);
+        p->mode = read_mode(f, optarg);
     else if (c == FACE_METRIC)
         p->face_metric =
             (tm_face_metric)filter_word(f, "--face-metric", metrics, 2, optarg);
