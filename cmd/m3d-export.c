@@ -2,7 +2,7 @@
 /* m3d-export: a stream as a mesh of the mixed-element octree mesher (.m3d). */
 #include "common/input/mesh_input.h"
 
-#include "../lib/format/m3d.h"
+#include "../lib/format/mesh_format.h"
 
 int main(int argc, char **argv)
 {

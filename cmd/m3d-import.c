@@ -2,7 +2,7 @@
 /* m3d-import: a mesh of the mixed-element octree mesher as a stream. */
 #include "common/input/mesh_input.h"
 
-#include "../lib/format/m3d.h"
+#include "../lib/format/mesh_format.h"
 
 static tm_status read_m3d(const filter *f, tm_stream *stream, const tm_text *bytes,
                           tm_error *error)

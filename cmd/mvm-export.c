@@ -2,7 +2,7 @@
 /* mvm-export: a stream as a mixed volume mesh (.mvm). */
 #include "common/input/mesh_input.h"
 
-#include "../lib/format/m3d.h"
+#include "../lib/format/mesh_format.h"
 
 int main(int argc, char **argv)
 {

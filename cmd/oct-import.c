@@ -3,7 +3,7 @@
  * mesh and its surface, as a stream. */
 #include "common/input/mesh_input.h"
 
-#include "../lib/format/m3d.h"
+#include "../lib/format/mesh_format.h"
 #include "../lib/format/oct.h"
 #include "../lib/format/surface_format.h"
 #include "../lib/surface/surface_stream.h"

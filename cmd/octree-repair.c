@@ -5,9 +5,8 @@
 #include "common/input/surface_input.h"
 
 #include "../lib/examine/jens_statistics.h"
-#include "../lib/format/m3d.h"
+#include "../lib/format/mesh_format.h"
 #include "../lib/format/oct.h"
-#include "../lib/format/vtk_legacy.h"
 #include "../lib/octree/repair/repair.h"
 #include "../lib/octree/repair/repair_stream.h"
 #include "../lib/octree/repair/repair_trace.h"

@@ -2,7 +2,7 @@
 /* off-export: the boundary of a mesh, or all its faces, as an OFF file. */
 #include "common/input/mesh_input.h"
 
-#include "../lib/format/off.h"
+#include "../lib/format/mesh_format.h"
 
 enum { OPTION_ALL = FILTER_OWN };
 

@@ -4,7 +4,7 @@
 #include "common/app/output_files.h"
 
 #include "../lib/base/file.h"
-#include "../lib/format/openfoam.h"
+#include "../lib/format/mesh_format.h"
 
 #include <dirent.h>
 #include <stdio.h>

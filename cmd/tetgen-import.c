@@ -2,8 +2,7 @@
 /* tetgen-import: TetGen's files as a stream. */
 #include "common/input/mesh_input.h"
 
-#include "../lib/format/tetgen_orient.h"
-#include "../lib/format/tetgen_rows.h"
+#include "../lib/format/tetgen.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -5,7 +5,7 @@
 #include "common/process/tetgen.h"
 
 #include "../lib/surface/surface_defects.h"
-#include "../lib/format/tetgen_orient.h"
+#include "../lib/format/tetgen.h"
 
 #include <float.h>
 #include <stdarg.h>

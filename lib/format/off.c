@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "off.h"
+#include "mesh_format.h"
+#include "surface_format.h"
 
 #include "../base/array.h"
 #include "../mesh/cell_faces.h"

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tetgen_poly.h"
-
-#include "tetgen_rows.h"
+#include "tetgen.h"
 
 typedef struct {
     tm_polygon_surface *surface;

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tetgen_rows.h"
+#include "tetgen.h"
+
+#include "../geom/predicates.h"
 
 /* Columns that `tetgen -nn` adds. */
 enum { FACE_NEIGHBOURS = 2, EDGE_NEIGHBOURS = 1 };
@@ -191,4 +193,27 @@ tm_status tm_tetgen_read_rows(tm_block *block, tm_scan *scan, unsigned *base,
     if (status != TM_OK)
         tm_block_allocate(block, 0, 0, NULL);
     return status;
+}
+
+tm_turned tm_tetgen_orient(const tm_block *node, tm_block *ele)
+{
+    enum { CORNERS = 4 };
+    tm_turned result = {0};
+    const double *xyz = node->real;
+    for (size_t t = 0; t < ele->count; t++) {
+        uint32_t *v = ele->integer + CORNERS * t;
+        const double *corner[CORNERS];
+        for (int i = 0; i < CORNERS; i++)
+            corner[i] = xyz + (size_t)v[i] * 3;
+        int sign = tm_orient3d(corner[0], corner[1], corner[2], corner[3]);
+        if (sign < 0) {
+            uint32_t last = v[3];
+            v[3] = v[2];
+            v[2] = last;
+            result.turned++;
+        } else if (sign == 0) {
+            result.flat++;
+        }
+    }
+    return result;
 }

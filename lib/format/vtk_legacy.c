@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "vtk_legacy.h"
+#include "mesh_format.h"
 
 #include "../mesh/cell_faces.h"
 #include "text_rows.h"

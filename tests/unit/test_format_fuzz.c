@@ -2,9 +2,9 @@
 /* No input makes a reader of foreign formats crash or return a surface that is not one:
  * every beginning of a good file, and good files with bytes changed. */
 #include "../../lib/mesh/cell_faces.h"
-#include "../../lib/format/m3d.h"
+#include "../../lib/format/mesh_format.h"
 #include "../../lib/format/oct.h"
-#include "../../lib/format/tetgen_rows.h"
+#include "../../lib/format/tetgen.h"
 #include "../../lib/format/visf.h"
 #include "format_samples.h"
 #include "random.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "mesh_input.h"
 
-#include "../../../lib/format/tetgen_orient.h"
+#include "../../../lib/format/tetgen.h"
 
 #include <stdio.h>
 

@@ -3,7 +3,7 @@
 
 #include "../../../lib/base/file.h"
 #include "../../../lib/mesh/cell_faces.h"
-#include "../../../lib/format/tetgen_poly.h"
+#include "../../../lib/format/tetgen.h"
 
 #include <errno.h>
 #include <stdlib.h>

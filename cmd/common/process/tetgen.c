@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tetgen.h"
 
-#include "../../../lib/format/tetgen_poly.h"
-#include "../../../lib/format/tetgen_rows.h"
+#include "../../../lib/format/tetgen.h"
 #include "private.h"
 #include "run_program.h"
 
