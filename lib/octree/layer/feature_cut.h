@@ -10,7 +10,7 @@
  * feature_region.h, which must be done before: these diagonals are on no path. O(faces).
  */
 void tm_feature_cut_wide(const tm_feature *feature, tm_interior_boundary *boundary,
-                         const tm_octree *octree, const tm_surface *surface,
-                         const uint8_t *on_path, const tm_surface_point *at);
+                         const tm_surface *surface, const uint8_t *on_path,
+                         const tm_surface_point *at);
 
 #endif

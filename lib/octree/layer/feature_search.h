@@ -34,13 +34,10 @@ typedef struct tm_path_stop {
 enum { TM_PATH_STOPS = 4 };
 
 typedef struct tm_path_finder {
-    const tm_octree *octree;
     const tm_surface *surface;
     const tm_boundary_cells *cells;
     tm_interior_boundary *boundary;
     tm_feature *feature;
-    const double
-        *size; /* [nodes of the interior boundary]: side of the smallest leaf there */
     uint8_t *on_path; /* [faces]: bit i where the edge from corner i is on one */
     /* of the search that is under way */
     tm_path_visit *visit; /* [nodes] */
