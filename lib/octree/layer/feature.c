@@ -4,10 +4,7 @@
 #include "../../base/array.h"
 #include "../../base/disjoint_sets.h"
 #include "../../geom/vector.h"
-#include "feature_cut.h"
-#include "feature_path.h"
-#include "feature_region.h"
-#include "feature_select.h"
+#include "feature_parts.h"
 
 #include <stdlib.h>
 #include <string.h>

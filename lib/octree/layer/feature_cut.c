@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "feature_cut.h"
+#include "feature_parts.h"
 
 #include "../../geom/vector.h"
 

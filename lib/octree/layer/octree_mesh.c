@@ -3,9 +3,7 @@
 
 #include "../../base/array.h"
 #include "../../base/disjoint_sets.h"
-#include "projection.h"
-#include "spurious_components.h"
-#include "untangling.h"
+#include "octree_mesh_parts.h"
 
 #include <stdlib.h>
 #include <string.h>
