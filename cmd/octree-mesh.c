@@ -4,6 +4,7 @@
 #include "common/input/octree_rules.h"
 #include "common/input/surface_input.h"
 
+#include "../lib/octree/forest/octree_build.h"
 #include "../lib/octree/layer/octree_mesh_stream.h"
 #include "../lib/octree/layer/adaptive_refinement.h"
 #include "../lib/element/jens.h"

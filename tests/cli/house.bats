@@ -307,45 +307,6 @@ examples() {
     [ "$output" = "" ]
 }
 
-@test "a program of another project uses the installed library by pkg-config" {
-    case ${TM_BUILD:?} in */san) skip "the library is built for the sanitizers" ;; esac
-    command -v pkg-config >/dev/null || skip "there is no pkg-config"
-    make -s -C "$root" BUILD="$TM_BUILD" PREFIX="$PWD/usr" install
-    cat >program.c <<'END'
-#include <stdio.h>
-#include <termesh/tet/mesh.h>
-int main(void)
-{
-    tm_stream stream;
-    tm_tet_mesh mesh;
-    tm_error error;
-    tm_stream_init(&stream);
-    if (tm_stream_read(&stream, 0, "input", &error) != TM_OK ||
-        tm_tet_mesh_take(&mesh, &stream, &error) != TM_OK)
-        return error.status;
-    printf("%zu nodes, %zu tetrahedra\n", mesh.nodes, mesh.tets);
-    tm_tet_mesh_free(&mesh);
-    tm_stream_free(&stream);
-    return 0;
-}
-END
-    export PKG_CONFIG_PATH=$PWD/usr/lib/pkgconfig
-    # shellcheck disable=SC2046 # words
-    cc -Wall -Wextra -Werror -pedantic -o program program.c \
-        $(pkg-config --static --cflags --libs termesh)
-    [ "$(./program <corner.tm)" = "4 nodes, 1 tetrahedra" ]
-    [ "$(pkg-config --modversion termesh)" = \
-        "$(tet-stats --version | sed 's/.* //')" ]
-}
-
-@test "every installed header stands alone" {
-    for header in "$root"/lib/*/*.h; do
-        echo "#include \"$header\"" >header.c
-        cc -std=c17 -D_GNU_SOURCE -Wall -Wextra -Werror -Wno-unused-function \
-            -fsyntax-only header.c
-    done
-}
-
 @test "the figures in README.md are what its pipeline gives" {
     command -v tetgen >/dev/null || skip "there is no tetgen"
     LC_ALL=C awk -f "$root/examples/knot.awk" >knot.off

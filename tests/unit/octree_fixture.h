@@ -3,7 +3,7 @@
 #ifndef TESTS_UNIT_OCTREE_FIXTURE_H
 #define TESTS_UNIT_OCTREE_FIXTURE_H
 
-#include "../../lib/octree/forest/octree.h"
+#include "../../lib/octree/forest/octree_build.h"
 #include "random.h"
 #include "surface_shapes.h"
 

@@ -3,7 +3,7 @@
  * its interior boundary, and the elements there. */
 #include "../../lib/examine/mixed_examine.h"
 #include "../../lib/examine/mixed_volume.h"
-#include "../../lib/octree/layer/lattice_points.h"
+#include "../../lib/octree/layer/octree_mesh_parts.h"
 #include "../../lib/element/jens.h"
 #include "octree_fixture.h"
 

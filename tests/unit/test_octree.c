@@ -3,7 +3,7 @@
  * to split gives, and against what octree.h promises. */
 #include "../../lib/octree/forest/brick.h"
 #include "../../lib/octree/forest/mpi_start.h"
-#include "../../lib/octree/forest/octree.h"
+#include "../../lib/octree/forest/octree_build.h"
 #include "../../lib/octree/forest/octree_stream.h"
 #include "random.h"
 

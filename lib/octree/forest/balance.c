@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "balance.h"
+#include "octree_parts.h"
 
 #include "../../base/array.h"
 #include "p4est_call.h"

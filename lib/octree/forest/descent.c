@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "descent.h"
+#include "octree_parts.h"
 
 #include "../../base/array.h"
 

@@ -96,31 +96,6 @@ typedef struct tm_octree_rule {
     size_t leaves;
 } tm_octree_rule;
 
-/* The octree over a surface: root cubes as brick.h says; a leaf is split while its level
- * is below that of a rule that holds for it and some of it is inside the surface or meets
- * it (what is outside all over is never needed); then leaves are split until two that
- * share a face or some of an edge differ by one level at most. *octree is overwritten.
- * TM_ERROR_INPUT: a level over the limit, a leaf that is not there, a surface without
- * extent, more leaves or nodes than 32-bit ids have; TM_ERROR_SYSTEM: memory.
- * Starts MPI where it is not yet (mpi_start.h). O(leaves + triangles × roots), see
- * descent.h. */
-tm_status tm_octree_build(tm_octree *octree, const tm_surface *surface,
-                          const tm_octree_rule *rule, size_t rules, tm_error *error);
-
-/* Splits each leaf with split[leaf] != 0 once, and what balance then asks for. All leaves
- * and nodes get new numbers. Errors as above; *octree is then as it was. */
-tm_status tm_octree_refine(tm_octree *octree, const tm_surface *surface,
-                           const uint8_t *split, tm_error *error);
-
-/* The octree of the leaves that are given, in any order, with octree->low, side and roots
- * set and all else zero. They must fill the brick and be balanced: TM_ERROR_INPUT says
- * which is not, by its number in the list. order[leaf] (order may be NULL) is the leaf's
- * number in the list. With surface NULL no leaf is crossed. O(leaves log leaves),
- * O(leaves) where they come in order. */
-tm_status tm_octree_from_leaves(tm_octree *octree, const tm_leaf *leaf, size_t leaves,
-                                const tm_surface *surface, uint32_t *order,
-                                tm_error *error);
-
 /* The same octree again, with arrays of its own. TM_ERROR_SYSTEM where memory is out; the
  * copy is then to be freed all the same. */
 tm_status tm_octree_copy(tm_octree *copy, const tm_octree *octree, tm_error *error);

@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "octree.h"
+#include "octree_build.h"
 
 #include "../../base/array.h"
 #include "brick.h"
-#include "descent.h"
-#include "balance.h"
+#include "octree_parts.h"
 #include "mpi_start.h"
-#include "octree_nodes.h"
 #include "z_order.h"
 
 #include <stdlib.h>

@@ -6,7 +6,7 @@
  * down, as T. Ju, F. Losasso, S. Schaefer and J. Warren walk in Dual contouring of
  * Hermite data, 2002, and the leaves around it are then known: no table of nodes is
  * needed. */
-#include "octree_nodes.h"
+#include "octree_parts.h"
 
 #include "../../base/array.h"
 #include "leaf_tree.h"

@@ -3,6 +3,7 @@
 
 #include "../../base/array.h"
 #include "brick.h"
+#include "octree_build.h"
 
 #include <math.h>
 #include <stdlib.h>

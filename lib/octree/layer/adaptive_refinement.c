@@ -2,6 +2,7 @@
 #include "adaptive_refinement.h"
 
 #include "../../base/array.h"
+#include "../forest/octree_build.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -28,25 +28,18 @@ static int compare(const void *a, const void *b)
     return (ca->node > cb->node) - (ca->node < cb->node);
 }
 
-tm_status tm_boundary_cells_sort(tm_boundary_cells *cells, const tm_octree *octree,
+tm_status tm_boundary_cells_sort(tm_boundary_cells *cells,
                                  const tm_interior_boundary *boundary, tm_error *error)
 {
-    *cells = (tm_boundary_cells){.octree = octree, .boundary = boundary};
+    const unsigned shift = boundary->finest - boundary->coarsest + 1;
+    *cells = (tm_boundary_cells){.boundary = boundary, .shift = shift};
     cells->cell = tm_new(boundary->nodes, sizeof *cells->cell);
     if (!cells->cell)
         return tm_fail_memory(error);
-    unsigned coarsest = octree->finest;
-    for (size_t f = 0; f < boundary->faces; f++) {
-        const unsigned level = octree->leaf[boundary->leaf[f]].level;
-        coarsest = level < coarsest ? level : coarsest;
-    }
-    cells->shift = octree->finest - coarsest + 1;
     for (size_t s = 0; s < boundary->nodes; s++) {
-        const uint32_t *grid = octree->grid[boundary->grid_node[s]];
-        cells->cell[s] =
-            (tm_boundary_cell){key_of(grid[0] >> cells->shift, grid[1] >> cells->shift,
-                                      grid[2] >> cells->shift),
-                               (uint32_t)s};
+        const uint32_t *grid = boundary->grid[s];
+        cells->cell[s] = (tm_boundary_cell){
+            key_of(grid[0] >> shift, grid[1] >> shift, grid[2] >> shift), (uint32_t)s};
     }
     if (boundary->nodes > 0)
         qsort(cells->cell, boundary->nodes, sizeof *cells->cell, compare);
@@ -74,14 +67,14 @@ static size_t lower_bound(const tm_boundary_cells *cells, uint64_t key)
 }
 
 void tm_boundary_cells_near(const tm_boundary_cells *cells, const double point[3],
-                            void (*visit)(void *context, uint32_t node), void *context)
+                            void (*found)(void *context, uint32_t node), void *context)
 {
-    const tm_octree *octree = cells->octree;
-    const double unit = octree->side / (double)((uint32_t)1 << octree->finest);
-    const double side = unit * (double)((uint64_t)1 << cells->shift);
+    const tm_interior_boundary *boundary = cells->boundary;
+    const double side =
+        tm_boundary_unit(boundary) * (double)((uint64_t)1 << cells->shift);
     int64_t at[3];
     for (int i = 0; i < 3; i++)
-        at[i] = (int64_t)floor((point[i] - octree->low[i]) / side);
+        at[i] = (int64_t)floor((point[i] - boundary->low[i]) / side);
     for (int64_t x = at[0] - 1; x <= at[0] + 1; x++) {
         for (int64_t y = at[1] - 1; y <= at[1] + 1; y++) {
             for (int64_t z = at[2] - 1; z <= at[2] + 1; z++) {
@@ -89,8 +82,8 @@ void tm_boundary_cells_near(const tm_boundary_cells *cells, const double point[3
                     continue;
                 const uint64_t key = key_of(x, y, z);
                 for (size_t i = lower_bound(cells, key);
-                     i < cells->boundary->nodes && cells->cell[i].key == key; i++)
-                    visit(context, cells->cell[i].node);
+                     i < boundary->nodes && cells->cell[i].key == key; i++)
+                    found(context, cells->cell[i].node);
             }
         }
     }
@@ -110,7 +103,7 @@ static void compare_nearest(void *context, uint32_t s)
     double xyz[3];
     if (n->taken && n->taken[s])
         return;
-    tm_boundary_node_point(n->cells->boundary, n->cells->octree, s, xyz);
+    tm_boundary_node_point(n->cells->boundary, s, xyz);
     const double distance2 = tm_distance2(n->point, xyz);
     if (distance2 < n->distance2 || (distance2 == n->distance2 && s < n->node)) {
         n->node = s;

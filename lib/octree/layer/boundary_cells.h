@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The nodes of an interior boundary by place: which are close to a point. */
+/* The nodes of an interior boundary by where they are: which are close to a point. */
 #ifndef TM_LAYER_BOUNDARY_CELLS_H
 #define TM_LAYER_BOUNDARY_CELLS_H
 
 #include "interior_boundary.h"
 
 typedef struct tm_boundary_cells {
-    const tm_octree *octree;
     const tm_interior_boundary *boundary;
     unsigned shift;                /* a cell has 2^shift grid units along each side */
     struct tm_boundary_cell *cell; /* [nodes], sorted by cell */
@@ -14,14 +13,14 @@ typedef struct tm_boundary_cells {
 
 /* Sorts the nodes into cells twice as large as the largest leaf of the interior boundary.
  * O(n log n). TM_ERROR_SYSTEM where memory is out. */
-tm_status tm_boundary_cells_sort(tm_boundary_cells *cells, const tm_octree *octree,
+tm_status tm_boundary_cells_sort(tm_boundary_cells *cells,
                                  const tm_interior_boundary *boundary, tm_error *error);
 void tm_boundary_cells_free(tm_boundary_cells *cells);
 
-/* Calls visit(context, node) for all nodes closer to the point than a cell's side, and
+/* Calls found(context, node) for all nodes closer to the point than a cell's side, and
  * some that are not. */
 void tm_boundary_cells_near(const tm_boundary_cells *cells, const double point[3],
-                            void (*visit)(void *context, uint32_t node), void *context);
+                            void (*found)(void *context, uint32_t node), void *context);
 
 /* The closest of these nodes, of those with taken[node] == 0 where taken is not NULL;
  * TM_NONE where there is none. *distance2 is its squared distance on the lattice, or

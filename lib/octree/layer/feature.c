@@ -4,10 +4,7 @@
 #include "../../base/array.h"
 #include "../../base/disjoint_sets.h"
 #include "../../geom/vector.h"
-#include "feature_cut.h"
-#include "feature_path.h"
-#include "feature_region.h"
-#include "feature_select.h"
+#include "feature_parts.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -45,9 +42,9 @@ static void consider(void *context, uint32_t s)
     finder *find = context;
     const tm_surface *surface = find->path.surface;
     double xyz[3];
-    tm_boundary_node_point(find->path.boundary, find->path.octree, s, xyz);
+    tm_boundary_node_point(find->path.boundary, s, xyz);
     const double *corner = surface->xyz[surface->corner[find->corner]];
-    const double size = find->path.size[s];
+    const double size = find->path.boundary->size[s];
     const double distance2 = tm_distance2(xyz, corner) / (size * size);
     if (distance2 > reach * reach)
         return;
@@ -230,21 +227,6 @@ static tm_status find_curves(finder *find, tm_surface *surface, tm_error *error)
     return status;
 }
 
-/* The side of the smallest leaf at each node of the interior boundary. */
-static double *find_sizes(const tm_interior_boundary *boundary, const tm_octree *octree)
-{
-    double *size = tm_new(boundary->nodes, sizeof *size);
-    for (size_t s = 0; size && s < boundary->nodes; s++)
-        size[s] = octree->side;
-    for (size_t f = 0; size && f < boundary->faces; f++) {
-        const double side = tm_leaf_side(octree, &octree->leaf[boundary->leaf[f]]);
-        for (unsigned i = 0; i < tm_boundary_face_corners(boundary, f); i++)
-            if (side < size[boundary->face[f][i]])
-                size[boundary->face[f][i]] = side;
-    }
-    return size;
-}
-
 /* Chooses curves by the size of the leaves near the middle of each. */
 static tm_status choose(finder *find, tm_error *error)
 {
@@ -258,7 +240,7 @@ static tm_status choose(finder *find, tm_error *error)
         double distance2;
         const uint32_t n = tm_boundary_cells_nearest(
             find->path.cells, surface->xyz[middle], NULL, &distance2);
-        size[c] = n == TM_NONE ? find->path.octree->side : find->path.size[n];
+        size[c] = n == TM_NONE ? find->path.boundary->side : find->path.boundary->size[n];
     }
     const tm_status status = tm_feature_choose(&find->choice, surface, size, error);
     free(size);
@@ -291,25 +273,22 @@ static void free_finder(finder *find)
 }
 
 tm_status tm_feature_find(tm_feature *feature, tm_interior_boundary *boundary,
-                          const tm_octree *octree, tm_surface *surface,
-                          const tm_surface_point *at, tm_error *error)
+                          tm_surface *surface, const tm_surface_point *at,
+                          tm_error *error)
 {
     *feature = (tm_feature){.lost = TM_NONE};
     tm_status status = allocate(feature, boundary->nodes, error);
     if (status != TM_OK || surface->corners + surface->curves == 0)
         return status;
     tm_boundary_cells cells;
-    status = tm_boundary_cells_sort(&cells, octree, boundary, error);
-    finder find = {.path = {.octree = octree,
-                            .surface = surface,
+    status = tm_boundary_cells_sort(&cells, boundary, error);
+    finder find = {.path = {.surface = surface,
                             .cells = &cells,
                             .boundary = boundary,
                             .feature = feature}};
-    double *size = find_sizes(boundary, octree);
-    find.path.size = size;
     find.path.on_path = calloc(boundary->faces + 1, 1);
     find.path.visit = calloc(boundary->nodes + 1, sizeof *find.path.visit);
-    if (status == TM_OK && !(size && find.path.on_path && find.path.visit))
+    if (status == TM_OK && !(find.path.on_path && find.path.visit))
         status = tm_fail_memory(error);
     if (status == TM_OK)
         status = choose(&find, error);
@@ -321,9 +300,8 @@ tm_status tm_feature_find(tm_feature *feature, tm_interior_boundary *boundary,
         status =
             tm_feature_regions(feature, boundary, surface, find.path.on_path, at, error);
     if (status == TM_OK)
-        tm_feature_cut_wide(feature, boundary, octree, surface, find.path.on_path, at);
+        tm_feature_cut_wide(feature, boundary, surface, find.path.on_path, at);
     free_finder(&find);
-    free(size);
     tm_boundary_cells_free(&cells);
     return status;
 }

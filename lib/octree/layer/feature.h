@@ -28,8 +28,8 @@ typedef struct tm_feature {
  * of a lost curve become one in the surface. TM_ERROR_SYSTEM where memory is out.
  * *feature is to be freed, after an error too. O(n log n). */
 tm_status tm_feature_find(tm_feature *feature, tm_interior_boundary *boundary,
-                          const tm_octree *octree, tm_surface *surface,
-                          const tm_surface_point *at, tm_error *error);
+                          tm_surface *surface, const tm_surface_point *at,
+                          tm_error *error);
 void tm_feature_free(tm_feature *feature);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "feature_cut.h"
+#include "feature_parts.h"
 
 #include "../../geom/vector.h"
 
@@ -7,12 +7,11 @@
 #include <string.h>
 
 /* Where a node of a path will be, about. */
-static void place_of(const tm_feature *feature, const tm_interior_boundary *boundary,
-                     const tm_octree *octree, const tm_surface *surface, uint32_t s,
-                     double xyz[3])
+static void point_of(const tm_feature *feature, const tm_interior_boundary *boundary,
+                     const tm_surface *surface, uint32_t s, double xyz[3])
 {
     size_t segment;
-    tm_boundary_node_point(boundary, octree, s, xyz);
+    tm_boundary_node_point(boundary, s, xyz);
     if (feature->kind[s] == TM_ON_CORNER) {
         memcpy(xyz, surface->xyz[surface->corner[feature->of[s]]], 3 * sizeof *xyz);
     } else if (feature->kind[s] == TM_ON_CURVE) {
@@ -48,8 +47,8 @@ static void normal_at(const tm_surface *surface, const tm_surface_point *at,
 }
 
 void tm_feature_cut_wide(const tm_feature *feature, tm_interior_boundary *boundary,
-                         const tm_octree *octree, const tm_surface *surface,
-                         const uint8_t *on_path, const tm_surface_point *at)
+                         const tm_surface *surface, const uint8_t *on_path,
+                         const tm_surface_point *at)
 {
     const double wide = -0.6; /* the cosine of 127° */
     for (size_t f = 0; f < boundary->faces; f++) {
@@ -63,9 +62,9 @@ void tm_feature_cut_wide(const tm_feature *feature, tm_interior_boundary *bounda
             double normal[3];
             if (!(on_path[f] >> i & 1) || !(on_path[f] >> before & 1))
                 continue;
-            place_of(feature, boundary, octree, surface, boundary->face[f][before], p[0]);
-            place_of(feature, boundary, octree, surface, boundary->face[f][i], p[1]);
-            place_of(feature, boundary, octree, surface, boundary->face[f][after], p[2]);
+            point_of(feature, boundary, surface, boundary->face[f][before], p[0]);
+            point_of(feature, boundary, surface, boundary->face[f][i], p[1]);
+            point_of(feature, boundary, surface, boundary->face[f][after], p[2]);
             normal_at(surface, &at[boundary->face[f][(i + 2) % 4]], normal);
             const double cosine = cosine_at(p[0], p[1], p[2], normal);
             if (cosine < widest) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "feature_path.h"
+#include "feature_parts.h"
 
 #include "../../base/array.h"
 #include "../../geom/vector.h"
@@ -206,7 +206,7 @@ static uint32_t node_near(const tm_path_finder *p, double param)
     double distance2;
     const uint32_t s =
         tm_boundary_cells_nearest(p->cells, point, p->feature->kind, &distance2);
-    const double reach = s == TM_NONE ? 0 : tm_path_tube * p->size[s];
+    const double reach = s == TM_NONE ? 0 : tm_path_tube * p->boundary->size[s];
     return distance2 <= reach * reach ? s : TM_NONE;
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "feature_region.h"
+#include "feature_parts.h"
 
 #include "../../base/array.h"
 #include "../../base/disjoint_sets.h"

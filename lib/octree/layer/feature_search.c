@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "feature_search.h"
+#include "feature_parts.h"
 
 #include "../../base/array.h"
 #include "../../geom/vector.h"
@@ -51,7 +51,7 @@ static tm_path_visit *look_at(tm_path_finder *p, uint32_t s)
     double xyz[3];
     double closest[3];
     size_t segment;
-    tm_boundary_node_point(p->boundary, p->octree, s, xyz);
+    tm_boundary_node_point(p->boundary, s, xyz);
     tm_surface_closest_on_curve(p->surface, curve, xyz, closest, &segment);
     const uint32_t begin =
         p->surface->curve_node[p->surface->curve_start[curve] + segment];
@@ -72,7 +72,7 @@ static double along_curve(const tm_path_finder *p, double a, double b)
 static bool may_pass(const tm_path_finder *p, const tm_path_visit *v, uint32_t s,
                      const tm_path_stop *from, const tm_path_stop *to)
 {
-    const double size = p->size[s];
+    const double size = p->boundary->size[s];
     if (p->feature->kind[s] != TM_ON_PATCH ||
         v->distance2 > tm_path_tube * tm_path_tube * size * size)
         return false;
@@ -102,10 +102,10 @@ static tm_status relax(tm_path_finder *p, uint32_t s, uint32_t to, tm_error *err
     const double nearness = 0.1; /* edges on the curve are not free */
     double here[3];
     double there[3];
-    tm_boundary_node_point(p->boundary, p->octree, s, here);
-    tm_boundary_node_point(p->boundary, p->octree, to, there);
+    tm_boundary_node_point(p->boundary, s, here);
+    tm_boundary_node_point(p->boundary, to, there);
     const double edge = sqrt(tm_distance2(here, there));
-    const double size = fmin(p->size[s], p->size[to]);
+    const double size = fmin(p->boundary->size[s], p->boundary->size[to]);
     const double off = (a->distance2 + b->distance2) / (size * size);
     const double cost =
         a->cost + along_curve(p, a->param, b->param) + edge * (nearness + off);

@@ -4,6 +4,7 @@
 #include "../../base/array.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum { LEAF_FACES = 6, LEAF_EDGES = 12 };
 
@@ -41,11 +42,38 @@ static tm_status number_nodes(finder *find, tm_error *error)
         find->boundary_node[n] = on_boundary ? (uint32_t)boundary->nodes++ : TM_NONE;
     }
     boundary->grid_node = tm_new(boundary->nodes, sizeof *boundary->grid_node);
-    if (!boundary->grid_node)
+    boundary->grid = tm_new(boundary->nodes, sizeof *boundary->grid);
+    if (!boundary->grid_node || !boundary->grid)
         return tm_fail_memory(error);
-    for (size_t n = 0; n < octree->nodes; n++)
-        if (find->boundary_node[n] != TM_NONE)
-            boundary->grid_node[find->boundary_node[n]] = (uint32_t)n;
+    for (size_t n = 0; n < octree->nodes; n++) {
+        const uint32_t s = find->boundary_node[n];
+        if (s == TM_NONE)
+            continue;
+        boundary->grid_node[s] = (uint32_t)n;
+        memcpy(boundary->grid[s], octree->grid[n], sizeof boundary->grid[s]);
+    }
+    return TM_OK;
+}
+
+/* The sides of the leaves that the faces are of. */
+static tm_status find_sizes(tm_interior_boundary *boundary, const tm_octree *octree,
+                            tm_error *error)
+{
+    boundary->size = tm_new(boundary->nodes, sizeof *boundary->size);
+    if (!boundary->size)
+        return tm_fail_memory(error);
+    for (size_t s = 0; s < boundary->nodes; s++)
+        boundary->size[s] = octree->side;
+    boundary->coarsest = octree->finest;
+    for (size_t f = 0; f < boundary->faces; f++) {
+        const tm_leaf *leaf = &octree->leaf[boundary->leaf[f]];
+        const double side = tm_leaf_side(octree, leaf);
+        if (leaf->level < boundary->coarsest)
+            boundary->coarsest = leaf->level;
+        for (unsigned i = 0; i < tm_boundary_face_corners(boundary, f); i++)
+            if (side < boundary->size[boundary->face[f][i]])
+                boundary->size[boundary->face[f][i]] = side;
+    }
     return TM_OK;
 }
 
@@ -151,12 +179,15 @@ tm_status tm_interior_boundary_find(tm_interior_boundary *boundary,
                                     const tm_octree *octree, const tm_interior *interior,
                                     tm_error *error)
 {
-    *boundary = (tm_interior_boundary){0};
+    *boundary = (tm_interior_boundary){.side = octree->side, .finest = octree->finest};
+    memcpy(boundary->low, octree->low, sizeof boundary->low);
     finder find = {.octree = octree, .interior = interior, .boundary = boundary};
     tm_status status = number_nodes(&find, error);
     for (size_t l = 0; status == TM_OK && l < octree->leaves; l++)
         if (interior->chosen[l])
             status = add_faces_of(&find, l, error);
+    if (status == TM_OK)
+        status = find_sizes(boundary, octree, error);
     if (status == TM_OK)
         status = find_around(boundary, error);
     free(find.boundary_node);
@@ -166,6 +197,8 @@ tm_status tm_interior_boundary_find(tm_interior_boundary *boundary,
 void tm_interior_boundary_free(tm_interior_boundary *boundary)
 {
     free(boundary->grid_node);
+    free(boundary->grid);
+    free(boundary->size);
     free(boundary->face);
     free(boundary->leaf);
     free(boundary->piece);

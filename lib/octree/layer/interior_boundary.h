@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The boundary of the chosen leaves as a mesh of triangles and quadrilaterals: it becomes
- * the surface's. */
+/* The boundary of the chosen leaves as a mesh of triangles and quadrilaterals on the
+ * octree's lattice: it becomes the surface's. Once found it needs the octree no more. */
 #ifndef TM_LAYER_INTERIOR_BOUNDARY_H
 #define TM_LAYER_INTERIOR_BOUNDARY_H
 
@@ -11,8 +11,13 @@
 typedef enum tm_cut { TM_UNCUT, TM_CUT_02, TM_CUT_13 } tm_cut;
 
 typedef struct tm_interior_boundary {
+    double low[3], side; /* the lattice: where it begins, the side of a root cube */
+    unsigned finest;     /* and the level of its points */
+    unsigned coarsest;   /* level of the largest leaf at the boundary */
     size_t nodes;
     uint32_t *grid_node; /* [nodes]: the octree's */
+    uint32_t (*grid)[3]; /* [nodes]: on the lattice */
+    double *size;        /* [nodes]: side of the smallest leaf with a face there */
     size_t faces;
     uint32_t (*face)[4];  /* interior boundary nodes; counter-clockwise seen from outside;
                              TM_NONE as  the fourth of a triangle */
@@ -41,12 +46,19 @@ static inline unsigned tm_boundary_face_corner(const tm_interior_boundary *bound
     return i;
 }
 
-/* The place of a node on the lattice. */
-static inline void tm_boundary_node_point(const tm_interior_boundary *boundary,
-                                          const tm_octree *octree, size_t s,
+/* The side of the lattice's smallest cubes. */
+static inline double tm_boundary_unit(const tm_interior_boundary *boundary)
+{
+    return boundary->side / (double)((uint32_t)1 << boundary->finest);
+}
+
+/* The point of the lattice where node s is. */
+static inline void tm_boundary_node_point(const tm_interior_boundary *boundary, size_t s,
                                           double xyz[3])
 {
-    tm_octree_point(octree, octree->grid[boundary->grid_node[s]], xyz);
+    const double unit = tm_boundary_unit(boundary);
+    for (int i = 0; i < 3; i++)
+        xyz[i] = boundary->low[i] + unit * (double)boundary->grid[s][i];
 }
 
 /* The state of a chosen leaf: the middles that the mesh has. */

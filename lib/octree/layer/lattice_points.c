@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "lattice_points.h"
+#include "octree_mesh_parts.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -3,17 +3,15 @@
 
 #include "../../base/array.h"
 #include "../../base/disjoint_sets.h"
-#include "projection.h"
-#include "spurious_components.h"
-#include "untangling.h"
+#include "octree_mesh_parts.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 /* Where the interior boundary's nodes are closest to the surface. Neighbours in number
  * are mostly close to each other, so that each begins where the last one ended. */
-static tm_status find_closest(tm_octree_mesh *m, const tm_octree *octree,
-                              const tm_surface *surface, tm_error *error)
+static tm_status find_closest(tm_octree_mesh *m, const tm_surface *surface,
+                              tm_error *error)
 {
     m->at = tm_new(m->boundary.nodes, sizeof *m->at);
     m->held = calloc(m->boundary.nodes + 1, sizeof *m->held);
@@ -22,7 +20,7 @@ static tm_status find_closest(tm_octree_mesh *m, const tm_octree *octree,
     uint32_t guess = TM_NONE;
     for (size_t s = 0; s < m->boundary.nodes; s++) {
         double xyz[3];
-        tm_boundary_node_point(&m->boundary, octree, s, xyz);
+        tm_boundary_node_point(&m->boundary, s, xyz);
         m->at[s].triangle = guess;
         tm_surface_closest(surface, xyz, TM_NONE, &m->at[s]);
         guess = m->at[s].triangle;
@@ -84,7 +82,7 @@ static tm_status find_boundary_once(tm_octree_mesh *m, const tm_octree *octree,
     if (status == TM_OK)
         status = measure_boundary(m, error);
     if (status == TM_OK)
-        status = find_closest(m, octree, surface, error);
+        status = find_closest(m, surface, error);
     return status;
 }
 
@@ -115,8 +113,7 @@ static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *su
     if (status == TM_OK)
         status = count_lost(m, octree, surface, error);
     if (status == TM_OK)
-        status =
-            tm_feature_find(&m->feature, &m->boundary, octree, surface, m->at, error);
+        status = tm_feature_find(&m->feature, &m->boundary, surface, m->at, error);
     if (status == TM_OK)
         status = tm_assemble(&m->assembly, octree, &m->interior, &m->boundary, error);
     if (status == TM_OK)

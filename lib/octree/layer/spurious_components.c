@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "spurious_components.h"
+#include "octree_mesh_parts.h"
 
 #include "../../base/array.h"
 #include "../../base/disjoint_sets.h"

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "untangling.h"
+#include "octree_mesh_parts.h"
 
 #include "../../base/array.h"
 #include "../../optimise/optimise_surface.h"
-#include "lattice_points.h"
 
 #include <stdlib.h>
 #include <string.h>

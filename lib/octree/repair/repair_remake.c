@@ -2,6 +2,7 @@
 #include "repair_steps.h"
 
 #include "../../base/array.h"
+#include "../forest/octree_build.h"
 #include "../layer/octree_mesh.h"
 #include "../layer/octree_mesh_stream.h"
 #include "repair_boundary.h"

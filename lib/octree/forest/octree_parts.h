@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The steps of tm_octree_build(), a file each. */
+#ifndef TM_FOREST_OCTREE_PARTS_H
+#define TM_FOREST_OCTREE_PARTS_H
+
+#include "leaf_list.h"
+#include "brick.h"
+#include "octree.h"
+
+/* descent.c: the leaves that rules ask for, before balance. */
+
+/* Splits the roots of the octree's brick as the rules say, except those of TM_RULE_LEAVES
+ * (see tm_octree_build), and appends the leaves to an empty list; each knows whether the
+ * surface meets it. On its way down each octant has the lists of triangles that meet it,
+ * of the surface and of every region: a list is made from the parent's. So the cost is
+ * O(octants that are met × triangles in them). */
+tm_status tm_octree_descend(tm_leaf_list *leaves, const tm_octree *octree,
+                            const tm_surface *surface, const tm_octree_rule *rule,
+                            size_t rules, tm_error *error);
+
+/* Says of each leaf of the octree whether the surface meets it; the leaves must be in
+ * order and fill the brick. The same cost. */
+tm_status tm_octree_cross(tm_octree *octree, const tm_surface *surface, tm_error *error);
+
+/* balance.c: 2:1 balance, which p4est does (C. Burstedde, L. C. Wilcox, O. Ghattas,
+ * p4est: scalable algorithms for parallel adaptive mesh refinement on forests of octrees,
+ * SIAM Journal on Scientific Computing 33, 2011). */
+
+/* Splits as few leaves as can be until two that share a face or some of an edge differ by
+ * one level at most. The leaves are in order and fill the brick, before and after; a new
+ * one knows whether the surface meets it (which is only asked where its parent says that
+ * the surface meets that). O(leaves log leaves), 0.15 µs per leaf. */
+tm_status tm_balance(tm_leaf_list *leaves, const tm_octree *octree, const tm_brick *brick,
+                     const tm_surface *surface, tm_error *error);
+
+/* octree_nodes.c: the nodes of an octree. */
+
+/* Fills nodes, grid and node of an octree whose leaves are in order, fill the brick and
+ * are balanced over faces and edges. TM_ERROR_INPUT: 32-bit ids do not do. O(leaves). */
+tm_status tm_octree_number_nodes(tm_octree *octree, tm_error *error);
+
+#endif

@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The steps of tm_octree_mesh_make() behind interior leaves and boundary, features and
+ * assembly, a file each. */
+#ifndef TM_LAYER_OCTREE_MESH_PARTS_H
+#define TM_LAYER_OCTREE_MESH_PARTS_H
+
+#include "interior_boundary.h"
+#include "assemble.h"
+#include "feature.h"
+#include "octree_mesh.h"
+
+/* spurious_components.c: pieces of the mesh, and hollows in it, that the surface does not
+ * have: they come off where a part of it is thinner than a leaf. */
+
+/* Each piece of the interior boundary belongs to the shell of the surface that most of it
+ * is closest to; of those of a shell only the largest stays. The leaves inside of another
+ * one are taken away, or, where it is the interior boundary of a hollow, added. at[s] is
+ * the place of the surface that is closest to interior boundary node s. *changed says
+ * whether any leaf was; then the interior boundary must be found again. TM_ERROR_SYSTEM
+ * where memory is out. O(leaves). */
+tm_status tm_spurious_components_remove(tm_interior *interior, const tm_octree *octree,
+                                        const tm_interior_boundary *boundary,
+                                        const tm_surface *surface,
+                                        const tm_surface_point *at, bool *changed,
+                                        tm_error *error);
+
+/* projection.c: the layer's outer nodes go onto the surface, and the nodes below make
+ * room. */
+
+/* Puts each outer node where its feature says: on its corner, on its curve, on its patch;
+ * between these they are spread by averaging, so that no face is squashed. Then the inner
+ * nodes and those next to them are averaged. at[s] is where outer node s is on the
+ * surface, before and after. Elements may be inverted by this. TM_ERROR_SYSTEM where
+ * memory is out. O(nodes of the interior boundary) queries of the surface, O(elements).
+ */
+tm_status tm_project_layer(tm_assembly *assembly, const tm_interior_boundary *boundary,
+                           const tm_feature *feature, const tm_surface *surface,
+                           tm_surface_point *at, tm_error *error);
+
+/* lattice_points.c: places of a mesh's nodes at which every element is valid. */
+
+/* Fills xyz[assembly->mesh.nodes]: nodes of the lattice as they are on it, but the inner
+ * ones 0.08 of the side of the smallest leaf around them inside: outward of the interior
+ * boundary (octant_mask.h) is a direction in which all of it can be seen, and nothing is
+ * tilted by so much that it would turn: as measured, J_ENS is above 0.09. (With 0.1 a
+ * pyramid with three of them can be flat.) Middles are at the means of their leaf's
+ * corners. TM_ERROR_SYSTEM where memory is out. O(leaves). */
+tm_status tm_lattice_points(const tm_assembly *assembly, const tm_octree *octree,
+                            const tm_interior *interior,
+                            const tm_interior_boundary *boundary, double (*xyz)[3],
+                            tm_error *error);
+
+/* untangling.c: the last step of the mesh: no element is inverted. */
+
+/* Moves nodes around elements of low quality until these are better (optimise.h). Where
+ * some are still not valid, their nodes go back towards the lattice, half of the way at a
+ * time, until all elements are valid; on the lattice they are. Outer nodes that then are
+ * not on the surface are marked as held and counted. TM_ERROR_SYSTEM where memory is
+ * out. */
+tm_status tm_untangle_layer(tm_octree_mesh *mesh, const tm_octree *octree,
+                            const tm_surface *surface, tm_error *error);
+
+#endif
