@@ -138,14 +138,7 @@ static void format_chunk(void *context, size_t chunk)
     size_t from = b->first + chunk * CHUNK_ROWS, to = from + CHUNK_ROWS;
     if (to > b->block->count)
         to = b->block->count;
-    size_t needed = room(b->block, from, to);
-    if (text->capacity < needed) {
-        free(text->byte);
-        text->byte = malloc(needed);
-        text->capacity = text->byte ? needed : 0;
-        text->failed = !text->byte;
-    }
-    if (text->failed)
+    if (!tm_text_room(text, room(b->block, from, to)))
         return;
     const tm_block_shape *shape = tm_block_shape_of(b->block->kind);
     row_number number = row_number_from(from + b->base);

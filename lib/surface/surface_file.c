@@ -112,17 +112,19 @@ tm_status tm_polygon_surface_end_facet(tm_polygon_surface *surface, int32_t mark
     return TM_OK;
 }
 
+tm_status tm_polygon_surface_end_face(tm_polygon_surface *surface, tm_error *error)
+{
+    const tm_status status = tm_polygon_surface_end_polygon(surface, error);
+    return status == TM_OK ? tm_polygon_surface_end_facet(surface, 0, error) : status;
+}
+
 tm_status tm_polygon_surface_add_polygon(tm_polygon_surface *surface,
                                          const uint32_t *node, size_t k, tm_error *error)
 {
     tm_status status = TM_OK;
     for (size_t i = 0; i < k && status == TM_OK; i++)
         status = tm_polygon_surface_add_corner(surface, node[i], error);
-    if (status == TM_OK)
-        status = tm_polygon_surface_end_polygon(surface, error);
-    if (status == TM_OK)
-        status = tm_polygon_surface_end_facet(surface, 0, error);
-    return status;
+    return status == TM_OK ? tm_polygon_surface_end_face(surface, error) : status;
 }
 
 tm_status tm_polygon_surface_add_facet_hole(tm_polygon_surface *surface,
