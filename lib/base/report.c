@@ -6,6 +6,11 @@
 
 static const char whole[] = "%.0f"; /* a count, as a double */
 
+static const void *member(const tm_report_row *row, const void *of)
+{
+    return (const char *)of + row->offset;
+}
+
 static int64_t integer_of(const tm_report_row *row, const void *of)
 {
     const char *member = (const char *)of + row->offset;
@@ -19,13 +24,13 @@ static int64_t integer_of(const tm_report_row *row, const void *of)
 static double number_of(const tm_report_row *row, const void *of)
 {
     if (row->type == TM_REPORT_NUMBER)
-        return *(const double *)((const char *)of + row->offset);
+        return *(const double *)member(row, of);
     return (double)integer_of(row, of);
 }
 
 static void counts_json(tm_json *json, const tm_report_row *row, const void *of)
 {
-    const size_t *count = (const size_t *)((const char *)of + row->offset);
+    const size_t *count = member(row, of);
     tm_json_open(json, row->key, '[');
     for (size_t i = 0; i < row->size / sizeof *count; i++)
         tm_json_integer(json, NULL, (int64_t)count[i]);

@@ -40,14 +40,14 @@ typedef struct tm_report_row {
 } tm_report_row;
 
 /* clang-format off */
-/* The type is that of the member. */
+/* The type is that of the member; nothing is looked at where the pointer points. */
 #define TM_REPORT_TYPE(type, member) \
-    _Generic(((type *)0)->member, size_t: TM_REPORT_COUNT, size_t *: TM_REPORT_COUNTS, \
+    _Generic(((type *)1)->member, size_t: TM_REPORT_COUNT, size_t *: TM_REPORT_COUNTS, \
              unsigned: TM_REPORT_UNSIGNED, int64_t: TM_REPORT_INTEGER, \
              double: TM_REPORT_NUMBER)
 #define TM_REPORT_ROW(key, label, format, type, member) \
     {key, label, format, TM_REPORT_TYPE(type, member), offsetof(type, member), \
-     sizeof(((type *)0)->member)}
+     sizeof(((type *)1)->member)}
 /* A count of which 0 means that it is not known. */
 #define TM_REPORT_KNOWN_ROW(key, type, member) \
     {key, NULL, NULL, TM_REPORT_KNOWN, offsetof(type, member), sizeof(size_t)}
