@@ -234,40 +234,42 @@ static void note_left(const program *p, const tm_repair_state *state,
         left->bad, left->invalid, left->worst, left->held);
 }
 
+/* Before the repair, or after it. */
 typedef struct {
+    tm_repair_score score;
     size_t elements, octants;
-} size;
+} mesh_state;
 
-typedef struct {
-    tm_repair_report repair;
-    size before, after;
-    double seconds;
-} result;
-
-static void write_json(filter *f, const result *r)
+static mesh_state state_of(const tm_repair_state *state, const tm_stream *stream)
 {
-#define ROW(key, member) TM_REPORT_ROW(key, NULL, NULL, result, member)
-#define SCORE(when)                                                                      \
-    TM_REPORT_OPEN_ROW(#when), ROW("bad", repair.when.bad),                              \
-        ROW("invalid", repair.when.invalid), ROW("held", repair.when.held),              \
-        ROW("worst", repair.when.worst), ROW("average", repair.when.average),            \
-        ROW("elements", when.elements), ROW("octants", when.octants),                    \
-        TM_REPORT_CLOSE_ROW
-    static const tm_report_row rows[] = {SCORE(before),
-                                         SCORE(after),
-                                         ROW("iterations", repair.iterations),
-                                         ROW("tips", repair.corners),
-                                         ROW("divided", repair.divided),
-                                         ROW("seconds", seconds),
-                                         {0}};
-    filter_write_json(f, rows, r);
+    const size_t octants =
+        state->remade ? state->octree.leaves : mesh_rows(stream, ".octant");
+    return (mesh_state){.elements = state->mesh.elements, .octants = octants};
 }
 
-static size size_of(const tm_repair_state *state, const tm_stream *stream)
+static void write_json(filter *f, const mesh_state *before, const mesh_state *after,
+                       const tm_repair_report *report, double seconds)
 {
-    const tm_block *octant = tm_stream_find(stream, ".octant");
-    const size_t octants = octant ? octant->count : 0;
-    return (size){state->mesh.elements, state->remade ? state->octree.leaves : octants};
+    static const tm_report_row rows[] = {
+        TM_REPORT_ROW("bad", NULL, NULL, mesh_state, score.bad),
+        TM_REPORT_ROW("invalid", NULL, NULL, mesh_state, score.invalid),
+        TM_REPORT_ROW("held", NULL, NULL, mesh_state, score.held),
+        TM_REPORT_ROW("worst", NULL, NULL, mesh_state, score.worst),
+        TM_REPORT_ROW("average", NULL, NULL, mesh_state, score.average),
+        TM_REPORT_ROW("elements", NULL, NULL, mesh_state, elements),
+        TM_REPORT_ROW("octants", NULL, NULL, mesh_state, octants),
+        {0}};
+    static const tm_report_row done[] = {
+        TM_REPORT_ROW("iterations", NULL, NULL, tm_repair_report, iterations),
+        TM_REPORT_ROW("tips", NULL, NULL, tm_repair_report, corners),
+        TM_REPORT_ROW("divided", NULL, NULL, tm_repair_report, divided),
+        {0}};
+    tm_json *json = filter_json_begin(f);
+    tm_report_object(json, "before", rows, before);
+    tm_report_object(json, "after", rows, after);
+    tm_report_json(json, done, report);
+    tm_json_double(json, "seconds", seconds);
+    filter_json_end(f);
 }
 
 /* Finds the surface, what nodes may do, and the octree. */
@@ -293,31 +295,33 @@ static bool run(program *p, tm_stream *stream)
     tm_error error;
     tm_repair_state state;
     tm_repair_notes notes = {0};
-    result r;
+    tm_repair_report report;
     const clock_t start = clock();
     if (tm_repair_from_stream(&state, stream, &error) != TM_OK)
         fail(p, &error);
     if (tm_repair_is_needed(&state, stream, p->repair.threshold) || p->trace)
         prepare(p, stream, &state, &notes);
     tm_surface *surface = p->has_surface ? &p->boundary : NULL;
-    r.before = size_of(&state, stream);
+    mesh_state before = state_of(&state, stream);
     p->repair.visit = visit;
     p->repair.context = p;
-    if (tm_repair(&state, surface, &p->repair, &r.repair, &error) != TM_OK)
+    if (tm_repair(&state, surface, &p->repair, &report, &error) != TM_OK)
         fail(p, &error);
-    r.after = size_of(&state, stream);
-    const bool done = r.repair.after.bad == 0 && r.repair.after.held == 0;
+    mesh_state after = state_of(&state, stream);
+    before.score = report.before;
+    after.score = report.after;
+    const bool done = report.after.bad == 0 && report.after.held == 0;
     if (!done)
-        note_left(p, &state, &r.repair.after, stream->base);
+        note_left(p, &state, &report.after, stream->base);
     if (tm_repair_to_stream(&state, stream, surface, &notes, &error) != TM_OK)
         filter_fail(&p->f, &error);
     if (notes.dropped[0])
         filter_note(&p->f, "dropped, as they refer to what is no more: %s",
                     notes.dropped);
-    filter_write(&p->f, stream, "%zu elements of %zu, bad %zu of %zu", r.after.elements,
-                 r.before.elements, r.repair.after.bad, r.repair.before.bad);
-    r.seconds = (double)(clock() - start) / CLOCKS_PER_SEC;
-    write_json(&p->f, &r);
+    filter_write(&p->f, stream, "%zu elements of %zu, bad %zu of %zu", after.elements,
+                 before.elements, report.after.bad, report.before.bad);
+    write_json(&p->f, &before, &after, &report,
+               (double)(clock() - start) / CLOCKS_PER_SEC);
     tm_repair_state_free(&state);
     return done;
 }

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
-static const char whole[] = "%.0f"; /* a count, as a double */
+static const char count_format[] = "%.0f"; /* a count, as a double */
 
 static const void *member(const tm_report_row *row, const void *of)
 {
@@ -70,6 +70,14 @@ void tm_report_json(tm_json *json, const tm_report_row *row, const void *of)
             row_json(json, row, of);
 }
 
+void tm_report_object(tm_json *json, const char *key, const tm_report_row *row,
+                      const void *of)
+{
+    tm_json_open(json, key, '{');
+    tm_report_json(json, row, of);
+    tm_json_close(json, '}');
+}
+
 void tm_report_histogram(tm_json *json, const char *key, const size_t *count, size_t bins,
                          double (*end)(size_t bin))
 {
@@ -81,6 +89,12 @@ void tm_report_histogram(tm_json *json, const char *key, const size_t *count, si
         tm_json_close(json, ']');
     }
     tm_json_close(json, ']');
+}
+
+double tm_percent(size_t part, size_t whole)
+{
+    const double hundred = 100;
+    return whole == 0 ? 0 : hundred * (double)part / (double)whole;
 }
 
 static void cell(tm_text *text, const char *format, double value)
@@ -120,7 +134,8 @@ void tm_report_table(tm_text *text, const tm_report_row *row, const void *const 
         }
         tm_text_format(text, "%-*s", label_width, row->label);
         for (size_t c = 0; c < columns; c++)
-            cell(text, row->format ? row->format : whole, number_of(row, column[c]));
+            cell(text, row->format ? row->format : count_format,
+                 number_of(row, column[c]));
         if (columns == 2 && row->type == TM_REPORT_COUNT &&
             integer_of(row, column[0]) > 0)
             tm_text_format(text, "   %.2f times",

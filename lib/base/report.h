@@ -59,9 +59,16 @@ typedef struct tm_report_row {
 /* Adds the rows that have a key to the object that is open. */
 void tm_report_json(tm_json *json, const tm_report_row *row, const void *of);
 
+/* Adds an object with the rows. */
+void tm_report_object(tm_json *json, const char *key, const tm_report_row *row,
+                      const void *of);
+
 /* Adds a histogram as [[upper end of bin 0, count[0]], …]. */
 void tm_report_histogram(tm_json *json, const char *key, const size_t *count, size_t bins,
                          double (*end)(size_t bin));
+
+/* 100 part / whole; 0 of nothing is 0. */
+double tm_percent(size_t part, size_t whole);
 
 /* Bytes of a table's label, of a number behind it, and stars of the longest bar. */
 enum { TM_LABEL_WIDTH = 40, TM_COLUMN_WIDTH = 14, TM_LONGEST_BAR = 30 };

@@ -48,13 +48,13 @@ static double edge(size_t bucket)
     return tm_jens_edge[bucket];
 }
 
+static const tm_report_row spread[] = {
+    ROW("worst", tm_spread, worst), ROW("average", tm_spread, average), {0}};
+
 static void histogram_json(tm_json *json, const tm_jens_histogram *histogram)
 {
-    static const tm_report_row rows[] = {ROW("negative", tm_jens_histogram, negative),
-                                         ROW("worst", tm_jens_histogram, all.worst),
-                                         ROW("average", tm_jens_histogram, all.average),
-                                         {0}};
-    tm_report_json(json, rows, histogram);
+    tm_json_integer(json, "negative", (int64_t)histogram->negative);
+    tm_report_json(json, spread, &histogram->all);
     tm_report_histogram(json, "histogram", histogram->bucket, TM_JENS_BUCKETS, edge);
 }
 
@@ -79,36 +79,29 @@ static void certified_json(tm_json *json, const tm_jens_statistics *statistics,
     tm_json_close(json, '}');
 }
 
-#define SPREAD(key, member)                                                              \
-    TM_REPORT_OPEN_ROW(key), ROW("worst", tm_jens_statistics, member.worst),             \
-        ROW("average", tm_jens_statistics, member.average), TM_REPORT_CLOSE_ROW
-
 void tm_jens_statistics_json(tm_json *json, const tm_jens_statistics *statistics,
                              const tm_jens_request *request, unsigned base)
 {
-    static const tm_report_row elements[] = {TM_REPORT_OPEN_ROW("elements"),
-                                             ROW("tet", tm_jens_statistics, kind[0]),
+    static const tm_report_row elements[] = {ROW("tet", tm_jens_statistics, kind[0]),
                                              ROW("pyramid", tm_jens_statistics, kind[1]),
                                              ROW("wedge", tm_jens_statistics, kind[2]),
                                              ROW("hex", tm_jens_statistics, kind[3]),
-                                             TM_REPORT_CLOSE_ROW,
                                              {0}};
-    static const tm_report_row others[] = {
-        SPREAD("aspect_ratio", aspect_ratio),
-        TM_REPORT_OPEN_ROW("verdict"),
-        SPREAD("scaled_jacobian", verdict_scaled_jacobian),
-        SPREAD("shape", verdict_shape),
-        TM_REPORT_CLOSE_ROW,
-        {0}};
-    tm_report_json(json, elements, statistics);
+    tm_report_object(json, "elements", elements, statistics);
     histogram_json(json, &statistics->jens);
     if (request->scaled_jacobian) {
         tm_json_open(json, "scaled_jacobian", '{');
         histogram_json(json, &statistics->scaled_jacobian);
         tm_json_close(json, '}');
     }
-    if (request->others)
-        tm_report_json(json, others, statistics);
+    if (request->others) {
+        tm_report_object(json, "aspect_ratio", spread, &statistics->aspect_ratio);
+        tm_json_open(json, "verdict", '{');
+        tm_report_object(json, "scaled_jacobian", spread,
+                         &statistics->verdict_scaled_jacobian);
+        tm_report_object(json, "shape", spread, &statistics->verdict_shape);
+        tm_json_close(json, '}');
+    }
     if (request->certify)
         certified_json(json, statistics, base);
 }

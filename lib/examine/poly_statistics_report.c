@@ -2,7 +2,6 @@
 /* poly_statistics.h as JSON and as tables. */
 #include "../base/report.h"
 #include "poly_statistics.h"
-#include "tet_statistics.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -12,9 +11,6 @@ enum { LABEL_CHARS = 64 };
 #define ROW(key, label, format, member)                                                  \
     TM_REPORT_ROW(key, label, format, tm_poly_statistics, member)
 #define KNOWN(key, member) TM_REPORT_KNOWN_ROW(key, tm_poly_statistics, member)
-#define RANGE(key, member)                                                               \
-    TM_REPORT_OPEN_ROW(key), ROW("min", NULL, NULL, member.min),                         \
-        ROW("mean", NULL, NULL, member.mean), TM_REPORT_CLOSE_ROW
 
 static const tm_report_row sizes[] = {ROW("polyhedra", "polyhedra", NULL, size.elements),
                                       ROW("facets", "facets", NULL, size.faces),
@@ -56,9 +52,11 @@ static const tm_report_row shape[] = {
     ROW("min_face_area", NULL, NULL, min_face_area),
     ROW("min_dihedral", "smallest dihedral angle", "%.4f", min_dihedral),
     ROW("max_dihedral", "largest dihedral angle", "%.4f", max_dihedral),
-    RANGE("edge_ratio", edge_ratio),
-    RANGE("kernel_radius", kernel_radius),
-    RANGE("kernel_ratio", kernel_ratio),
+    {0}};
+
+static const tm_report_row min_mean[] = {
+    TM_REPORT_ROW("min", NULL, NULL, tm_poly_range, min),
+    TM_REPORT_ROW("mean", NULL, NULL, tm_poly_range, mean),
     {0}};
 
 static double reduction(size_t size, size_t before)
@@ -101,6 +99,9 @@ void tm_poly_statistics_json(tm_json *json, const tm_poly_statistics *s)
     reduction_json(json, &s->size, &s->input);
     tm_report_json(json, volume, s);
     tm_report_json(json, shape, s);
+    tm_report_object(json, "edge_ratio", min_mean, &s->edge_ratio);
+    tm_report_object(json, "kernel_radius", min_mean, &s->kernel_radius);
+    tm_report_object(json, "kernel_ratio", min_mean, &s->kernel_ratio);
     tm_report_histogram(json, "faces_histogram", s->faces, tm_count_bins(s->faces),
                         count_end);
     tm_report_histogram(json, "tets_histogram", s->tets, tm_count_bins(s->tets),

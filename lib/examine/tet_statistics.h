@@ -46,9 +46,6 @@ tm_status tm_tet_statistics_measure(tm_tet_statistics *statistics, const double 
                                     size_t nodes, const uint32_t (*tet)[4], size_t tets,
                                     double limit, unsigned threads, tm_error *error);
 
-/* 100 part / whole; 0 of nothing is 0. */
-double tm_percent(size_t part, size_t whole);
-
 /* How many of the values lie below the upper end of a bin. */
 size_t tm_count_through(const size_t *histogram, size_t bin);
 

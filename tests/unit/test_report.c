@@ -65,11 +65,12 @@ static void members_are_keys(void **state)
     tm_json json = {.text = &text};
     tm_json_open(&json, NULL, '{');
     tm_report_json(&json, rows, &first);
+    tm_report_object(&json, "empty", &rows[sizeof rows / sizeof *rows - 1], &first);
     tm_json_close(&json, '}');
     assert_text(&text, "{\"nodes\": 4, \"unknown\": null, \"known\": 7, "
                        "\"rest\": {\"sizes\": [1, 0, 9223372036854775807], "
                        "\"passes\": 4294967295, \"deeper\": {\"second\": 9}}, "
-                       "\"euler\": -5, \"volume\": 0.1, \"none\": null}");
+                       "\"euler\": -5, \"volume\": 0.1, \"none\": null, \"empty\": {}}");
 }
 
 static void labels_are_rows(void **state)
@@ -99,6 +100,13 @@ static void two_columns_have_ratios_of_counts(void **state)
     assert_text(&text, "nodes                8            10   1.25 times\n"
                        "known                0             3\n"
                        "volume            1.00          2.00\n");
+}
+
+static void nothing_has_no_share(void **state)
+{
+    (void)state;
+    assert_true(tm_percent(1, 8) == 12.5);
+    assert_true(tm_percent(0, 0) == 0);
 }
 
 static double half(size_t bin)
@@ -133,6 +141,7 @@ int main(void)
         cmocka_unit_test(members_are_keys),
         cmocka_unit_test(labels_are_rows),
         cmocka_unit_test(two_columns_have_ratios_of_counts),
+        cmocka_unit_test(nothing_has_no_share),
         cmocka_unit_test(histograms_have_ends),
         cmocka_unit_test(bars_are_rounded),
     };
