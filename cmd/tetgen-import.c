@@ -127,11 +127,8 @@ static void read_block(const char *file, tm_block *block, const tm_block *node,
 {
     tm_text bytes = {0};
     filter_read_file(&f, file, &bytes);
-    tm_scan scan;
-    tm_tetgen_begin(&scan, bytes.byte, bytes.size, file);
-    succeed(tm_tetgen_read_rows(block, &scan, base, node ? node->count : 0, &error));
-    if (tm_scan_seek(&scan))
-        succeed(tm_scan_no_more(&scan, "the last row", &error));
+    succeed(tm_tetgen_read(block, bytes.byte, bytes.size, file, base,
+                           node ? node->count : 0, &error));
     tm_text_free(&bytes);
 }
 

@@ -6,24 +6,25 @@
 #include "../base/text.h"
 #include "../stream/stream.h"
 #include "../surface/surface_file.h"
-#include "scan.h"
 
-/* The .node, .ele, .face and .edge files: numbered from 0
- * or 1, with comments anywhere, attributes, markers, CR LF, header fields left out.
- * What such a file holds is what a block of the stream holds. */
+/* The .node, .ele, .face and .edge files: numbered from 0 or 1, with comments anywhere,
+ * attributes, markers, CR LF, header fields left out. What such a file holds is what a
+ * block of the stream holds. */
 
-/* Reads a header and its rows at scan into *block, whose name and kind are set and which
- * is otherwise empty. Of kind TM_NODE, the first row tells *base (it stays as it was
- * where there are no rows); other kinds need it: their indices must be in
- * *base … *base + nodes - 1. Rows must be numbered without a gap. The two tetrahedra
- * that `tetgen -nn` adds to rows of .face, and the one to rows of .edge, are skipped.
- * Second-order elements (-o2) are refused. After an error the block's arrays are
- * freed. O(bytes). */
-tm_status tm_tetgen_read_rows(tm_block *block, tm_scan *scan, unsigned *base,
+/* Reads a file into *block, whose name and kind are set and which is otherwise empty. Of
+ * kind TM_NODE, the first row tells *base (it stays as it was where there are no rows);
+ * other kinds need it: their indices must be in *base … *base + nodes - 1. Rows must be
+ * numbered without a gap, and nothing may follow them. The two tetrahedra that
+ * `tetgen -nn` adds to rows of .face, and the one to rows of .edge, are skipped.
+ * Second-order elements (-o2) are refused. After an error the block's arrays are freed.
+ * O(bytes). */
+tm_status tm_tetgen_read(tm_block *block, const char *bytes, size_t size,
+                         const char *name, unsigned *base, size_t nodes, tm_error *error);
+
+/* The same of the header and the rows at a scan (scan.h), which goes behind them. */
+struct tm_scan;
+tm_status tm_tetgen_read_rows(tm_block *block, struct tm_scan *scan, unsigned *base,
                               size_t nodes, tm_error *error);
-
-/* A scan over a whole file with TetGen's comment sign. */
-void tm_tetgen_begin(tm_scan *scan, const char *bytes, size_t size, const char *name);
 
 /* TetGen accepts tetrahedra of either orientation; a stream has right-hand positive ones.
  */

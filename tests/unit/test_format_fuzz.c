@@ -116,11 +116,9 @@ static void read_rows(const char *bytes, size_t size, const char *name)
     tm_stream_init(&stream);
     tm_block *block = tm_stream_add(&stream, name);
     assert_non_null(block);
-    tm_scan scan;
     tm_error error = {.status = TM_OK};
     unsigned base = 1;
-    tm_tetgen_begin(&scan, copy, size, "file");
-    if (tm_tetgen_read_rows(block, &scan, &base, NODES, &error) == TM_OK) {
+    if (tm_tetgen_read(block, copy, size, "file", &base, NODES, &error) == TM_OK) {
         size_t integers = block->count * tm_block_integers(block->kind);
         for (size_t i = 0; i < integers; i++)
             assert_true(block->integer[i] < NODES);

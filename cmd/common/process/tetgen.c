@@ -176,10 +176,8 @@ static tm_status read_block(const private_folder *folder, const char *name,
     if (status == TM_OK && exists) {
         tm_block *block = tm_stream_add(mesh, name);
         const tm_block *node = tm_stream_find(mesh, ".node");
-        tm_scan scan;
-        tm_tetgen_begin(&scan, bytes.byte, bytes.size, file);
-        status = block ? tm_tetgen_read_rows(block, &scan, &mesh->base,
-                                             node ? node->count : 0, error)
+        status = block ? tm_tetgen_read(block, bytes.byte, bytes.size, file, &mesh->base,
+                                        node ? node->count : 0, error)
                        : tm_fail_memory(error);
     }
     tm_text_free(&bytes);
