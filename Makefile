@@ -106,6 +106,9 @@ $(unit_tests): $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(library)
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lcmocka $(LDLIBS)
 
+# In this one every allocation fails once.
+$(BUILD)/tests/test_memory: LDFLAGS += -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc
+
 # C++ programs that compare with the C++ library.
 $(oracles): $(BUILD)/tests/%: tests/oracle/%.cc tests/unit/random.h $(library)
 	@mkdir -p $(@D)
