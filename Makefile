@@ -129,6 +129,15 @@ $(unit_tests): $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(library)
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lcmocka $(LDLIBS)
 
+# Calls all functions with NULL for their tm_error.
+$(BUILD)/generated/null_error.h: tests/null_error.py $(headers)
+	@mkdir -p $(@D)
+	python3 $< $(filter %.h,$^) >$@.new
+	mv $@.new $@
+
+$(BUILD)/tests/unit/test_null_error.o: $(BUILD)/generated/null_error.h
+$(BUILD)/tests/test_null_error: $(BUILD)/tests/fuzz/damage.o
+
 # C++ programs that compare with the C++ library.
 $(oracles): $(BUILD)/tests/%: tests/oracle/%.cc tests/unit/random.h $(library)
 	@mkdir -p $(@D)
@@ -174,7 +183,7 @@ bench: benchers
 	for bench in tests/bench/*.sh; do sh "$$bench" || exit; done
 
 lint: WERROR = 1
-lint: $(generated)
+lint: $(generated) $(BUILD)/generated/null_error.h
 	sh tests/lint.sh $(BUILD)
 
 warnings:
