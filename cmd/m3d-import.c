@@ -25,7 +25,7 @@ int main(int argc, char **argv)
     tm_stream stream;
     tm_text bytes = {0};
     tm_error error;
-    size_t materials;
+    size_t materials = 0;
     tm_stream_init(&stream);
     import_input(&f, &bytes);
     if (tm_m3d_read(&stream, bytes.byte ? bytes.byte : "", bytes.size,

@@ -138,12 +138,14 @@ static tm_status read_list(reader *r, lists *to, const char *what, size_t least,
 {
     size_t k, begin = to->start[to->count];
     tm_status status = next_count(r, what, 1, &k);
-    if (status == TM_OK && k < least)
-        status = fail(r, "%s is %zu (%zu or more would be right)", what, k, least);
+    if (status != TM_OK)
+        return status;
+    if (k < least)
+        return fail(r, "%s is %zu (%zu or more would be right)", what, k, least);
     uint32_t *item = tm_grow(to->item, &to->item_room, begin + k, sizeof *item);
-    if (status == TM_OK && !item)
-        status = tm_fail_memory(r->error);
-    to->item = item ? item : to->item;
+    if (!item)
+        return tm_fail_memory(r->error);
+    to->item = item;
     for (size_t i = 0; i < k && status == TM_OK; i++) {
         int64_t number = 0;
         status = next_integer(r, "a number in the list", 0, (int64_t)limit - 1, &number);

@@ -307,8 +307,9 @@ tm_status tm_feature_find(tm_feature *feature, tm_skin *skin, const tm_octree *o
     double *size = find_sizes(skin, octree);
     find.path.size = size;
     find.path.on_path = calloc(skin->faces + 1, 1);
-    find.path.visit = calloc(skin->nodes + 1, sizeof *find.path.visit);
-    if (status == TM_OK && !(size && find.path.on_path && find.path.visit))
+    if (size) /* there are not too many nodes */
+        find.path.visit = calloc(skin->nodes + 1, sizeof *find.path.visit);
+    if (status == TM_OK && !(find.path.on_path && find.path.visit))
         status = tm_fail_memory(error);
     if (status == TM_OK)
         status = choose(&find, error);
