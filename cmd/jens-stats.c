@@ -315,7 +315,7 @@ int main(int argc, char **argv)
 
     tm_stream stream;
     tm_error error;
-    tm_jens_statistics statistics;
+    tm_jens_statistics statistics = {0};
     const tm_elements elements = read_elements(&f, &stream);
     if (tm_jens_statistics_measure(&statistics, &elements, &o.request, &error) != TM_OK)
         filter_fail(&f, &error);

@@ -140,7 +140,7 @@ static tm_status write_histogram(const writer *w, tm_error *error)
     const tm_elements elements = {(const double(*)[3])node->real, mix->count, mix->start,
                                   mix->item};
     const tm_jens_request request = {.threads = w->threads};
-    tm_jens_statistics statistics;
+    tm_jens_statistics statistics = {0};
     tm_text text = {0};
     const tm_status status =
         tm_jens_statistics_measure(&statistics, &elements, &request, error);

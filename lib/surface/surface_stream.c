@@ -6,23 +6,19 @@
 
 enum { TRIANGLE = 3 };
 
-static tm_block *add(tm_stream *stream, const char *part, const char *suffix,
-                     tm_error *error)
+static tm_block *add(tm_stream *stream, const char *part, const char *suffix)
 {
     char name[TM_BLOCK_NAME];
     snprintf(name, sizeof name, "%s%s", part, suffix);
-    tm_block *block = tm_stream_add(stream, name);
-    if (!block)
-        tm_fail_memory(error);
-    return block;
+    return tm_stream_add(stream, name);
 }
 
 static tm_status give_nodes(const tm_polygon_surface *surface, tm_stream *stream,
                             const char *part, tm_error *error)
 {
-    tm_block *node = add(stream, part, ".node", error);
+    tm_block *node = add(stream, part, ".node");
     if (!node)
-        return error->status;
+        return tm_fail_memory(error);
     node->attributes = surface->attribute ? surface->attributes : 0;
     node->markers = surface->node_marker != NULL;
     tm_status status = tm_block_allocate(node, surface->nodes, 0, error);
@@ -70,9 +66,9 @@ tm_status tm_polygon_surface_to_stream(const tm_polygon_surface *surface,
         triangles += corners_of(surface, p) > 2 ? corners_of(surface, p) - 2 : 0;
     if (triangles >= UINT32_MAX)
         return tm_fail(error, TM_ERROR_SYSTEM, "more triangles than 32 bits can number");
-    tm_block *face = add(stream, part, ".face", error);
+    tm_block *face = add(stream, part, ".face");
     if (!face)
-        return error->status;
+        return tm_fail_memory(error);
     face->markers = surface->has_facet_markers;
     status = tm_block_allocate(face, triangles, 0, error);
     for (size_t f = 0; f < surface->facets && status == TM_OK; f++)

@@ -96,7 +96,7 @@ void filter_fail(const filter *f, const tm_error *error)
         fprintf(stderr, "%s: ", error->block);
     fprintf(stderr, "%s\n", error->what);
     output_files_abandon(f->files);
-    exit(error->status);
+    exit((int)error->status);
 }
 
 double filter_number(const filter *f, const char *option, const char *text, double lo,

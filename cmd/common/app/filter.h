@@ -18,6 +18,7 @@
 #include "../../../lib/base/error.h"
 #include "../../../lib/base/report.h"
 #include "../../../lib/base/text.h"
+#include "../../../lib/base/version.h"
 #include "../../../lib/stream/stream.h"
 #include "output_files.h"
 
