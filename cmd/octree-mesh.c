@@ -143,7 +143,7 @@ static void write_json(filter *f, const tm_octree *octree, const tm_octree_mesh 
 {
     const tm_octree_mesh_report *r = &mesh->report;
     const tm_mixed_mesh *m = &mesh->assembly.mesh;
-    size_t kind[TM_ELEMENT_NODES_MOST + 1] = {0};
+    size_t kind[TM_ELEMENT_NODES + 1] = {0};
     tm_text text = {0};
     tm_json json = {.text = &text};
     for (size_t e = 0; e < m->elements; e++)
@@ -152,10 +152,10 @@ static void write_json(filter *f, const tm_octree *octree, const tm_octree_mesh 
     tm_json_integer(&json, "octants", (int64_t)octree->leaves);
     tm_json_integer(&json, "nodes", (int64_t)m->nodes);
     tm_json_open(&json, "elements", '{');
-    tm_json_integer(&json, "tet", (int64_t)kind[4]);
-    tm_json_integer(&json, "pyramid", (int64_t)kind[5]);
-    tm_json_integer(&json, "wedge", (int64_t)kind[6]);
-    tm_json_integer(&json, "hex", (int64_t)kind[8]);
+    for (size_t i = 0; i < TM_ELEMENT_KINDS; i++) {
+        const size_t k = tm_element_kind_nodes[i];
+        tm_json_integer(&json, tm_element_shapes[k].name, (int64_t)kind[k]);
+    }
     tm_json_close(&json, '}');
     tm_json_integer(&json, "boundary_nodes", (int64_t)mesh->boundary.nodes);
     tm_json_integer(&json, "held_back", (int64_t)r->held_back);

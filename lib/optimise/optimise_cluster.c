@@ -124,10 +124,10 @@ static bool make_room(tm_cluster *cluster, size_t old_nodes, size_t old_elements
                RENEW(cluster->vector, 3 * nodes * TM_CLUSTER_VECTORS);
     if (elements > old_elements)
         made = made && RENEW(cluster->start, elements + 1) &&
-               RENEW(cluster->item, elements * TM_ELEMENT_NODES_MOST) &&
+               RENEW(cluster->item, elements * TM_ELEMENT_NODES) &&
                RENEW(cluster->threshold, elements) && RENEW(cluster->before, elements) &&
                RENEW(cluster->jens, elements) && RENEW(cluster->element_size, elements) &&
-               RENEW(cluster->corner, elements * TM_CORNERS_MOST);
+               RENEW(cluster->corner, elements * TM_ELEMENT_CORNERS);
     return made;
 }
 
@@ -158,9 +158,9 @@ static void measure_sizes(tm_cluster *cluster)
         const tm_element_shape *shape =
             &tm_element_shapes[cluster->start[e + 1] - cluster->start[e]];
         for (size_t i = 0; i < shape->corners; i++) {
-            const uint32_t v = item[shape->node[i][0]];
+            const uint32_t v = item[shape->corner[i][0]];
             for (size_t j = 1; v < cluster->moving && j < 4; j++) {
-                const double *to = cluster->xyz[item[shape->node[i][j]]];
+                const double *to = cluster->xyz[item[shape->corner[i][j]]];
                 cluster->size[v] += sqrt(tm_distance2(cluster->xyz[v], to));
                 count[v][0]++;
             }
@@ -179,8 +179,8 @@ static void measure_elements(tm_cluster *cluster)
         double sum = 0;
         for (size_t i = 0; i < shape->corners; i++)
             for (size_t j = 1; j < 4; j++)
-                sum += sqrt(tm_distance2(cluster->xyz[item[shape->node[i][0]]],
-                                         cluster->xyz[item[shape->node[i][j]]]));
+                sum += sqrt(tm_distance2(cluster->xyz[item[shape->corner[i][0]]],
+                                         cluster->xyz[item[shape->corner[i][j]]]));
         cluster->element_size[e] = sum > 0 ? sum / (double)(3 * shape->corners) : 1;
     }
 }

@@ -65,7 +65,7 @@ static double value_of_missing(tm_cluster *cluster, double sharpness)
         const size_t start = cluster->start[e];
         const tm_element_shape *shape = &tm_element_shapes[cluster->start[e + 1] - start];
         const double target = cluster->threshold[e] + margin;
-        double jacobian[TM_CORNERS_MOST], least = 1;
+        double jacobian[TM_ELEMENT_CORNERS], least = 1;
         tm_scaled_jacobians(shape, xyz, cluster->item + start, jacobian);
         for (size_t i = 0; i < shape->corners; i++) {
             const double jens = tm_jens_of(jacobian[i], shape->k[i]);
@@ -95,7 +95,7 @@ static void slope_of_missing(const tm_cluster *cluster, double (*slope)[3])
             &tm_element_shapes[cluster->start[corner->element + 1] - start];
         uint32_t node[4];
         for (size_t i = 0; i < 4; i++)
-            node[i] = cluster->item[start + shape->node[corner->corner][i]];
+            node[i] = cluster->item[start + shape->corner[corner->corner][i]];
         double part[4][3];
         tm_scaled_jacobian_slope(cluster->xyz[node[0]], cluster->xyz[node[1]],
                                  cluster->xyz[node[2]], cluster->xyz[node[3]], part);

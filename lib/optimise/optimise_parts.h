@@ -62,7 +62,7 @@ typedef struct tm_cluster {
     double *threshold;        /* [elements] */
     double *before;           /* [elements]: J_ENS at first */
     double *jens;             /* [elements]: J_ENS now */
-    tm_active_corner *corner; /* [elements * TM_CORNERS_MOST] */
+    tm_active_corner *corner; /* [elements * TM_ELEMENT_CORNERS] */
     size_t corners;
     double sum;               /* of the terms of the objective */
     double *element_size;     /* [elements]: the mean length of the edges, at first */
