@@ -121,11 +121,11 @@ static void note_losses(const filter *f, const tm_surface *s,
                     "together for this level, as near (%g, %g, %g)",
                     r->corners_lost, r->curves_lost, r->feature_lost_at[0],
                     r->feature_lost_at[1], r->feature_lost_at[2]);
-    if (r->held_back)
+    if (r->off_surface)
         filter_note(f,
                     "%zu boundary nodes are not on the surface yet: there they would "
                     "invert an element (octree-repair takes them there)",
-                    r->held_back);
+                    r->off_surface);
     if (r->invalid)
         filter_note(f, "%zu elements are inverted", r->invalid);
 }
@@ -158,7 +158,7 @@ static void write_json(filter *f, const tm_octree *octree, const tm_octree_mesh 
     }
     tm_json_close(&json, '}');
     tm_json_integer(&json, "boundary_nodes", (int64_t)mesh->boundary.nodes);
-    tm_json_integer(&json, "held_back", (int64_t)r->held_back);
+    tm_json_integer(&json, "held_back", (int64_t)r->off_surface);
     tm_json_integer(&json, "inverted", (int64_t)r->invalid);
     tm_json_integer(&json, "lost_octants", (int64_t)r->lost);
     tm_json_integer(&json, "lost_corners", (int64_t)r->corners_lost);

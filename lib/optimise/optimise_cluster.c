@@ -44,7 +44,7 @@ static bool add_element(tm_cluster *cluster, const tm_cluster_source *source, ui
 
 static bool may_move(const tm_node_rule *rule)
 {
-    return rule->freedom == TM_MOVES_AT_CORNER ? rule->held
+    return rule->freedom == TM_MOVES_AT_CORNER ? rule->off_surface
                                                : rule->freedom != TM_MOVES_NOT;
 }
 
@@ -117,9 +117,9 @@ static bool make_room(tm_cluster *cluster, size_t old_nodes, size_t old_elements
     bool made = true;
     if (nodes > old_nodes)
         made = RENEW(cluster->xyz, nodes) && RENEW(cluster->rule, nodes) &&
-               RENEW(cluster->place, nodes) && RENEW(cluster->offset, nodes) &&
+               RENEW(cluster->point, nodes) && RENEW(cluster->offset, nodes) &&
                RENEW(cluster->size, nodes) && RENEW(cluster->old, nodes) &&
-               RENEW(cluster->places, nodes) && RENEW(cluster->best, nodes) &&
+               RENEW(cluster->old_point, nodes) && RENEW(cluster->best, nodes) &&
                RENEW(cluster->pull, nodes) &&
                RENEW(cluster->vector, 3 * nodes * TM_CLUSTER_VECTORS);
     if (elements > old_elements)
@@ -187,16 +187,16 @@ static void measure_elements(tm_cluster *cluster)
 
 /* Where nodes of the boundary are on it, and how far from it those that are off the
  * surface. */
-static void find_places(tm_cluster *cluster)
+static void find_points(tm_cluster *cluster)
 {
     for (size_t v = 0; v < cluster->moving; v++) {
         const tm_node_rule *rule = &cluster->rule[v];
         const double *p = cluster->xyz[v];
-        tm_boundary_point *at = &cluster->place[v];
+        tm_boundary_point *at = &cluster->point[v];
         *at = (tm_boundary_point){.guess = TM_NONE};
         memset(cluster->offset[v], 0, sizeof *cluster->offset);
         tm_cluster_find(cluster, v, p);
-        if (rule->held)
+        if (rule->off_surface)
             tm_subtract(cluster->offset[v], p, at->xyz);
     }
 }
@@ -220,7 +220,7 @@ tm_status tm_cluster_gather(tm_cluster *cluster, const tm_cluster_source *source
         copy_elements(cluster, source);
         measure_sizes(cluster);
         measure_elements(cluster);
-        find_places(cluster);
+        find_points(cluster);
         memcpy(cluster->best, cluster->xyz, cluster->moving * sizeof *cluster->best);
         cluster->first = cluster->best_score = tm_cluster_score(cluster);
     }
@@ -243,7 +243,7 @@ void tm_cluster_approach(tm_cluster *cluster, size_t v, double factor, double th
         cluster->best_score.worst = -INFINITY;
     for (size_t i = 0; i < 3; i++) {
         cluster->offset[v][i] *= factor;
-        cluster->xyz[v][i] = cluster->place[v].xyz[i] + cluster->offset[v][i];
+        cluster->xyz[v][i] = cluster->point[v].xyz[i] + cluster->offset[v][i];
     }
 }
 
@@ -252,11 +252,11 @@ void tm_cluster_free(tm_cluster *cluster)
     free(cluster->node);
     free(cluster->xyz);
     free(cluster->rule);
-    free(cluster->place);
+    free(cluster->point);
     free(cluster->offset);
     free(cluster->size);
     free(cluster->old);
-    free(cluster->places);
+    free(cluster->old_point);
     free(cluster->best);
     free(cluster->pull);
     free(cluster->vector);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is minimised over the places of a cluster's nodes. */
+/* What is minimised over the positions of a cluster's nodes. */
 #include "optimise_parts.h"
 
 #include "../geom/vector.h"
@@ -15,7 +15,7 @@ void tm_cluster_find(tm_cluster *cluster, size_t v, const double point[3])
 {
     const tm_node_rule *rule = &cluster->rule[v];
     const tm_boundary *boundary = cluster->boundary;
-    tm_boundary_point *at = &cluster->place[v];
+    tm_boundary_point *at = &cluster->point[v];
     switch (rule->freedom) {
     case TM_MOVES_ON_SURFACE:
         boundary->on_surface(boundary->of, rule->where, point, at);
@@ -37,13 +37,13 @@ void tm_cluster_move(tm_cluster *cluster, size_t v, const double point[3])
     tm_subtract(on, point, cluster->offset[v]);
     tm_cluster_find(cluster, v, on);
     for (size_t i = 0; i < 3; i++)
-        cluster->xyz[v][i] = cluster->place[v].xyz[i] + cluster->offset[v][i];
+        cluster->xyz[v][i] = cluster->point[v].xyz[i] + cluster->offset[v][i];
 }
 
 void tm_cluster_along(const tm_cluster *cluster, size_t v, double vector[3])
 {
     const uint8_t freedom = cluster->rule[v].freedom;
-    const double *axis = cluster->place[v].axis;
+    const double *axis = cluster->point[v].axis;
     if (freedom == TM_MOVES_FREELY)
         return;
     if (freedom == TM_MOVES_AT_CORNER) {

@@ -74,7 +74,7 @@ static tm_status place_middle(small *s, double threshold, tm_error *error)
                           .start = s->start,
                           .item = s->item};
     const tm_optimise_options options = {.threshold = threshold,
-                                         .held_threshold = threshold};
+                                         .off_surface_threshold = threshold};
     tm_optimise_report report;
     return tm_mixed_optimise(&mesh, rule, NULL, &options, &report, error);
 }
