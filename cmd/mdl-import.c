@@ -4,7 +4,7 @@
 #include "common/input/mesh_input.h"
 
 #include "../lib/format/mdl.h"
-#include "../lib/surface/surface_stream.h"
+#include "../lib/surface/polygon_surface.h"
 
 static const struct option long_options[] = {FILTER_OPTIONS};
 

@@ -9,7 +9,7 @@
 #include "../lib/octree/layer/octree_mesh_stream.h"
 #include "../lib/octree/layer/adaptive_refinement.h"
 #include "../lib/element/jens.h"
-#include "../lib/surface/thin_place.h"
+#include "../lib/surface/surface.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -93,7 +93,7 @@ static void note_topology(const filter *f, const tm_surface *s,
 {
     double at[3];
     char place[128] = "";
-    if (tm_surface_thin_place(s, 2 * leaf_side, at))
+    if (tm_surface_find_thin(s, 2 * leaf_side, at))
         snprintf(place, sizeof place, ", as near (%g, %g, %g)", at[0], at[1], at[2]);
     filter_note(f,
                 "the boundary has %zu components and Euler number %lld, the surface %zu "

@@ -7,7 +7,7 @@
 #ifndef TM_FORMAT_OFF_H
 #define TM_FORMAT_OFF_H
 
-#include "../surface/surface_file.h"
+#include "../surface/polygon_surface.h"
 
 /* *surface must be empty; after an error it is again. O(size). */
 tm_status tm_off_read(tm_polygon_surface *surface, const char *bytes, size_t size,

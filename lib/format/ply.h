@@ -5,7 +5,7 @@
 #ifndef TM_FORMAT_PLY_H
 #define TM_FORMAT_PLY_H
 
-#include "../surface/surface_file.h"
+#include "../surface/polygon_surface.h"
 
 /* *surface must be empty; after an error it is again. O(size). */
 tm_status tm_ply_read(tm_polygon_surface *surface, const char *bytes, size_t size,

@@ -5,7 +5,7 @@
 #ifndef TM_FORMAT_STL_H
 #define TM_FORMAT_STL_H
 
-#include "../surface/surface_file.h"
+#include "../surface/polygon_surface.h"
 
 /* True for a binary file that is as long as its count says, whatever its first word. */
 bool tm_stl_is_binary(const char *bytes, size_t size);

@@ -7,7 +7,7 @@
 
 #include "../base/text.h"
 #include "../stream/stream.h"
-#include "../surface/surface_file.h"
+#include "../surface/polygon_surface.h"
 
 typedef enum tm_plc_kind { TM_PLC_NODE, TM_PLC_POLY, TM_PLC_SMESH } tm_plc_kind;
 
