@@ -3,7 +3,7 @@
 #include "common/input/mesh_input.h"
 
 #include "../lib/format/surface_format.h"
-#include "../lib/surface/surface_stream.h"
+#include "../lib/surface/polygon_surface.h"
 
 static tm_status read_mdl(const filter *f, tm_stream *stream, const tm_text *bytes,
                           tm_error *error)

@@ -8,7 +8,7 @@
 #include "../lib/octree/layer/octree_mesh_stream.h"
 #include "../lib/octree/layer/adaptive_refinement.h"
 #include "../lib/element/jens.h"
-#include "../lib/surface/thin_place.h"
+#include "../lib/surface/surface.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -92,7 +92,7 @@ static void note_topology(const filter *f, const tm_surface *s,
 {
     double at[3];
     char place[128] = "";
-    if (tm_surface_thin_place(s, 2 * leaf_side, at))
+    if (tm_surface_find_thin(s, 2 * leaf_side, at))
         snprintf(place, sizeof place, ", as near (%g, %g, %g)", at[0], at[1], at[2]);
     filter_note(f,
                 "the boundary has %zu components and Euler number %lld, the surface %zu "
@@ -120,11 +120,11 @@ static void note_losses(const filter *f, const tm_surface *s,
                     "together for this level, as near (%g, %g, %g)",
                     r->corners_lost, r->curves_lost, r->feature_lost_at[0],
                     r->feature_lost_at[1], r->feature_lost_at[2]);
-    if (r->held_back)
+    if (r->off_surface)
         filter_note(f,
                     "%zu boundary nodes are not on the surface yet: there they would "
                     "invert an element (octree-repair takes them there)",
-                    r->held_back);
+                    r->off_surface);
     if (r->invalid)
         filter_note(f, "%zu elements are inverted", r->invalid);
 }
@@ -141,7 +141,7 @@ static double smallest_side(const tm_octree *octree)
 typedef struct {
     tm_octree_mesh_report mesh;
     size_t octants, nodes, boundary_nodes;
-    size_t kind[TM_ELEMENT_NODES_MOST + 1]; /* elements by their nodes */
+    size_t kind[TM_ELEMENT_NODES + 1]; /* elements by their nodes */
 } report;
 
 static void write_json(filter *f, const tm_octree *octree, const tm_octree_mesh *mesh)
@@ -156,7 +156,7 @@ static void write_json(filter *f, const tm_octree *octree, const tm_octree_mesh 
                                          ROW("hex", kind[8]),
                                          TM_REPORT_CLOSE_ROW,
                                          ROW("boundary_nodes", boundary_nodes),
-                                         ROW("held_back", mesh.held_back),
+                                         ROW("held_back", mesh.off_surface),
                                          ROW("inverted", mesh.invalid),
                                          ROW("lost_octants", mesh.lost),
                                          ROW("lost_corners", mesh.corners_lost),

@@ -4,7 +4,7 @@
 #ifndef TM_FORMAT_SURFACE_FORMAT_H
 #define TM_FORMAT_SURFACE_FORMAT_H
 
-#include "../surface/surface_file.h"
+#include "../surface/polygon_surface.h"
 
 typedef enum tm_format {
     TM_FORMAT_UNKNOWN,

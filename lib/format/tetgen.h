@@ -5,7 +5,7 @@
 
 #include "../base/text.h"
 #include "../stream/stream.h"
-#include "../surface/surface_file.h"
+#include "../surface/polygon_surface.h"
 
 /* The .node, .ele, .face and .edge files: numbered from 0 or 1, with comments anywhere,
  * attributes, markers, CR LF, header fields left out. What such a file holds is what a

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "mesh_format.h"
 
+#include "../element/shape.h"
 #include "../mesh/cell_faces.h"
 #include "text_rows.h"
-#include "../element/vtk_cell_type.h"
 
 #include <stdio.h>
 
@@ -109,7 +109,7 @@ static char *put_type(const void *context, size_t row, char *to)
     if (w->content != TM_CONTENT_POINTS && w->content != TM_CONTENT_POLYHEDRA)
         tm_row_nodes(w->cell, row, &nodes);
     to =
-        tm_write_uint32(to, w->content == TM_CONTENT_POLYHEDRA ? VTK_POLYHEDRON
+        tm_write_uint32(to, w->content == TM_CONTENT_POLYHEDRA ? TM_VTK_POLYHEDRON
                                                                : tm_vtk_cell_type(nodes));
     *to++ = '\n';
     return to;

@@ -3,11 +3,11 @@
 
 #include "../base/array.h"
 #include "../base/parallel.h"
+#include "../element/shape.h"
 #include "../element/tet_quality.h"
 #include "binary.h"
 #include "text_rows.h"
 #include "../mesh/cell_faces.h"
-#include "../element/vtk_cell_type.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -165,7 +165,7 @@ static tm_status write_quality(writer *w)
     if (!quality)
         return tm_fail_memory(w->error);
     for (size_t t = 0; t < w->cell->count; t++) {
-        const uint32_t *v = w->cell->integer + TETRAHEDRON * t;
+        const uint32_t *v = w->cell->integer + TM_TET_NODES * t;
         quality[t] =
             tm_sine2_to_degrees(tm_tet_sine2(xyz[v[0]], xyz[v[1]], xyz[v[2]], xyz[v[3]]));
     }
@@ -260,7 +260,7 @@ static void append_polyhedron(const writer *w, cell_arrays *a, size_t c, uint32_
     }
     append(&a->face_offsets, a->faces.count);
     append(&a->offsets, a->connectivity.count);
-    a->type[c] = VTK_POLYHEDRON;
+    a->type[c] = TM_VTK_POLYHEDRON;
 }
 
 static tm_status append_polyhedra(const writer *w, cell_arrays *a)

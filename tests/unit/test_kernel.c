@@ -212,27 +212,6 @@ static void test_repeated_planes(void **state)
     }
 }
 
-/* A ball is found where one fits, and only there. */
-static void test_holds_ball(void **state)
-{
-    (void)state;
-    enum { ROUNDS = 1000, PLANES = 60 };
-    for (int round = 0; round < ROUNDS; round++) {
-        double plane[MOST][4], center[3], radius, some;
-        const size_t count = random_planes(plane, 6 + random_below(PLANES), -0.1);
-        assert_true(tm_kernel_ball((const double(*)[4])plane, count, center, &radius));
-        const double least = between(0, 1);
-        const bool holds =
-            tm_kernel_holds_ball((const double(*)[4])plane, count, least, center, &some);
-        if (fabs(least - radius) > 1e-11)
-            assert_int_equal(holds, least < radius);
-        if (holds)
-            assert_true(some >= least && some <= radius + 1e-11 &&
-                        some ==
-                            tm_kernel_depth((const double(*)[4])plane, count, center));
-    }
-}
-
 /* A cube's faces, each as many triangles of it: their planes differ by rounding. */
 static void test_coplanar(void **state)
 {
@@ -275,8 +254,6 @@ static void test_empty(void **state)
     plane[count - 1][3] = 0.5;
     assert_true(tm_kernel_ball((const double(*)[4])plane, count, center, &radius));
     assert_true(fabs(radius) < 1e-14);
-    assert_false(
-        tm_kernel_holds_ball((const double(*)[4])plane, count, 1e-9, center, &radius));
 }
 
 static void test_unbounded(void **state)
@@ -315,7 +292,6 @@ int main(void)
         cmocka_unit_test(test_tetrahedra),
         cmocka_unit_test(test_against_brute_force),
         cmocka_unit_test(test_repeated_planes),
-        cmocka_unit_test(test_holds_ball),
         cmocka_unit_test(test_coplanar),
         cmocka_unit_test(test_empty),
         cmocka_unit_test(test_unbounded),

@@ -5,7 +5,7 @@
 #include "../../lib/mesh/cell_faces.h"
 #include "../../lib/format/mesh_format.h"
 #include "../../lib/format/oct.h"
-#include "../../lib/surface/surface_stream.h"
+#include "../../lib/surface/polygon_surface.h"
 #include "../../lib/format/tetgen.h"
 #include "../../lib/format/visf.h"
 #include "../../lib/examine/mixed_examine.h"

@@ -4,7 +4,7 @@
 #define CMD_COMMON_TETGEN_H
 
 #include "../../../lib/base/number.h"
-#include "../../../lib/surface/surface_file.h"
+#include "../../../lib/surface/polygon_surface.h"
 #include "../app/filter.h"
 
 enum { TETGEN_SWITCH = TM_DOUBLE_CHARS + 4 };

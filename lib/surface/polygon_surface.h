@@ -2,8 +2,8 @@
 /* A surface as the foreign formats know it: nodes and polygons, before anything is known
  * about its shape. Each reader of this folder fills one; it may be open, intersect
  * itself or hold degenerate polygons. */
-#ifndef TM_SURFACE_SURFACE_FILE_H
-#define TM_SURFACE_SURFACE_FILE_H
+#ifndef TM_SURFACE_POLYGON_SURFACE_H
+#define TM_SURFACE_POLYGON_SURFACE_H
 
 #include "../stream/stream.h"
 
@@ -49,7 +49,7 @@ typedef struct tm_polygon_surface {
     size_t regions;
     tm_region *region;
 
-    size_t capacity[9]; /* of the arrays that grow; for surface_file.c */
+    size_t capacity[9]; /* of the arrays that grow; for polygon_surface.c */
 } tm_polygon_surface;
 
 /* An empty surface; then back to one. */
@@ -86,6 +86,14 @@ tm_status tm_polygon_surface_nodes_from_stream(tm_polygon_surface *surface,
 
 /* Appends the triangles of a .face block as facets with their markers. */
 tm_status tm_polygon_surface_add_faces(tm_polygon_surface *surface, const tm_block *face,
+                                       tm_error *error);
+
+/* Adds the blocks `part`.node and `part`.face, which must not be there yet: all nodes of
+ * the surface and its polygons, those with more than three corners as fans of triangles
+ * from the first, those with fewer left out. Attributes and markers come with them.
+ * TM_ERROR_SYSTEM where memory or 32-bit ids are out. O(n). */
+tm_status tm_polygon_surface_to_stream(const tm_polygon_surface *surface,
+                                       tm_stream *stream, const char *part,
                                        tm_error *error);
 
 #endif
