@@ -81,7 +81,8 @@ static tm_status read_smesh(tm_polygon_surface *surface, const char *bytes, size
 static const struct {
     const char *name;
     bool (*sniff)(const head *h);
-    tm_surface_reader *read;
+    tm_status (*read)(tm_polygon_surface *surface, const char *bytes, size_t size,
+                      const char *name, tm_error *error);
 } formats[] = {
     [TM_FORMAT_UNKNOWN] = {"", NULL, NULL},
     [TM_FORMAT_STREAM] = {"termesh stream", is_stream, NULL},
