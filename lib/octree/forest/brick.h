@@ -16,7 +16,7 @@ typedef struct tm_brick {
     double side;
     uint32_t roots[3];   /* along each axis */
     size_t count;        /* their product */
-    uint32_t (*root)[3]; /* [count]: each one's place, in Z order, which is p4est's */
+    uint32_t (*root)[3]; /* [count]: each one's position, in Z order, which is p4est's */
     struct p8est_connectivity *trees; /* p4est's brick */
 } tm_brick;
 
