@@ -29,9 +29,6 @@ typedef struct tm_brick {
 tm_status tm_brick_over(tm_brick *brick, const double low[3], const double high[3],
                         tm_error *error);
 
-/* A brick with low, side and roots given; fills the rest. TM_ERROR_SYSTEM: memory. */
-tm_status tm_brick_fill(tm_brick *brick, tm_error *error);
-
 /* The brick that an octree is on. */
 tm_status tm_brick_of(tm_brick *brick, const tm_octree *octree, tm_error *error);
 
