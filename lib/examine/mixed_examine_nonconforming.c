@@ -3,17 +3,14 @@
  */
 #include "mixed_examine_faces.h"
 
-#include "../base/array.h"
+#include "../base/hash.h"
 
-#include <stdlib.h>
 #include <string.h>
 
-/* Open addressing with linear probing, at most half full. */
-typedef struct triangle_table {
+typedef struct triangles {
     const tm_mixed_boundary *boundary;
-    size_t mask;
-    uint32_t *face; /* [mask + 1]; TM_NONE: empty */
-} triangle_table;
+    tm_hash_table table; /* of the boundary's triangles */
+} triangles;
 
 static void sort3(uint32_t n[3])
 {
@@ -28,26 +25,17 @@ static void sort3(uint32_t n[3])
     }
 }
 
-static uint64_t hash(const uint32_t n[3])
+/* The slot of the triangle with these nodes, in ascending order, or the free one where it
+ * belongs. */
+static uint32_t *slot_of(const triangles *all, const uint32_t n[3])
 {
-    const uint64_t golden = 0x9E3779B97F4A7C15u; /* 2^64 / golden ratio */
-    enum { HALF = 32 };
     uint64_t h = 0;
-    for (size_t i = 0; i < 3; i++) {
-        h = (h ^ n[i]) * golden;
-        h ^= h >> HALF;
-    }
-    return h;
-}
-
-/* The slot of the triangle with these nodes, in ascending order, or the empty one where
- * it belongs. */
-static size_t slot_of(const triangle_table *table, const uint32_t n[3])
-{
-    size_t slot = (size_t)hash(n) & table->mask;
-    for (; table->face[slot] != TM_NONE; slot = (slot + 1) & table->mask) {
+    for (size_t i = 0; i < 3; i++)
+        h = tm_hash(h, n[i]);
+    uint32_t *slot = tm_hash_slot(&all->table, h);
+    for (; *slot != TM_HASH_FREE; slot = tm_hash_next(&all->table, slot)) {
         uint32_t other[3];
-        memcpy(other, table->boundary->node[table->face[slot]], sizeof other);
+        memcpy(other, all->boundary->node[*slot], sizeof other);
         sort3(other);
         if (memcmp(other, n, sizeof other) == 0)
             break;
@@ -55,7 +43,7 @@ static size_t slot_of(const triangle_table *table, const uint32_t n[3])
     return slot;
 }
 
-static void look_up(tm_examination *found, const triangle_table *table,
+static void look_up(tm_examination *found, const triangles *all,
                     const uint32_t quadrilateral[4])
 {
     for (size_t left_out = 0; left_out < 4; left_out++) {
@@ -63,7 +51,7 @@ static void look_up(tm_examination *found, const triangle_table *table,
         for (size_t i = 0; i < 3; i++)
             n[i] = quadrilateral[i < left_out ? i : i + 1];
         sort3(n);
-        if (table->face[slot_of(table, n)] != TM_NONE)
+        if (*slot_of(all, n) != TM_HASH_FREE)
             tm_defect_add(
                 &found->defect[TM_UNMATCHED_FACE],
                 (uint32_t[TM_DEFECT_NUMBERS]){n[0], n[1], n[2], TM_FACE_HALVED});
@@ -74,27 +62,24 @@ tm_status tm_mixed_examine_nonconforming(tm_examination *found,
                                          const tm_mixed_boundary *boundary,
                                          tm_error *error)
 {
-    size_t triangles = 0, room = 2;
+    size_t count = 0;
     for (size_t f = 0; f < boundary->count; f++)
-        triangles += boundary->node[f][3] == TM_NONE;
-    if (triangles == 0 || triangles == boundary->count)
+        count += boundary->node[f][3] == TM_NONE;
+    if (count == 0 || count == boundary->count)
         return TM_OK;
-    while (room < 2 * triangles)
-        room *= 2;
-    triangle_table table = {boundary, room - 1, tm_new(room, sizeof *table.face)};
-    if (!table.face)
+    triangles all = {.boundary = boundary};
+    if (!tm_hash_make(&all.table, count))
         return tm_fail_memory(error);
-    memset(table.face, UINT8_MAX, room * sizeof *table.face);
     for (size_t f = 0; f < boundary->count; f++)
         if (boundary->node[f][3] == TM_NONE) {
             uint32_t n[3];
             memcpy(n, boundary->node[f], sizeof n);
             sort3(n);
-            table.face[slot_of(&table, n)] = (uint32_t)f;
+            *slot_of(&all, n) = (uint32_t)f;
         }
     for (size_t f = 0; f < boundary->count; f++)
         if (boundary->node[f][3] != TM_NONE)
-            look_up(found, &table, boundary->node[f]);
-    free(table.face);
+            look_up(found, &all, boundary->node[f]);
+    tm_hash_free(&all.table);
     return TM_OK;
 }

@@ -3,6 +3,7 @@
 
 #include "../base/array.h"
 #include "../base/disjoint_sets.h"
+#include "../base/hash.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -31,15 +32,6 @@ static bool reserve(tm_poly_boundary *b, uint32_t **array, size_t which, size_t 
     return moved;
 }
 
-/* Slots of the hash tables: a power of 2, at most half of them used. */
-static size_t slots_for(size_t corners)
-{
-    size_t slots = 2;
-    while (slots < 2 * corners)
-        slots *= 2;
-    return slots;
-}
-
 static bool allocate(tm_poly_boundary *b)
 {
     void *edges = tm_grow(b->edge, &b->room[EDGE], b->corners, sizeof *b->edge);
@@ -49,42 +41,37 @@ static bool allocate(tm_poly_boundary *b)
            reserve(b, &b->face_start, FACE_START, b->faces + 1) &&
            reserve(b, &b->corner, CORNER, b->corners) &&
            reserve(b, &b->face, FACE, b->corners) &&
-           reserve(b, &b->slot, SLOT, slots_for(b->corners)) &&
+           reserve(b, &b->slot, SLOT, tm_hash_slots(b->corners)) &&
            reserve(b, &b->parent, PARENT, b->corners);
 }
 
-static size_t hash(uint64_t key)
+/* An empty table for corners. */
+static tm_hash_table table_of(tm_poly_boundary *b)
 {
-    const uint64_t golden = 0x9E3779B97F4A7C15u; /* 2^64 / golden ratio */
-    enum { HALF = 32 };
-    return (size_t)((key * golden) >> HALF);
+    const size_t slots = tm_hash_slots(b->corners);
+    memset(b->slot, UINT8_MAX, slots * sizeof *b->slot);
+    return (tm_hash_table){slots - 1, b->slot};
 }
 
 /* The node's number in the surface, a new one where it was not met yet. */
-static uint32_t number_of(tm_poly_boundary *b, uint32_t node, size_t mask)
+static uint32_t number_of(tm_poly_boundary *b, uint32_t node, const tm_hash_table *table)
 {
-    size_t s = hash(node) & mask;
-    while (b->slot[s] != TM_NONE && b->node[b->slot[s]] != node)
-        s = (s + 1) & mask;
-    if (b->slot[s] == TM_NONE) {
-        b->slot[s] = (uint32_t)b->nodes;
+    uint32_t *slot = tm_hash_slot(table, tm_hash(0, node));
+    while (*slot != TM_HASH_FREE && b->node[*slot] != node)
+        slot = tm_hash_next(table, slot);
+    if (*slot == TM_HASH_FREE) {
+        *slot = (uint32_t)b->nodes;
         b->fans[b->nodes] = 0;
         b->node[b->nodes++] = node;
     }
-    return b->slot[s];
-}
-
-static void clear_slots(tm_poly_boundary *b)
-{
-    memset(b->slot, UINT8_MAX, slots_for(b->corners) * sizeof *b->slot);
+    return *slot;
 }
 
 static void list_corners(tm_poly_boundary *b, const tm_poly_arrays *mesh,
                          const uint32_t *facet, uint32_t cell)
 {
-    const size_t mask = slots_for(b->corners) - 1;
+    const tm_hash_table table = table_of(b);
     uint32_t corner = 0;
-    clear_slots(b);
     for (uint32_t f = 0; f < b->faces; f++) {
         const uint32_t *side = mesh->side[facet[f]];
         const bool turned = cell != TM_NONE && side[0] != cell && side[1] == cell;
@@ -93,7 +80,7 @@ static void list_corners(tm_poly_boundary *b, const tm_poly_arrays *mesh,
         b->face_start[f] = corner;
         for (size_t i = 0; i < count; i++) {
             const size_t at = turned && i > 0 ? count - i : i;
-            const uint32_t v = number_of(b, mesh->facet_node[start + at], mask);
+            const uint32_t v = number_of(b, mesh->facet_node[start + at], &table);
             b->fans[v]++;
             b->face[corner] = f;
             b->corner[corner++] = v;
@@ -103,20 +90,19 @@ static void list_corners(tm_poly_boundary *b, const tm_poly_arrays *mesh,
 }
 
 static tm_poly_edge *edge_of(tm_poly_boundary *b, uint32_t low, uint32_t high,
-                             size_t mask)
+                             const tm_hash_table *table)
 {
-    enum { HALF = 32 };
-    size_t s = hash((uint64_t)low << HALF | high) & mask;
-    while (b->slot[s] != TM_NONE &&
-           (b->edge[b->slot[s]].end[0] != low || b->edge[b->slot[s]].end[1] != high))
-        s = (s + 1) & mask;
-    if (b->slot[s] == TM_NONE) {
-        b->slot[s] = (uint32_t)b->edges;
+    uint32_t *slot = tm_hash_slot(table, tm_hash(tm_hash(0, low), high));
+    while (*slot != TM_HASH_FREE &&
+           (b->edge[*slot].end[0] != low || b->edge[*slot].end[1] != high))
+        slot = tm_hash_next(table, slot);
+    if (*slot == TM_HASH_FREE) {
+        *slot = (uint32_t)b->edges;
         b->edge[b->edges++] = (tm_poly_edge){.end = {low, high},
                                              .corner = {TM_NONE, TM_NONE},
                                              .at_end = {TM_NONE, TM_NONE}};
     }
-    return &b->edge[b->slot[s]];
+    return &b->edge[*slot];
 }
 
 /* Joins two trees; false where they were one. */
@@ -137,11 +123,12 @@ static void join_fan(tm_poly_boundary *b, tm_poly_edge *e, size_t end, uint32_t 
         b->fans[e->end[end]]--;
 }
 
-static void take_edge(tm_poly_boundary *b, uint32_t corner, uint32_t next, size_t mask)
+static void take_edge(tm_poly_boundary *b, uint32_t corner, uint32_t next,
+                      const tm_hash_table *table)
 {
     const uint32_t from = b->corner[corner], to = b->corner[next];
     const uint32_t back = from > to;
-    tm_poly_edge *e = edge_of(b, back ? to : from, back ? from : to, mask);
+    tm_poly_edge *e = edge_of(b, back ? to : from, back ? from : to, table);
     if (e->corner[back] == TM_NONE)
         e->corner[back] = corner;
     e->along += !back;
@@ -158,13 +145,12 @@ static void start_forest(tm_poly_boundary *b, size_t trees)
 
 static void list_edges(tm_poly_boundary *b)
 {
-    const size_t mask = slots_for(b->corners) - 1;
-    clear_slots(b);
+    const tm_hash_table table = table_of(b);
     start_forest(b, b->corners);
     for (size_t f = 0; f < b->faces; f++) {
         const uint32_t first = b->face_start[f], end = b->face_start[f + 1];
         for (uint32_t i = first; i < end; i++)
-            take_edge(b, i, i + 1 < end ? i + 1 : first, mask);
+            take_edge(b, i, i + 1 < end ? i + 1 : first, &table);
     }
 }
 

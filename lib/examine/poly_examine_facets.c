@@ -3,6 +3,7 @@
 
 #include "../base/array.h"
 #include "../base/disjoint_sets.h"
+#include "../base/hash.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -120,13 +121,9 @@ static ring ring_of(const tm_poly_arrays *mesh, size_t f)
 
 static uint64_t hash(const ring *r)
 {
-    const uint64_t golden = 0x9E3779B97F4A7C15u; /* 2^64 / golden ratio */
-    enum { HALF = 32 };
     uint64_t h = r->count;
-    for (size_t i = 0; i < r->count; i++) {
-        h = (h ^ at(r, i)) * golden;
-        h ^= h >> HALF;
-    }
+    for (size_t i = 0; i < r->count; i++)
+        h = tm_hash(h, at(r, i));
     return h;
 }
 
@@ -143,27 +140,23 @@ static bool equal(const ring *r, const ring *s)
 static bool look_for_repeated(matching *m)
 {
     const tm_poly_arrays *mesh = m->mesh;
-    size_t room = 2;
-    while (room < 2 * mesh->facets)
-        room *= 2;
-    uint32_t *slot = tm_new(room, sizeof *slot);
-    if (!slot)
+    tm_hash_table table;
+    if (!tm_hash_make(&table, mesh->facets))
         return false;
-    memset(slot, UINT8_MAX, room * sizeof *slot);
     for (uint32_t f = 0; f < mesh->facets; f++) {
         const ring r = ring_of(mesh, f);
-        size_t s = (size_t)hash(&r) & (room - 1);
-        for (; slot[s] != TM_NONE; s = (s + 1) & (room - 1)) {
-            const ring earlier = ring_of(mesh, slot[s]);
+        uint32_t *slot = tm_hash_slot(&table, hash(&r));
+        for (; *slot != TM_HASH_FREE; slot = tm_hash_next(&table, slot)) {
+            const ring earlier = ring_of(mesh, *slot);
             if (equal(&r, &earlier))
                 break;
         }
-        if (slot[s] == TM_NONE)
-            slot[s] = f;
+        if (*slot == TM_HASH_FREE)
+            *slot = f;
         else
-            add_defect(m, TM_REPEATED_FACE, f, slot[s], 0);
+            add_defect(m, TM_REPEATED_FACE, f, *slot, 0);
     }
-    free(slot);
+    tm_hash_free(&table);
     return true;
 }
 

@@ -107,7 +107,7 @@ static size_t leaving(const corner *c, const double part[ROWS])
         const double weight = lean[0] * c->inverse[0][i] + lean[1] * c->inverse[1][i] +
                               lean[2] * c->inverse[2][i] + c->inverse[3][i];
         const double ratio = (weight > 0 ? weight : 0) / part[i];
-        if (ratio < first || (ratio == first && part[i] > part[out])) {
+        if (ratio < first || (ratio == first && out < ROWS && part[i] > part[out])) {
             first = ratio;
             out = i;
         }

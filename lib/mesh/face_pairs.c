@@ -2,6 +2,7 @@
 #include "face_pairs.h"
 
 #include "../base/array.h"
+#include "../base/hash.h"
 
 #include <stdlib.h>
 
@@ -15,13 +16,17 @@ typedef struct {
 
 #define HIGH_BIT ((uint32_t)1 << 31)
 
+/* A bucket with room for more faces is not searched from its begin. */
+enum { LARGE = 64 };
+
 typedef struct {
     tm_tet_mesh *mesh;
     tm_face_pairs *pairs;
     uint32_t *start; /* [nodes + 1] */
     uint32_t *past;  /* [nodes]: the faces of bucket v are start[v] … past[v] */
     face *face;
-    size_t unpaired; /* half faces without partner that no row names */
+    tm_hash_table large; /* the faces of large buckets, all in one table */
+    size_t unpaired;     /* half faces without partner that no row names */
 } buckets;
 
 static inline uint32_t lesser(uint32_t a, uint32_t b)
@@ -45,7 +50,7 @@ static inline unsigned order(uint64_t *a, uint64_t *b)
 
 /* The buckets' sizes: of the four faces of a tetrahedron three have its smallest node,
  * and the other one the second. */
-static void count_faces(buckets *b, const uint32_t (*listed)[3], size_t listed_count)
+static bool count_faces(buckets *b, const uint32_t (*listed)[3], size_t listed_count)
 {
     const tm_tet_mesh *mesh = b->mesh;
     uint32_t *count = b->past;
@@ -59,17 +64,44 @@ static void count_faces(buckets *b, const uint32_t (*listed)[3], size_t listed_c
     for (size_t f = 0; f < listed_count; f++)
         count[lesser(listed[f][0], lesser(listed[f][1], listed[f][2]))]++;
     uint32_t sum = 0;
+    size_t in_large = 0;
     for (size_t v = 0; v < mesh->nodes; v++) {
         b->start[v] = sum;
         sum += count[v];
+        in_large += count[v] > LARGE ? count[v] : 0;
         b->past[v] = b->start[v];
     }
     b->start[mesh->nodes] = sum;
+    return in_large == 0 || tm_hash_make(&b->large, in_large);
+}
+
+static inline bool is_large(const buckets *b, uint32_t v)
+{
+    return b->start[v + 1] - b->start[v] > LARGE;
+}
+
+/* The slot of a face of a large bucket, or the free one where it belongs. */
+static uint32_t *slot_of(const buckets *b, uint32_t v, uint32_t middle, uint32_t largest)
+{
+    const uint64_t h = tm_hash(tm_hash(tm_hash(0, v), middle & ~HIGH_BIT), largest);
+    uint32_t *slot = tm_hash_slot(&b->large, h);
+    for (; *slot != TM_HASH_FREE; slot = tm_hash_next(&b->large, slot)) {
+        const face *f = &b->face[*slot];
+        if (*slot >= b->start[v] && *slot < b->past[v] && f->largest == largest &&
+            (f->middle ^ middle) << 1 == 0)
+            break;
+    }
+    return slot;
 }
 
 /* A face of the bucket of v; NULL if there is none. */
-static inline face *find(const buckets *b, uint32_t v, uint32_t middle, uint32_t largest)
+static inline face *find(const buckets *b, bool large, uint32_t v, uint32_t middle,
+                         uint32_t largest)
 {
+    if (large) {
+        const uint32_t at = *slot_of(b, v, middle, largest);
+        return at == TM_HASH_FREE ? NULL : &b->face[at];
+    }
     face *past = b->face + b->past[v];
     for (face *f = b->face + b->start[v]; f < past; f++)
         if (f->largest == largest && (f->middle ^ middle) << 1 == 0)
@@ -77,9 +109,11 @@ static inline face *find(const buckets *b, uint32_t v, uint32_t middle, uint32_t
     return NULL;
 }
 
-static inline void append(buckets *b, uint32_t v, uint32_t middle, uint32_t largest,
-                          uint32_t half)
+static inline void append(buckets *b, bool large, uint32_t v, uint32_t middle,
+                          uint32_t largest, uint32_t half)
 {
+    if (large)
+        *slot_of(b, v, middle, largest) = b->past[v];
     b->face[b->past[v]++] = (face){middle, largest, half};
 }
 
@@ -89,9 +123,10 @@ static inline bool add_half(buckets *b, uint32_t v, uint64_t middle, uint64_t la
 {
     uint32_t *neighbour = b->mesh->neighbour[0];
     uint32_t m = (uint32_t)(middle >> 2) | sense << 31, l = (uint32_t)(largest >> 2);
-    const face *f = find(b, v, m, l);
+    const bool large = is_large(b, v);
+    const face *f = find(b, large, v, m, l);
     if (!f) {
-        append(b, v, m, l, half);
+        append(b, large, v, m, l, half);
         neighbour[half] = TM_NONE;
         b->unpaired++;
         return true;
@@ -169,9 +204,10 @@ static bool add_rows(buckets *b, const uint32_t (*listed)[3], size_t listed_coun
         uint32_t low = lesser(n[0], n[1]), high = greater(n[0], n[1]);
         uint32_t v = lesser(low, n[2]), largest = greater(high, n[2]);
         uint32_t middle = greater(low, lesser(high, n[2]));
-        face *f = find(b, v, middle, largest);
+        const bool large = is_large(b, v);
+        face *f = find(b, large, v, middle, largest);
         if (!f) {
-            append(b, v, middle, largest, HIGH_BIT);
+            append(b, large, v, middle, largest, HIGH_BIT);
             b->mesh->dangling++;
             continue;
         }
@@ -184,9 +220,23 @@ static bool add_rows(buckets *b, const uint32_t (*listed)[3], size_t listed_coun
     return true;
 }
 
+static int compare(const void *a, const void *b)
+{
+    const face *f = a;
+    const face *g = b;
+    const uint32_t middle = f->middle & ~HIGH_BIT, other = g->middle & ~HIGH_BIT;
+    if (middle != other)
+        return middle < other ? -1 : 1;
+    return (f->largest > g->largest) - (f->largest < g->largest);
+}
+
 /* Orders the faces of a bucket. */
 static void sort(face *f, size_t count)
 {
+    if (count > LARGE) {
+        qsort(f, count, sizeof *f, compare);
+        return;
+    }
     for (size_t i = 1; i < count; i++) {
         face moved = f[i];
         uint64_t key = (uint64_t)(moved.middle & ~HIGH_BIT) << 32 | moved.largest;
@@ -246,15 +296,17 @@ tm_status tm_face_pairs_find(tm_face_pairs *pairs, tm_tet_mesh *mesh,
                  .start = tm_new(mesh->nodes + 1, sizeof *b.start),
                  .past = calloc(mesh->nodes + 1, sizeof *b.past),
                  .face = tm_new(faces, sizeof *b.face)};
-    tm_status status = b.start && b.past && b.face ? TM_OK : tm_fail_memory(error);
+    tm_status status = TM_OK;
+    if (!b.start || !b.past || !b.face || !count_faces(&b, listed, listed_count))
+        status = tm_fail_memory(error);
     if (status == TM_OK) {
-        count_faces(&b, listed, listed_count);
         pairs->whole = add_tets(&b) && add_rows(&b, listed, listed_count);
         if (!pairs->whole)
             forget_rows(mesh, listed_count);
         else if (!list_open(&b))
             status = tm_fail_memory(error);
     }
+    tm_hash_free(&b.large);
     free(b.start);
     free(b.past);
     free(b.face);

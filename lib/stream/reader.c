@@ -6,6 +6,7 @@
 #include "../base/number.h"
 #include "block.h"
 #include "lines.h"
+#include "names.h"
 #include "row.h"
 #include "sniff.h"
 
@@ -21,6 +22,7 @@ static const char magic[] = "termesh 1\n";
 typedef struct {
     tm_lines lines;
     tm_stream *stream;
+    tm_block_names names;
     bool base_known;
     tm_error *error;
 } reader;
@@ -62,10 +64,8 @@ static tm_status read_magic(reader *r)
     /* A binary file may be one long line: then there is no first line to look at. */
     tm_error too_long;
     if (tm_lines_fill(&r->lines, &too_long) != TM_OK) {
-        if (too_long.status != TM_ERROR_INPUT) {
-            *r->error = too_long;
-            return too_long.status;
-        }
+        if (too_long.status != TM_ERROR_INPUT)
+            return tm_fail_as(r->error, &too_long);
         r->lines.end = r->lines.filled;
     }
     size_t there = (size_t)(r->lines.end - r->lines.at);
@@ -175,7 +175,7 @@ static tm_status find_limit(reader *r, const tm_block *block, size_t *limit)
     size_t part = (size_t)(strrchr(block->name, '.') - block->name);
     memcpy(name, block->name, part);
     memcpy(name + part, ".node", sizeof ".node");
-    const tm_block *nodes = tm_stream_find(r->stream, name);
+    const tm_block *nodes = tm_block_names_find(&r->names, name);
     *limit = nodes ? nodes->count : 0;
     bool refers = block->kind == TM_ELE || block->kind == TM_FACE ||
                   block->kind == TM_EDGE || block->kind == TM_MIX ||
@@ -305,10 +305,10 @@ static tm_status read_unknown(reader *r, tm_block *block)
 
 static tm_status read_block(reader *r, const char *name)
 {
-    if (tm_stream_find(r->stream, name))
+    if (tm_block_names_find(&r->names, name))
         return FAIL(r, name, "a second block of that name");
     tm_block *block = tm_stream_add(r->stream, name);
-    if (!block)
+    if (!block || !tm_block_names_add(&r->names))
         return tm_fail_memory(r->error);
     size_t rows = 0, limit = 0;
     tm_status status = find_limit(r, block, &limit);
@@ -366,7 +366,8 @@ static tm_status read_blocks(reader *r)
 tm_status tm_stream_read(tm_stream *stream, int fd, const char *name, tm_error *error)
 {
     tm_error unused;
-    reader r = {.stream = stream, .error = error ? error : &unused};
+    reader r = {
+        .stream = stream, .names = {.stream = stream}, .error = error ? error : &unused};
     tm_status status = tm_lines_open(&r.lines, fd, name, r.error);
     if (status == TM_OK)
         status = read_magic(&r);
@@ -375,7 +376,8 @@ tm_status tm_stream_read(tm_stream *stream, int fd, const char *name, tm_error *
     if (status == TM_OK)
         status = read_blocks(&r);
     if (status == TM_OK)
-        status = tm_stream_check_references(stream, name, r.error);
+        status = tm_stream_check_references(&r.names, name, r.error);
+    tm_block_names_free(&r.names);
     tm_lines_close(&r.lines);
     if (status != TM_OK)
         tm_stream_free(stream);

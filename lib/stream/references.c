@@ -1,24 +1,24 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Indices from one block to another that may come later in the stream. */
-#include "row.h"
+#include "names.h"
 
 #include <stdio.h>
 #include <string.h>
 
 /* The block of the same part with another suffix. */
-static const tm_block *sibling(const tm_stream *stream, const tm_block *block,
+static const tm_block *sibling(const tm_block_names *names, const tm_block *block,
                                const char *suffix)
 {
     char name[TM_BLOCK_NAME + 8];
     int part = (int)(strrchr(block->name, '.') - block->name);
     snprintf(name, sizeof name, "%.*s%s", part, block->name, suffix);
-    return tm_stream_find(stream, name);
+    return tm_block_names_find(names, name);
 }
 
-static tm_status check_octants(const tm_stream *stream, const tm_block *block,
+static tm_status check_octants(const tm_block_names *names, const tm_block *block,
                                const char *name, tm_error *error)
 {
-    const tm_block *mix = sibling(stream, block, ".mix");
+    const tm_block *mix = sibling(names, block, ".mix");
     size_t limit = mix ? mix->count : 0, width = tm_block_integers(block->kind);
     for (size_t o = 0; o < block->count; o++) {
         const uint32_t *octant = block->integer + o * width;
@@ -26,57 +26,60 @@ static tm_status check_octants(const tm_stream *stream, const tm_block *block,
         if (first > past || past > limit)
             return tm_fail_at(error, TM_ERROR_INPUT, name, 0, block->name,
                               "row %zu: elements %u…%u (of %zu in .mix)",
-                              o + stream->base, first + stream->base, past + stream->base,
-                              limit);
+                              o + names->stream->base, first + names->stream->base,
+                              past + names->stream->base, limit);
     }
     return TM_OK;
 }
 
 /* The sides of facets are cells, or without .cell elements of .mix. */
-static tm_status check_facets(const tm_stream *stream, const tm_block *block,
+static tm_status check_facets(const tm_block_names *names, const tm_block *block,
                               const char *name, tm_error *error)
 {
-    const tm_block *cell = sibling(stream, block, ".cell");
+    const tm_block *cell = sibling(names, block, ".cell");
     const char *what = cell ? "cell" : "element";
     if (!cell)
-        cell = sibling(stream, block, ".mix");
+        cell = sibling(names, block, ".mix");
     for (size_t f = 0; cell && f < block->count; f++)
         for (size_t side = 0; side < 2; side++) {
             uint32_t c = block->integer[2 * f + side];
             if (c != TM_NONE && c >= cell->count)
                 return tm_fail_at(error, TM_ERROR_INPUT, name, 0, block->name,
                                   "row %zu: %s %u is out of range (there are %zu)",
-                                  f + stream->base, what, c + stream->base, cell->count);
+                                  f + names->stream->base, what, c + names->stream->base,
+                                  cell->count);
         }
     return TM_OK;
 }
 
-static tm_status check_cells(const tm_stream *stream, const tm_block *block,
+static tm_status check_cells(const tm_block_names *names, const tm_block *block,
                              const char *name, tm_error *error)
 {
-    const tm_block *facet = sibling(stream, block, ".facet");
+    const tm_block *facet = sibling(names, block, ".facet");
     size_t limit = facet ? facet->count : 0;
     for (size_t c = 0; c < block->count; c++)
         for (size_t i = block->start[c]; i < block->start[c + 1]; i++)
             if (block->item[i] >= limit)
                 return tm_fail_at(error, TM_ERROR_INPUT, name, 0, block->name,
                                   "row %zu: facet %u is out of range (there are %zu)",
-                                  c + stream->base, block->item[i] + stream->base, limit);
+                                  c + names->stream->base,
+                                  block->item[i] + names->stream->base, limit);
     return TM_OK;
 }
 
-tm_status tm_stream_check_references(const tm_stream *stream, const char *name,
+tm_status tm_stream_check_references(const tm_block_names *names, const char *name,
                                      tm_error *error)
 {
+    const tm_stream *stream = names->stream;
     tm_status status = TM_OK;
     for (size_t b = 0; b < stream->blocks && status == TM_OK; b++) {
         const tm_block *block = &stream->block[b];
         if (block->kind == TM_OCTANT)
-            status = check_octants(stream, block, name, error);
+            status = check_octants(names, block, name, error);
         else if (block->kind == TM_FACET)
-            status = check_facets(stream, block, name, error);
+            status = check_facets(names, block, name, error);
         else if (block->kind == TM_CELL)
-            status = check_cells(stream, block, name, error);
+            status = check_cells(names, block, name, error);
     }
     return status;
 }

@@ -29,8 +29,4 @@ const char *tm_row_read(tm_row_context *context, const char *at, const char *end
 const char *tm_row_read_plain(tm_row_context *context, const char *at, const char *end,
                               size_t most);
 
-/* What is between blocks: elements of octants, facets of cells, cells of facets. */
-tm_status tm_stream_check_references(const tm_stream *stream, const char *name,
-                                     tm_error *error);
-
 #endif

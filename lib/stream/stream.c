@@ -31,12 +31,15 @@ tm_block *tm_stream_find(const tm_stream *stream, const char *name)
 
 tm_block *tm_stream_add(tm_stream *stream, const char *name)
 {
-    tm_block *moved =
-        realloc(stream->block, (stream->blocks + 1) * sizeof *stream->block);
-    if (!moved)
-        return NULL;
-    stream->block = moved;
-    tm_block *block = &moved[stream->blocks++];
+    const size_t blocks = stream->blocks;
+    if ((blocks & (blocks - 1)) == 0) { /* 0 or a power of 2: there may be no more room */
+        tm_block *moved =
+            realloc(stream->block, (blocks ? 2 * blocks : 1) * sizeof *stream->block);
+        if (!moved)
+            return NULL;
+        stream->block = moved;
+    }
+    tm_block *block = &stream->block[stream->blocks++];
     *block = (tm_block){.kind = tm_block_kind_of(name)};
     snprintf(block->name, sizeof block->name, "%s", name);
     return block;
@@ -48,6 +51,17 @@ void tm_stream_remove(tm_stream *stream, tm_block *block)
     tm_block *end = stream->block + stream->blocks;
     memmove(block, block + 1, (size_t)(end - (block + 1)) * sizeof *block);
     stream->blocks--;
+}
+
+void tm_stream_remove_if(tm_stream *stream, tm_block_test *gone, const void *context)
+{
+    size_t stay = 0;
+    for (size_t b = 0; b < stream->blocks; b++)
+        if (gone(&stream->block[b], context))
+            tm_block_clear(&stream->block[b]);
+        else
+            stream->block[stay++] = stream->block[b];
+    stream->blocks = stay;
 }
 
 void tm_stream_add_history(tm_stream *stream, const char *line)

@@ -94,6 +94,10 @@ tm_block *tm_stream_add(tm_stream *stream, const char *name);
 /* Removes a block and frees what it holds. */
 void tm_stream_remove(tm_stream *stream, tm_block *block);
 
+/* Removes all blocks that a test says, the others keep their order. O(blocks). */
+typedef bool tm_block_test(const tm_block *block, const void *context);
+void tm_stream_remove_if(tm_stream *stream, tm_block_test *gone, const void *context);
+
 /* Allocates the arrays of a block for `count` rows (and `items` list items) by its kind,
  * attributes and markers; the arrays that were there are freed. Contents are zero. */
 tm_status tm_block_allocate(tm_block *block, size_t count, size_t items, tm_error *error);

@@ -113,17 +113,19 @@ tm_status tm_polygon_surface_end_facet(tm_polygon_surface *surface, int32_t mark
     return TM_OK;
 }
 
+tm_status tm_polygon_surface_end_face(tm_polygon_surface *surface, tm_error *error)
+{
+    const tm_status status = tm_polygon_surface_end_polygon(surface, error);
+    return status == TM_OK ? tm_polygon_surface_end_facet(surface, 0, error) : status;
+}
+
 tm_status tm_polygon_surface_add_polygon(tm_polygon_surface *surface,
                                          const uint32_t *node, size_t k, tm_error *error)
 {
     tm_status status = TM_OK;
     for (size_t i = 0; i < k && status == TM_OK; i++)
         status = tm_polygon_surface_add_corner(surface, node[i], error);
-    if (status == TM_OK)
-        status = tm_polygon_surface_end_polygon(surface, error);
-    if (status == TM_OK)
-        status = tm_polygon_surface_end_facet(surface, 0, error);
-    return status;
+    return status == TM_OK ? tm_polygon_surface_end_face(surface, error) : status;
 }
 
 tm_status tm_polygon_surface_add_facet_hole(tm_polygon_surface *surface,
@@ -196,23 +198,19 @@ tm_status tm_polygon_surface_add_faces(tm_polygon_surface *surface, const tm_blo
 
 enum { TRIANGLE = 3 };
 
-static tm_block *add_block(tm_stream *stream, const char *part, const char *suffix,
-                           tm_error *error)
+static tm_block *add_block(tm_stream *stream, const char *part, const char *suffix)
 {
     char name[TM_BLOCK_NAME];
     snprintf(name, sizeof name, "%s%s", part, suffix);
-    tm_block *block = tm_stream_add(stream, name);
-    if (!block)
-        tm_fail_memory(error);
-    return block;
+    return tm_stream_add(stream, name);
 }
 
 static tm_status nodes_to_stream(const tm_polygon_surface *surface, tm_stream *stream,
                                  const char *part, tm_error *error)
 {
-    tm_block *node = add_block(stream, part, ".node", error);
+    tm_block *node = add_block(stream, part, ".node");
     if (!node)
-        return error->status;
+        return tm_fail_memory(error);
     node->attributes = surface->attribute ? surface->attributes : 0;
     node->markers = surface->node_marker != NULL;
     tm_status status = tm_block_allocate(node, surface->nodes, 0, error);
@@ -260,9 +258,9 @@ tm_status tm_polygon_surface_to_stream(const tm_polygon_surface *surface,
         triangles += corners_of(surface, p) > 2 ? corners_of(surface, p) - 2 : 0;
     if (triangles >= UINT32_MAX)
         return tm_fail(error, TM_ERROR_SYSTEM, "more triangles than 32 bits can number");
-    tm_block *face = add_block(stream, part, ".face", error);
+    tm_block *face = add_block(stream, part, ".face");
     if (!face)
-        return error->status;
+        return tm_fail_memory(error);
     face->markers = surface->has_facet_markers;
     status = tm_block_allocate(face, triangles, 0, error);
     for (size_t f = 0; f < surface->facets && status == TM_OK; f++)

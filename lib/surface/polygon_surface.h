@@ -67,6 +67,8 @@ tm_status tm_polygon_surface_add_corner(tm_polygon_surface *surface, uint32_t no
 tm_status tm_polygon_surface_end_polygon(tm_polygon_surface *surface, tm_error *error);
 tm_status tm_polygon_surface_end_facet(tm_polygon_surface *surface, int32_t marker,
                                        tm_error *error);
+/* Ends a polygon that is a facet of its own. */
+tm_status tm_polygon_surface_end_face(tm_polygon_surface *surface, tm_error *error);
 /* A facet that is one polygon of k nodes. */
 tm_status tm_polygon_surface_add_polygon(tm_polygon_surface *surface,
                                          const uint32_t *node, size_t k, tm_error *error);

@@ -359,6 +359,47 @@ static void test_edit(void **state)
     tm_stream_free(&stream);
 }
 
+static bool is_cell(const tm_block *block, const void *context)
+{
+    (void)context;
+    return block->kind == TM_CELL;
+}
+
+/* Very many blocks: the time for each does not grow with their number, which would make
+ * this test one of minutes. */
+static void test_many_blocks(void **state)
+{
+    (void)state;
+    enum { BLOCKS = 150000 };
+    tm_text text = {0};
+    tm_text_string(&text, NODES);
+    for (int b = 0; b < BLOCKS; b++)
+        tm_text_format(&text, "p%d.node\n0 3 0 0\np%d.cell\n0 0\n", b, b);
+    const size_t size = text.size;
+    tm_text_string(&text, ".end\n");
+    tm_stream stream;
+    tm_error error = {0};
+    int fd = file_of(text.byte, text.size);
+    tm_stream_init(&stream);
+    assert_int_equal(tm_stream_read(&stream, fd, "many", &error), TM_OK);
+    close(fd);
+    assert_int_equal(stream.blocks, 1 + 2 * BLOCKS);
+    assert_string_equal(stream.block[2 * BLOCKS].name, "p149999.cell");
+    tm_stream_remove_if(&stream, is_cell, NULL);
+    assert_int_equal(stream.blocks, 1 + BLOCKS);
+    assert_string_equal(stream.block[BLOCKS].name, "p149999.node");
+    assert_non_null(tm_stream_add(&stream, ".face"));
+    tm_stream_free(&stream);
+    text.size = size;
+    tm_text_string(&text, "p77777.cell\n0 0\n.end\n");
+    fd = file_of(text.byte, text.size);
+    assert_int_equal(tm_stream_read(&stream, fd, "many", &error), TM_ERROR_INPUT);
+    close(fd);
+    assert_string_equal(error.block, "p77777.cell");
+    assert_string_equal(error.what, "a second block of that name");
+    tm_text_free(&text);
+}
+
 int main(void)
 {
     random_start();
@@ -367,6 +408,7 @@ int main(void)
         cmocka_unit_test(test_free_forms),   cmocka_unit_test(test_truncated),
         cmocka_unit_test(test_wrong),        cmocka_unit_test(test_mutations),
         cmocka_unit_test(test_large),        cmocka_unit_test(test_pipe),
-        cmocka_unit_test(test_write_errors), cmocka_unit_test(test_edit)};
+        cmocka_unit_test(test_write_errors), cmocka_unit_test(test_edit),
+        cmocka_unit_test(test_many_blocks)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -29,13 +29,16 @@ void tet_mesh_from_stream(const filter *f, tm_stream *stream, tm_tet_mesh *mesh)
     note_input(f, mesh);
 }
 
+static bool is_unknown(const tm_block *block, const void *context)
+{
+    (void)context;
+    return block->kind == TM_UNKNOWN && block->name[0] == '.';
+}
+
 void drop_unknown_blocks(const filter *f, tm_stream *stream, const char *why)
 {
-    for (size_t b = stream->blocks; b > 0; b--) {
-        tm_block *block = &stream->block[b - 1];
-        if (block->kind != TM_UNKNOWN || block->name[0] != '.')
-            continue;
-        filter_note(f, "%s is dropped: %s", block->name, why);
-        tm_stream_remove(stream, block);
-    }
+    for (size_t b = stream->blocks; b > 0; b--)
+        if (is_unknown(&stream->block[b - 1], NULL))
+            filter_note(f, "%s is dropped: %s", stream->block[b - 1].name, why);
+    tm_stream_remove_if(stream, is_unknown, NULL);
 }

@@ -7,15 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* An empty block. */
-static tm_block *add(tm_stream *stream, const char *name, tm_error *error)
-{
-    tm_block *block = tm_stream_add(stream, name);
-    if (!block)
-        tm_fail_memory(error);
-    return block;
-}
-
 static tm_status nodes_to_stream(tm_octree_mesh *m, tm_stream *stream, tm_error *error)
 {
     tm_block *node = tm_stream_find(stream, ".node");
@@ -37,9 +28,9 @@ static tm_status nodes_to_stream(tm_octree_mesh *m, tm_stream *stream, tm_error 
 static tm_status elements_to_stream(tm_octree_mesh *m, const tm_octree *octree,
                                     bool levels, tm_stream *stream, tm_error *error)
 {
-    tm_block *mix = add(stream, ".mix", error);
+    tm_block *mix = tm_stream_add(stream, ".mix");
     if (!mix)
-        return error->status;
+        return tm_fail_memory(error);
     tm_mixed_mesh *mesh = &m->assembly.mesh;
     mix->count = mesh->elements;
     if (levels) {
@@ -101,9 +92,9 @@ static tm_status facets_to_stream(const tm_octree_mesh *m, const tm_surface *sur
         facets += cut ? 2 : 1;
         items += cut ? 2 * 3 : tm_boundary_face_corners(boundary, f);
     }
-    tm_block *facet = add(stream, ".facet", error);
+    tm_block *facet = tm_stream_add(stream, ".facet");
     if (!facet)
-        return error->status;
+        return tm_fail_memory(error);
     facet->markers = true;
     const tm_status status = tm_block_allocate(facet, facets, items, error);
     if (status != TM_OK)
@@ -131,15 +122,15 @@ static tm_status facets_to_stream(const tm_octree_mesh *m, const tm_surface *sur
 static tm_status surface_to_stream(tm_surface *surface, tm_stream *stream,
                                    tm_error *error)
 {
-    tm_block *node = add(stream, "surface.node", error);
+    tm_block *node = tm_stream_add(stream, "surface.node");
     if (!node)
-        return error->status;
+        return tm_fail_memory(error);
     node->count = surface->nodes;
     node->real = (double *)surface->xyz;
     surface->xyz = NULL;
-    tm_block *face = add(stream, "surface.face", error);
+    tm_block *face = tm_stream_add(stream, "surface.face");
     if (!face)
-        return error->status;
+        return tm_fail_memory(error);
     face->count = surface->triangles;
     face->integer = (uint32_t *)surface->triangle;
     surface->triangle = NULL;
@@ -154,7 +145,7 @@ tm_status tm_octree_mesh_to_stream(tm_octree_mesh *mesh, const tm_octree *octree
                                    tm_error *error)
 {
     /* Nodes come first, but facets look at them before they are given away. */
-    tm_status status = add(stream, ".node", error) ? TM_OK : error->status;
+    tm_status status = tm_stream_add(stream, ".node") ? TM_OK : tm_fail_memory(error);
     if (status == TM_OK && surface->marker)
         status = facets_to_stream(mesh, surface, stream, error);
     if (status == TM_OK)

@@ -118,19 +118,24 @@ static bool stays(const tm_block *block, bool remade)
     }
 }
 
-static void remove_block(tm_stream *stream, tm_block *block, tm_repair_notes *notes)
+static bool goes(const tm_block *block, const void *remade)
+{
+    return !stays(block, *(const bool *)remade);
+}
+
+static void note_dropped(tm_repair_notes *notes, const tm_block *block)
 {
     const size_t used = strlen(notes->dropped);
     snprintf(notes->dropped + used, sizeof notes->dropped - used, "%s%s",
              used > 0 ? " " : "", block->name);
-    tm_stream_remove(stream, block);
 }
 
 static void remove_others(tm_stream *stream, bool remade, tm_repair_notes *notes)
 {
     for (size_t b = stream->blocks; b-- > 0;)
         if (!stays(&stream->block[b], remade))
-            remove_block(stream, &stream->block[b], notes);
+            note_dropped(notes, &stream->block[b]);
+    tm_stream_remove_if(stream, goes, &remade);
 }
 
 static tm_status give_divided(tm_repair_state *state, tm_stream *stream,
@@ -266,7 +271,8 @@ static tm_status give_remade(tm_repair_state *state, tm_stream *stream,
     if (status != TM_OK || !facet)
         return status;
     if (!surface->marker || !facet->markers || !is_boundary(facet)) {
-        remove_block(stream, facet, notes);
+        note_dropped(notes, facet);
+        tm_stream_remove(stream, facet);
         return TM_OK;
     }
     return give_facets(state, surface, facet, error);

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "gnuplot.h"
+#include "plot.h"
 
 #include "../../../lib/base/file.h"
-#include "../app/output_files.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <spawn.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -93,7 +93,7 @@ static tm_status run(int script, tm_text *figure, tm_error *error)
     return status;
 }
 
-tm_status gnuplot_plot(const tm_text *script, const char *file, tm_error *error)
+static tm_status draw(const tm_text *script, const char *file, tm_error *error)
 {
     if (script->failed || script->size == 0)
         return tm_fail_memory(error);
@@ -107,4 +107,82 @@ tm_status gnuplot_plot(const tm_text *script, const char *file, tm_error *error)
         status = output_file_write(file, &figure, error);
     tm_text_free(&figure);
     return status;
+}
+
+void plot_write(const filter *f, tm_text *script, const char *file)
+{
+    tm_error error;
+    if (draw(script, file, &error) != TM_OK)
+        filter_fail(f, &error);
+    tm_text_free(script);
+}
+
+void plot_begin(tm_text *script)
+{
+    tm_text_string(
+        script,
+        "set terminal svg size 1040,450 enhanced font 'Helvetica,15' background 'white'\n"
+        "set encoding utf8\n"
+        "set border 3 linecolor '#555555'\n"
+        "set tics nomirror out scale 0.6 textcolor '#333333'\n"
+        "set xtics offset 0,0.35\n"
+        "set grid ytics back linetype 1 linewidth 0.6 linecolor '#e4e4e4'\n"
+        "set tmargin screen 0.86\n"
+        "set bmargin screen 0.185\n"
+        "unset key\n"
+        "bad = '#fbe9e7'\n"
+        "grey = '#b4bac1'\n"
+        "blue = '#1f6fb2'\n"
+        "set multiplot\n");
+}
+
+void plot_end(tm_text *script)
+{
+    tm_text_string(script, "unset multiplot\n");
+}
+
+void plot_grouped(tm_text *script, size_t number)
+{
+    enum { GROUP = 3, DIGITS = 24 };
+    char digits[DIGITS];
+    const int length = snprintf(digits, sizeof digits, "%zu", number);
+    for (int i = 0; i < length; i++) {
+        if (i > 0 && (length - i) % GROUP == 0)
+            tm_text_string(script, "\u2009");
+        tm_text_append(script, &digits[i], 1);
+    }
+}
+
+void plot_outline(tm_text *script, const char *name, const size_t *histogram, size_t bins,
+                  double width, size_t whole)
+{
+    tm_text_format(script, "$%s << END\n0 0\n", name);
+    for (size_t i = 0; i < bins; i++) {
+        const double share = tm_percent(histogram[i], whole);
+        tm_text_format(script, "%.4g %.6g\n%.4g %.6g\n", width * (double)i, share,
+                       width * (double)(i + 1), share);
+    }
+    tm_text_format(script, "%.4g 0\nEND\n", width * (double)bins);
+}
+
+double plot_highest(const size_t *histogram, size_t bins, size_t whole)
+{
+    double highest = 0;
+    for (size_t i = 0; i < bins; i++)
+        highest = fmax(highest, tm_percent(histogram[i], whole));
+    return highest;
+}
+
+double plot_axis(double highest)
+{
+    const double headroom = 1.06, of_nothing = 10;
+    return headroom * (highest > 0 ? highest : of_nothing);
+}
+
+void plot_blue(tm_text *script, const char *name)
+{
+    tm_text_format(script,
+                   "$%s with filledcurves y=0 fillstyle transparent solid 0.3 noborder "
+                   "linecolor rgb blue, $%s with lines linewidth 2 linecolor rgb blue",
+                   name, name);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* TetGen, run on a surface or on points. */
-#ifndef CMD_COMMON_TETGEN_RUN_H
-#define CMD_COMMON_TETGEN_RUN_H
+#ifndef CMD_COMMON_TETGEN_H
+#define CMD_COMMON_TETGEN_H
 
 #include "../../../lib/base/number.h"
 #include "../../../lib/surface/polygon_surface.h"

@@ -146,15 +146,12 @@ static tm_status find_anchors(giver *g)
 
 /* Blocks --------------------------------------------------------------------------- */
 
-static tm_block *add(giver *g, tm_stream *stream, const char *name, size_t count,
-                     size_t items)
+static tm_status add(giver *g, tm_stream *stream, const char *name, size_t count,
+                     size_t items, tm_block **block)
 {
-    tm_block *block = tm_stream_add(stream, name);
-    if (!block) {
-        tm_fail_memory(g->error);
-        return NULL;
-    }
-    return tm_block_allocate(block, count, items, g->error) == TM_OK ? block : NULL;
+    *block = tm_stream_add(stream, name);
+    return *block ? tm_block_allocate(*block, count, items, g->error)
+                  : tm_fail_memory(g->error);
 }
 
 static tm_status give_roots(giver *g, tm_stream *stream)
@@ -177,9 +174,11 @@ static tm_status give_roots(giver *g, tm_stream *stream)
         if (!isfinite(g->low[i] + (double)roots[i] * size))
             return tm_fail_at(g->error, TM_ERROR_INPUT, g->name, 0, NULL,
                               "a cube of level 0 would be too large (1.8e308)");
-    tm_block *root = add(g, stream, ".root", roots[0] * roots[1] * roots[2], 0);
-    if (!root)
-        return g->error->status;
+    tm_block *root;
+    const tm_status status =
+        add(g, stream, ".root", roots[0] * roots[1] * roots[2], 0, &root);
+    if (status != TM_OK)
+        return status;
     double *real = root->real;
     for (size_t r = 0; r < root->count; r++) {
         const size_t at[COORDINATES] = {r % roots[0], r / roots[0] % roots[1],
@@ -194,9 +193,10 @@ static tm_status give_roots(giver *g, tm_stream *stream)
 
 static tm_status give_octants(giver *g, tm_stream *stream, bool one_each)
 {
-    tm_block *octant = add(g, stream, ".octant", g->oct->octants, 0);
-    if (!octant)
-        return g->error->status;
+    tm_block *octant;
+    const tm_status status = add(g, stream, ".octant", g->oct->octants, 0, &octant);
+    if (status != TM_OK)
+        return status;
     uint32_t *row = octant->integer, element = 0;
     for (size_t o = 0; o < octant->count; o++, row += OCTANT_NUMBERS) {
         *row = g->oct->level[o];
@@ -213,14 +213,16 @@ static tm_status give_hexahedra(giver *g, tm_stream *stream)
 {
     const tm_oct *oct = g->oct;
     stream->base = 0;
-    tm_block *node = add(g, stream, ".node", oct->points, 0);
-    if (!node)
-        return g->error->status;
+    tm_block *node;
+    tm_status status = add(g, stream, ".node", oct->points, 0, &node);
+    if (status != TM_OK)
+        return status;
     if (oct->points > 0)
         memcpy(node->real, oct->xyz, oct->points * sizeof *oct->xyz);
-    tm_block *mix = add(g, stream, ".mix", oct->octants, TM_OCT_CORNERS * oct->octants);
-    if (!mix)
-        return g->error->status;
+    tm_block *mix;
+    status = add(g, stream, ".mix", oct->octants, TM_OCT_CORNERS * oct->octants, &mix);
+    if (status != TM_OK)
+        return status;
     for (size_t o = 0; o <= oct->octants; o++)
         mix->start[o] = TM_OCT_CORNERS * o;
     memcpy(mix->item, oct->corner, oct->octants * sizeof *oct->corner);

@@ -1,14 +1,96 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tetgen_run.h"
+#include "tetgen.h"
 
-#include "../../../lib/format/tetgen_poly.h"
-#include "../../../lib/format/tetgen_rows.h"
-#include "private_folder.h"
-#include "private_signals.h"
+#include "../../../lib/format/tetgen.h"
+#include "private.h"
 #include "run_program.h"
-#include "tetgen_words.h"
 
 #include <string.h>
+
+/* What TetGen says: progress, warnings and complaints, all on stdout ------------------
+ */
+
+/* The lines of a text, one after the other; false behind the last. */
+static bool next_line(const char **at, const char **line, int *size)
+{
+    if (!*at || !**at)
+        return false;
+    *line = *at;
+    *size = (int)strcspn(*at, "\r\n");
+    *at += *size;
+    *at += strspn(*at, "\r\n");
+    return true;
+}
+
+static bool contains(const char *line, int size, const char *words)
+{
+    return memmem(line, (size_t)size, words, strlen(words)) != NULL;
+}
+
+/* Progress, not a complaint. */
+static bool is_progress(const char *line, int size)
+{
+    static const char *const words[] = {"Opening ",     "Delaunizing", "Creating ",
+                                        "Constrained ", "Removing ",   "Refining ",
+                                        "Optimizing ",  "Writing ",    "Jettisoning ",
+                                        " seconds:",    "Detecting",   "Recovering",
+                                        "Statistics"};
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
+        if (contains(line, size, words[i]))
+            return true;
+    return strspn(line, " ") >= (size_t)size;
+}
+
+/* On stderr: the lines that are no progress, some of them at most. */
+static void show_complaints(const filter *f, const tm_text *output)
+{
+    enum { LINES_MAX = 10 };
+    const char *at = output->byte, *line;
+    int size, shown = 0;
+    while (next_line(&at, &line, &size)) {
+        if (is_progress(line, size))
+            continue;
+        if (shown++ < LINES_MAX)
+            fprintf(stderr, "%s: tetgen: %.*s\n", f->name, size, line);
+    }
+    if (shown > LINES_MAX)
+        fprintf(stderr, "%s: tetgen: … and %d lines more\n", f->name, shown - LINES_MAX);
+}
+
+/* With -v all of it. */
+static void show_all(const filter *f, const tm_text *output)
+{
+    const char *at = output->byte, *line;
+    int size;
+    while (next_line(&at, &line, &size))
+        filter_verbose(f, "tetgen: %.*s", size, line);
+}
+
+/* How many warnings there are, and the first, unless --quiet. */
+static void show_warnings(const filter *f, const tm_text *output)
+{
+    const char *at = output->byte, *line, *first = NULL;
+    int size, first_size = 0;
+    size_t warnings = 0;
+    while (next_line(&at, &line, &size)) {
+        if (!contains(line, size, "Warning"))
+            continue;
+        if (warnings++ == 0) {
+            first = line;
+            first_size = size;
+        }
+    }
+    if (warnings > 0)
+        filter_note(f, "warnings of TetGen: %zu (-v shows them), the first: %.*s",
+                    warnings, first_size, first);
+}
+
+static bool said(const tm_text *output, const char *words)
+{
+    return output->byte && memmem(output->byte, output->size, words, strlen(words));
+}
+
+/* The run -------------------------------------------------------------------------- */
 
 enum { ARGUMENTS = 8 };
 
@@ -61,14 +143,14 @@ static tm_status explain_failure(const filter *f, const private_folder *folder,
                                  const program_end *end, tm_error *error)
 {
     static const char intersecting[] = "pairs of faces are intersecting";
-    tetgen_show_complaints(f, &end->output);
+    show_complaints(f, &end->output);
     program_end check = {0};
-    bool intersects = tetgen_said(&end->output, "intersect");
+    bool intersects = said(&end->output, "intersect");
     if (file == input_poly && !private_signals_came() &&
         run_tetgen(folder, r, file, "-pd", &check, NULL) == TM_OK &&
-        tetgen_said(&check.output, intersecting)) {
+        said(&check.output, intersecting)) {
         intersects = true;
-        tetgen_show_complaints(f, &check.output);
+        show_complaints(f, &check.output);
     }
     tm_text_free(&check.output);
     if (intersects)
@@ -94,10 +176,8 @@ static tm_status read_block(const private_folder *folder, const char *name,
     if (status == TM_OK && exists) {
         tm_block *block = tm_stream_add(mesh, name);
         const tm_block *node = tm_stream_find(mesh, ".node");
-        tm_scan scan;
-        tm_tetgen_begin(&scan, bytes.byte, bytes.size, file);
-        status = block ? tm_tetgen_read_rows(block, &scan, &mesh->base,
-                                             node ? node->count : 0, error)
+        status = block ? tm_tetgen_read(block, bytes.byte, bytes.size, file, &mesh->base,
+                                        node ? node->count : 0, error)
                        : tm_fail_memory(error);
     }
     tm_text_free(&bytes);
@@ -138,11 +218,11 @@ static tm_status run_in(const private_folder *folder, const filter *f,
     if (status == TM_OK && end.cannot_start)
         status = fail_start(r, end.cannot_start, error);
     else if (status == TM_OK && !private_signals_came()) {
-        tetgen_show_all(f, &end.output);
+        show_all(f, &end.output);
         if (end.signal || end.exit_status)
             status = explain_failure(f, folder, r, file, &end, error);
         else
-            tetgen_show_warnings(f, &end.output);
+            show_warnings(f, &end.output);
     }
     tm_text_free(&end.output);
     return status == TM_OK ? read_mesh(folder, r, mesh, error) : status;
