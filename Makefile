@@ -112,7 +112,7 @@ $(BUILD)/generate/powers: lib/base/generate/powers.c
 	$(CC) $(TM_CFLAGS) -o $@ $< $(LDFLAGS) $(LDLIBS)
 
 $(BUILD)/generate/transitions: $(wildcard lib/octree/transition/generate/*.[ch]) \
-		lib/octree/transition/face_pieces.c lib/octree/transition/leaf_place.c \
+		lib/octree/transition/face_pieces.c lib/octree/transition/leaf_point.c \
 		lib/octree/transition/transition.h lib/element/shape.c
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $(filter %.c,$^) $(LDFLAGS) $(LDLIBS)

@@ -179,13 +179,6 @@ static bool find_ball(const double (*plane)[4], size_t count, result *best)
     return is_real(&c) && isfinite(best->radius);
 }
 
-double tm_kernel_depth(const double (*plane)[4], size_t count, const double point[3])
-{
-    double depth;
-    nearest(plane, count, point, &depth);
-    return depth;
-}
-
 bool tm_kernel_ball(const double (*plane)[4], size_t count, double center[3],
                     double *radius)
 {

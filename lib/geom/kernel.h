@@ -24,17 +24,13 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* How deep a point is inside all half-spaces: the radius of the largest ball around it,
- * negative where the point is outside of one by so much. count > 0. O(count). */
-double tm_kernel_depth(const double (*plane)[4], size_t count, const double point[3]);
-
-/* Writes the centre and the radius of the largest ball. *radius is tm_kernel_depth() of
- * the centre: it is right for that centre but for one rounding, and the largest one to
- * about 1e-12 of the size. It is 0 or negative, the distance by which all planes had to
- * move outward, where the intersection has no interior. Of several centres it is any one
- * at the end of their range. False, with *radius 0, where the planes do not bound the
- * ball and its centre (fewer than four never do) or are not finite.
- * O(count) for each of a few rounds: about 1 µs for 50 planes. */
+/* Writes the centre and the radius of the largest ball. *radius is how deep the centre is
+ * inside all half-spaces, the least d - n·x: it is right for that centre but for one
+ * rounding, and the largest one to about 1e-12 of the size. It is 0 or negative, the
+ * distance by which all planes had to move outward, where the intersection has no
+ * interior. Of several centres it is any one at the end of their range. False, with
+ * *radius 0, where the planes do not bound the ball and its centre (fewer than four never
+ * do) or are not finite. O(count) for each of a few rounds: about 1 µs for 50 planes. */
 bool tm_kernel_ball(const double (*plane)[4], size_t count, double center[3],
                     double *radius);
 

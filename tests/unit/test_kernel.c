@@ -73,8 +73,6 @@ static void test_box(void **state)
     assert_true(tm_kernel_ball((const double(*)[4])plane, count, center, &radius));
     assert_true(fabs(radius - 0.5) < 1e-14);
     assert_true(tm_norm(center) < 1e-14);
-    assert_true(tm_kernel_depth((const double(*)[4])plane, count,
-                                (double[3]){0.2, 0, 0}) == 0.5 - 0.2);
 }
 
 /* The incentre is the mean of the corners, weighted by the opposite areas. */
@@ -142,6 +140,15 @@ static bool touching(const double (*plane)[4], const size_t at[4], double x[3], 
 }
 
 /* The largest ball is one of those that four planes touch and none cuts. */
+/* How deep a point is inside all half-spaces. */
+static double depth_of(const double (*plane)[4], size_t count, const double x[3])
+{
+    double depth = HUGE_VAL;
+    for (size_t i = 0; i < count; i++)
+        depth = fmin(depth, plane[i][3] - tm_dot(plane[i], x));
+    return depth;
+}
+
 static double brute_force(const double (*plane)[4], size_t count)
 {
     double best = -HUGE_VAL, x[3], r;
@@ -151,7 +158,7 @@ static double brute_force(const double (*plane)[4], size_t count)
             for (at[2] = at[1] + 1; at[2] < count; at[2]++)
                 for (at[3] = at[2] + 1; at[3] < count; at[3]++)
                     if (touching(plane, at, x, &r) && r > best &&
-                        tm_kernel_depth(plane, count, x) > r - 1e-9)
+                        depth_of(plane, count, x) > r - 1e-9)
                         best = r;
     return best;
 }
@@ -181,7 +188,7 @@ static void test_against_brute_force(void **state)
         move(plane, count, size, to);
         assert_true(tm_kernel_ball((const double(*)[4])plane, count, center, &radius));
         assert_true(fabs(radius / size - right) < 1e-8);
-        assert_true(radius == tm_kernel_depth((const double(*)[4])plane, count, center));
+        assert_true(radius == depth_of((const double(*)[4])plane, count, center));
         empty += right < 0;
     }
     assert_true(empty > 10 && empty < ROUNDS - 10);

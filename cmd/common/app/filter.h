@@ -11,7 +11,8 @@
  *     filter_write(&filter, &stream, "what was done");
  *     return filter_finish(&filter, 0);
  *
- * Functions that fail print one line on stderr and exit with the status of cli.md. */
+ * Functions that fail print one line on stderr and exit with the status of termesh(7): 2
+ * usage, 3 input, 4 system, 5 internal. */
 #ifndef CMD_COMMON_FILTER_H
 #define CMD_COMMON_FILTER_H
 

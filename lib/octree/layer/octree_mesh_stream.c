@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static tm_status give_nodes(tm_octree_mesh *m, tm_stream *stream, tm_error *error)
+static tm_status nodes_to_stream(tm_octree_mesh *m, tm_stream *stream, tm_error *error)
 {
     tm_block *node = tm_stream_find(stream, ".node");
     const tm_assembly *a = &m->assembly;
@@ -15,8 +15,8 @@ static tm_status give_nodes(tm_octree_mesh *m, tm_stream *stream, tm_error *erro
     if (!node->attribute)
         return tm_fail_memory(error);
     for (size_t s = 0; s < m->boundary.nodes; s++) {
-        const double place = TM_NODE_ON_PATCH + m->feature.kind[s];
-        node->attribute[a->outer + s] = m->off_surface[s] ? -place : place;
+        const double class = TM_NODE_ON_PATCH + m->feature.kind[s];
+        node->attribute[a->outer + s] = m->off_surface[s] ? -class : class;
     }
     node->count = a->mesh.nodes;
     node->attributes = 1;
@@ -25,8 +25,8 @@ static tm_status give_nodes(tm_octree_mesh *m, tm_stream *stream, tm_error *erro
     return TM_OK;
 }
 
-static tm_status give_elements(tm_octree_mesh *m, const tm_octree *octree, bool levels,
-                               tm_stream *stream, tm_error *error)
+static tm_status elements_to_stream(tm_octree_mesh *m, const tm_octree *octree,
+                                    bool levels, tm_stream *stream, tm_error *error)
 {
     tm_block *mix = tm_stream_add(stream, ".mix");
     if (!mix)
@@ -82,8 +82,8 @@ static int32_t marker_of(const tm_octree_mesh *m, const tm_surface *surface, siz
 }
 
 /* The boundary faces as rows of .facet: a quadrilateral, a triangle, or two triangles. */
-static tm_status give_facets(const tm_octree_mesh *m, const tm_surface *surface,
-                             tm_stream *stream, tm_error *error)
+static tm_status facets_to_stream(const tm_octree_mesh *m, const tm_surface *surface,
+                                  tm_stream *stream, tm_error *error)
 {
     const tm_interior_boundary *boundary = &m->boundary;
     size_t facets = 0, items = 0;
@@ -119,7 +119,8 @@ static tm_status give_facets(const tm_octree_mesh *m, const tm_surface *surface,
     return TM_OK;
 }
 
-static tm_status give_surface(tm_surface *surface, tm_stream *stream, tm_error *error)
+static tm_status surface_to_stream(tm_surface *surface, tm_stream *stream,
+                                   tm_error *error)
 {
     tm_block *node = tm_stream_add(stream, "surface.node");
     if (!node)
@@ -146,14 +147,14 @@ tm_status tm_octree_mesh_to_stream(tm_octree_mesh *mesh, const tm_octree *octree
     /* Nodes come first, but facets look at them before they are given away. */
     tm_status status = tm_stream_add(stream, ".node") ? TM_OK : tm_fail_memory(error);
     if (status == TM_OK && surface->marker)
-        status = give_facets(mesh, surface, stream, error);
+        status = facets_to_stream(mesh, surface, stream, error);
     if (status == TM_OK)
-        status = give_nodes(mesh, stream, error);
+        status = nodes_to_stream(mesh, stream, error);
     if (status == TM_OK)
-        status = give_elements(mesh, octree, levels, stream, error);
+        status = elements_to_stream(mesh, octree, levels, stream, error);
     if (status == TM_OK)
         status = tm_octree_to_stream(octree, mesh->assembly.first, stream, error);
     if (status == TM_OK)
-        status = give_surface(surface, stream, error);
+        status = surface_to_stream(surface, stream, error);
     return status;
 }
