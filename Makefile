@@ -106,6 +106,9 @@ $(unit_tests): $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(library)
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lcmocka $(LDLIBS)
 
+# Its allocations can be made to fail.
+$(BUILD)/tests/test_memory: private LDFLAGS += $(foreach name,malloc calloc realloc,-Wl,--wrap=$(name))
+
 # C++ programs that compare with the C++ library.
 $(oracles): $(BUILD)/tests/%: tests/oracle/%.cc tests/unit/random.h $(library)
 	@mkdir -p $(@D)

@@ -107,29 +107,31 @@ tm_status tm_tet_mesh_copy(tm_tet_mesh *to, const tm_tet_mesh *from, tm_error *e
 {
     bool done = true;
     size_t nodes = from->nodes, slots = from->slots;
+    tm_tet_mesh made = *from;
+    made.node_room = nodes;
+    made.slot_room = slots;
+    made.face_room = from->faces;
+    made.edge_room = from->edges;
+    made.xyz = copy(from->xyz, nodes, sizeof *made.xyz, &done);
+    made.node_attribute = copy(from->node_attribute, nodes * from->node_attributes,
+                               sizeof *made.node_attribute, &done);
+    made.node_marker = copy(from->node_marker, nodes, sizeof *made.node_marker, &done);
+    made.tet = copy(from->tet, slots, sizeof *made.tet, &done);
+    made.neighbour = copy(from->neighbour, slots, sizeof *made.neighbour, &done);
+    made.region = copy(from->region, slots * from->regions, sizeof *made.region, &done);
+    made.face = copy(from->face, from->faces, sizeof *made.face, &done);
+    made.edge = copy(from->edge, from->edges, sizeof *made.edge, &done);
+    made.edge_of.slot =
+        copy(from->edge_of.slot, from->edge_of.room, sizeof *made.edge_of.slot, &done);
+    made.locked.slot =
+        copy(from->locked.slot, from->locked.room, sizeof *made.locked.slot, &done);
+    if (!done) {
+        tm_tet_mesh_free(&made);
+        return tm_fail_memory(error);
+    }
     tm_tet_mesh_free(to);
-    *to = *from;
-    to->node_room = nodes;
-    to->slot_room = slots;
-    to->face_room = from->faces;
-    to->edge_room = from->edges;
-    to->xyz = copy(from->xyz, nodes, sizeof *to->xyz, &done);
-    to->node_attribute = copy(from->node_attribute, nodes * from->node_attributes,
-                              sizeof *to->node_attribute, &done);
-    to->node_marker = copy(from->node_marker, nodes, sizeof *to->node_marker, &done);
-    to->tet = copy(from->tet, slots, sizeof *to->tet, &done);
-    to->neighbour = copy(from->neighbour, slots, sizeof *to->neighbour, &done);
-    to->region = copy(from->region, slots * from->regions, sizeof *to->region, &done);
-    to->face = copy(from->face, from->faces, sizeof *to->face, &done);
-    to->edge = copy(from->edge, from->edges, sizeof *to->edge, &done);
-    to->edge_of.slot =
-        copy(from->edge_of.slot, from->edge_of.room, sizeof *to->edge_of.slot, &done);
-    to->locked.slot =
-        copy(from->locked.slot, from->locked.room, sizeof *to->locked.slot, &done);
-    if (done)
-        return TM_OK;
-    tm_tet_mesh_free(to);
-    return tm_fail_memory(error);
+    *to = made;
+    return TM_OK;
 }
 
 size_t tm_tet_mesh_most(const tm_tet_mesh *mesh, double growth)

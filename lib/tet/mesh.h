@@ -128,8 +128,8 @@ void tm_tet_mesh_free(tm_tet_mesh *mesh);
  * than a mesh can have, TM_TETS_MAX. */
 size_t tm_tet_mesh_most(const tm_tet_mesh *mesh, double growth);
 
-/* Makes *to, which is a mesh or {0}, the same as *from. TM_ERROR_SYSTEM, with *to empty,
- * where memory is out. O(n). */
+/* Makes *to, which is a mesh or {0}, the same as *from. TM_ERROR_SYSTEM, with *to as it
+ * was, where memory is out. O(n). */
 tm_status tm_tet_mesh_copy(tm_tet_mesh *to, const tm_tet_mesh *from, tm_error *error);
 
 /* Verifies every invariant that this header states. TM_ERROR_INTERNAL with the first

@@ -238,10 +238,10 @@ tm_status tm_lepp_improve(tm_tet_mesh *mesh, const tm_lepp_options *options,
         .gain = tm_gain_of(options->measure, fmax(options->factor, 1 + TM_LEPP_GAIN)),
         .most_tets = tm_tet_mesh_most(mesh, options->max_growth)};
     tm_status status = start(&e);
-    if (status == TM_OK) {
+    if (status == TM_OK)
         status = run(&e);
+    if (status == TM_OK)
         finish(&e);
-    }
     free_engine(&e);
     return status;
 }

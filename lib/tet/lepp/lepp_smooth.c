@@ -42,11 +42,13 @@ static bool start(tm_lepp_engine *e)
     uint32_t *tet_at = tm_grow(s->tet_at, &s->tet_at_room, mesh->nodes, sizeof *tet_at);
     s->tet_at = tet_at ? tet_at : s->tet_at;
     uint32_t *seen = tm_grow(s->seen, &room, mesh->nodes, sizeof *seen);
+    if (seen) {
+        memset(seen + s->seen_room, 0, (room - s->seen_room) * sizeof *seen);
+        s->seen = seen;
+        s->seen_room = room;
+    }
     if (!tet_at || !seen)
         return false;
-    memset(seen + s->seen_room, 0, (room - s->seen_room) * sizeof *seen);
-    s->seen = seen;
-    s->seen_room = room;
     for (size_t v = 0; v < mesh->nodes; v++)
         tet_at[v] = TM_NONE;
     for (uint32_t t = 0; t < mesh->slots; t++)
