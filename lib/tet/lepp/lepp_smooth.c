@@ -5,33 +5,7 @@
 #include "../../base/array.h"
 #include "../operation/interpolation.h"
 
-#include <stdlib.h>
 #include <string.h>
-
-void tm_lepp_sweeper_free(tm_lepp_sweeper *s)
-{
-    tm_features_free(&s->features);
-    tm_ball_free(&s->ball);
-    tm_tet_marks_free(&s->marks);
-    tm_star_free(&s->star);
-    tm_replacement_table_free(&s->table);
-    free(s->tet_at);
-    free(s->seen);
-    free(s->value);
-}
-
-void tm_lepp_measure_angles(tm_lepp_engine *e)
-{
-    const tm_tet_mesh *mesh = e->mesh;
-    const double(*x)[3] = (const double(*)[3])mesh->xyz;
-    e->sweeper.limits = tm_angle_limits_none();
-    for (uint32_t t = 0; t < mesh->slots; t++) {
-        const uint32_t *n = mesh->tet[t];
-        if (tm_tet_lives(mesh, t))
-            tm_angle_limits_include(&e->sweeper.limits, x[n[0]], x[n[1]], x[n[2]],
-                                    x[n[3]]);
-    }
-}
 
 /* A tetrahedron at each node, and marks for the nodes. */
 static bool start(tm_lepp_engine *e)
