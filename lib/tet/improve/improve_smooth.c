@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The improver's smoothing: a node goes to the mean of its neighbours, and from there or
- * from where it is to where the worst tetrahedron around it is best. */
+/* The improver's smoothing: a node goes to the mean of its neighbours or, if that is no
+ * gain, from where it is to where the worst tetrahedron around it is best. */
 #include "improve_engine.h"
 
 #include "../../geom/vector.h"
@@ -40,30 +40,24 @@ static void move(tm_improver *m, const double p[3])
     m->report->done.op[TM_OP_SMOOTHING]++;
 }
 
-/* The place with the least cost, below `most`; false where there is none. */
+/* A place that costs less than `most`; false where none is found. */
 static bool find_place(const tm_improver *m, const tm_cavity_boundary *boundary,
                        const tm_freedom *freedom, double least, double most,
                        double place[3])
 {
     enum { STEPS = 2 };
-    double p[3], from[3];
-    bool found = false;
-    memcpy(from, m->mesh->xyz[m->ball.node], sizeof from);
-    for (int way = 0; way < 2 && !found; way++) {
-        memcpy(p, found ? place : from, sizeof p);
+    for (int way = 0; way < 2; way++) {
+        memcpy(place, m->mesh->xyz[m->ball.node], 3 * sizeof *place);
         if (way == 0)
-            go_to_centre(boundary, freedom, p);
+            go_to_centre(boundary, freedom, place);
         else
             tm_cavity_boundary_climb(boundary, m->cost.measure, freedom,
-                                     m->cost.target * beyond_target, STEPS, p);
-        double cost = tm_cavity_boundary_cost(boundary, &m->cost, p, least, most);
-        if (!(cost < most) || !tm_cavity_boundary_sees(boundary, p))
-            continue;
-        most = cost;
-        memcpy(place, p, sizeof p);
-        found = true;
+                                     m->cost.target * beyond_target, STEPS, place);
+        if (tm_cavity_boundary_cost(boundary, &m->cost, place, least, most) < most &&
+            tm_cavity_boundary_sees(boundary, place))
+            return true;
     }
-    return found;
+    return false;
 }
 
 static bool smooth_node(tm_improver *m, uint32_t t, uint32_t v)
