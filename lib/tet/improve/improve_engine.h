@@ -45,10 +45,10 @@ typedef struct tm_improver {
     uint32_t *tried;
     size_t tet_room;
     /* By node: a tetrahedron that has it; the last change around it; the changes after
-     * which it was tried; a mark: == stamp. */
-    uint32_t *tet_at, *changed, *smoothed, *contracted, *seen;
+     * which it was tried. */
+    uint32_t *tet_at, *changed, *smoothed, *contracted;
     size_t node_room;
-    uint32_t change, stamp; /* counters */
+    uint32_t change; /* counts them */
 
     tm_improve_state best;    /* for this target, so far */
     tm_improve_state reached; /* the last target that left nothing bad */
@@ -56,7 +56,8 @@ typedef struct tm_improver {
 
     tm_space space; /* around the mesh */
     tm_features features;
-    tm_tet_marks marks;
+    tm_tet_marks marks; /* on tetrahedra */
+    tm_tet_marks seen;  /* on nodes */
     tm_star star;
     tm_ball ball;
     tm_cavity cavity;

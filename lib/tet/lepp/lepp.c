@@ -208,7 +208,7 @@ static void free_sweeper(tm_lepp_sweeper *s)
     tm_star_free(&s->star);
     tm_replacement_table_free(&s->table);
     free(s->tet_at);
-    free(s->seen);
+    tm_tet_marks_free(&s->seen);
     free(s->value);
 }
 

@@ -45,13 +45,7 @@ bool tm_lepp_reserve(tm_lepp_engine *e, size_t more)
 
 bool tm_lepp_add_target(tm_lepp_engine *e, uint32_t t)
 {
-    uint32_t *target =
-        tm_grow(e->target, &e->target_room, e->targets + 1, sizeof *target);
-    if (!target)
-        return false;
-    e->target = target;
-    target[e->targets++] = t;
-    return true;
+    return tm_append(&e->target, &e->targets, &e->target_room, t);
 }
 
 bool tm_lepp_note(tm_lepp_engine *e, const uint32_t *tet, size_t count)

@@ -57,11 +57,10 @@ typedef struct tm_lepp_sweeper {
     tm_tet_marks marks;
     tm_star star;
     tm_replacement_table table;
-    uint32_t *tet_at; /* [nodes]: a tetrahedron that has the node, or TM_NONE */
-    uint32_t *seen;   /* [nodes]: == stamp, if met */
-    uint32_t stamp;
-    double *value; /* [node_attributes] */
-    size_t tet_at_room, seen_room, value_room;
+    uint32_t *tet_at;  /* [nodes]: a tetrahedron that has the node, or TM_NONE */
+    tm_tet_marks seen; /* nodes of a mean */
+    double *value;     /* [node_attributes] */
+    size_t tet_at_room, value_room;
 } tm_lepp_sweeper;
 
 typedef struct tm_lepp_engine {
