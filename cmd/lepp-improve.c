@@ -255,15 +255,13 @@ static void add(char *text, size_t size, const char *format, size_t count)
     snprintf(text + length, size - length, format, count);
 }
 
-static void add_operations(const tm_improve_report *r, char *text, size_t size)
+static void add_effects(const tm_improve_report *r, char *text, size_t size)
 {
-    const size_t *done = r->done.op;
-    add(text, size, "%zu edges and ",
-        done[TM_OP_EDGE_REMOVAL] + done[TM_OP_BOUNDARY_SWAP]);
-    add(text, size, "%zu faces removed, ", done[TM_OP_FACE_REMOVAL]);
-    add(text, size, "%zu times a node moved, ", done[TM_OP_SMOOTHING]);
-    add(text, size, "%zu points inserted, ", done[TM_OP_INSERTION]);
-    add(text, size, "%zu nodes removed", done[TM_OP_CONTRACTION] + r->done.swallowed);
+    static const char *const words[TM_IMPROVE_EFFECTS] = {
+        "%zu edges and ", "%zu faces removed, ", "%zu times a node moved, ",
+        "%zu points inserted, ", "%zu nodes removed"};
+    for (int k = 0; k < TM_IMPROVE_EFFECTS; k++)
+        add(text, size, words[k], tm_improve_effects(r, (tm_improve_effect)k));
 }
 
 static void add_star_operations(const settings *o, const tm_lepp_report *r, char *text,
@@ -294,7 +292,7 @@ static void summarise(const settings *o, const result *r, size_t tets, char *tex
     snprintf(text, size, "%zu -> %zu tetrahedra, %.2f%% -> %.2f%% bad; ", tets_before,
              tets, before, tm_percent(bad_after, tets));
     if (is_improve)
-        add_operations(&r->improve, text, size);
+        add_effects(&r->improve, text, size);
     else
         add_star_operations(o, &r->lepp, text, size);
 }

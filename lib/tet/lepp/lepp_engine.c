@@ -1,6 +1,65 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which edges are refused and not refinable; see the marks in lepp_engine.h. */
+/* LEPP's memory: what it knows of each tetrahedron, S, and which edges are refused and
+ * not refinable (the marks in lepp_engine.h). It calls none of its other files. */
 #include "lepp_engine.h"
+
+#include "../../base/array.h"
+#include "../mesh_measure.h"
+
+#include <stdlib.h>
+
+void tm_lepp_measure(tm_lepp_engine *e, const uint32_t *tet, size_t count)
+{
+    const tm_tet_mesh *mesh = e->mesh;
+    double sine2[TM_MEASURED_AT_ONCE];
+    uint8_t longest[TM_MEASURED_AT_ONCE];
+    for (size_t i = 0, some; i < count; i += some) {
+        some = count - i < TM_MEASURED_AT_ONCE ? count - i : TM_MEASURED_AT_ONCE;
+        tm_tet_mesh_measure(mesh, tet + i, some, sine2, longest);
+        for (size_t k = 0; k < some; k++) {
+            uint32_t t = tet[i + k];
+            e->quality[t] = sine2[k];
+            e->mark[t] =
+                (uint16_t)(longest[k] | (sine2[k] < e->bad_below ? TM_LEPP_BAD : 0));
+        }
+    }
+    for (size_t i = 0; i < count && e->options->measure != TM_MEASURE_DIHEDRAL; i++) {
+        const uint32_t *n = mesh->tet[tet[i]];
+        e->quality[tet[i]] =
+            tm_tet_measure_of(e->options->measure, mesh->xyz[n[0]], mesh->xyz[n[1]],
+                              mesh->xyz[n[2]], mesh->xyz[n[3]]);
+    }
+}
+
+bool tm_lepp_reserve(tm_lepp_engine *e, size_t more)
+{
+    size_t slots = e->mesh->slots + more;
+    uint16_t *mark = tm_grow(e->mark, &e->mark_room, slots, sizeof *mark);
+    e->mark = mark ? mark : e->mark;
+    double *quality = tm_grow(e->quality, &e->quality_room, slots, sizeof *quality);
+    e->quality = quality ? quality : e->quality;
+    uint32_t *created = tm_grow(e->created, &e->created_room, more, sizeof *created);
+    e->created = created ? created : e->created;
+    return mark && quality && created;
+}
+
+bool tm_lepp_add_target(tm_lepp_engine *e, uint32_t t)
+{
+    return tm_append(&e->target, &e->targets, &e->target_room, t);
+}
+
+bool tm_lepp_note(tm_lepp_engine *e, const uint32_t *tet, size_t count)
+{
+    tm_lepp_measure(e, tet, count);
+    for (size_t i = 0; i < count; i++) {
+        uint32_t t = tet[i];
+        if (t < e->graph.room)
+            e->graph.stamp[t] = 0; /* another one than the path may have seen */
+        if (e->reintroduce && (e->mark[t] & TM_LEPP_BAD) && !tm_lepp_add_target(e, t))
+            return false;
+    }
+    return true;
+}
 
 /* The bits of all six edges, and those of the three of each face. */
 enum { ALL_REFUSED = 63 * TM_LEPP_REFUSED };
