@@ -4,6 +4,7 @@
 #include "common/app/filter.h"
 #include "common/app/repair_files.h"
 #include "common/input/surface_input.h"
+#include "common/process/mpi_environment.h"
 
 #include "../lib/base/json.h"
 #include "../lib/octree/repair/repair.h"
@@ -201,6 +202,7 @@ static void prepare(program *p, const tm_stream *stream, tm_repair_state *state,
 {
     tm_error error;
     build_surface(p, stream);
+    mpi_environment_set(&p->f);
     if (tm_repair_prepare(state, stream, p->has_surface ? &p->boundary : NULL, notes,
                           &error) != TM_OK)
         fail(p, &error);

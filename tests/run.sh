@@ -18,11 +18,16 @@ trap 'rm -f "$log"' EXIT
 passed=0
 failed=0
 
+# As the filters set it (lib/octree/forest/mpi_start.h): MPI for one process.
+mpi='OMPI_MCA_pml=ob1 OMPI_MCA_btl=self OMPI_MCA_ess_singleton_isolated=1
+    OMPI_MCA_orte_create_session_dirs=0 OMPI_MCA_shmem=mmap HWLOC_COMPONENTS=no_os,stop'
+
 # A program is one test, or says itself how many it is, as cmocka does.
 for program in "$build"/tests/*; do
     [ -f "$program" ] && [ -x "$program" ] || continue
     name=$(basename "$program")
-    "$program" >"$log" 2>&1
+    # shellcheck disable=SC2086 # words
+    env $mpi "$program" >"$log" 2>&1
     status=$?
     good=$(sed -n 's/^\[  PASSED  \] \([0-9]*\) test.*/\1/p' "$log")
     bad=$(sed -n 's/^\[  FAILED  \] \([0-9]*\) test.*/\1/p' "$log" | head -n 1)
