@@ -5,8 +5,7 @@
 
 #include "../lib/base/json.h"
 #include "../lib/poly/facets.h"
-#include "../lib/tet/facet.h"
-#include "../lib/tet/mesh_order.h"
+#include "../lib/tet/mesh_measure.h"
 
 #include <stdlib.h>
 #include <string.h>

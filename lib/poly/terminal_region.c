@@ -8,7 +8,7 @@
 #include "partition.h"
 
 #include "../base/array.h"
-#include "../tet/longest_edge.h"
+#include "../tet/mesh_measure.h"
 
 #include <stdlib.h>
 
