@@ -3,7 +3,6 @@
 #include "common/app/filter.h"
 #include "common/input/tet_input.h"
 
-#include "../lib/base/json.h"
 #include "../lib/examine/tet_statistics.h"
 #include "../lib/tet/improve/improve.h"
 #include "../lib/tet/lepp/lepp.h"
@@ -206,24 +205,15 @@ typedef struct {
 
 static void write_json(filter *f, const settings *o, const result *r)
 {
-    tm_text text = {0};
-    tm_json json = {.text = &text};
-    tm_json_open(&json, NULL, '{');
-    tm_json_open(&json, "before", '{');
-    tm_tet_statistics_json(&json, &r->before);
-    tm_json_close(&json, '}');
-    tm_json_open(&json, "after", '{');
-    tm_tet_statistics_json(&json, &r->after);
-    tm_json_close(&json, '}');
-    tm_json_double(&json, "seconds", r->seconds);
+    tm_json *json = filter_json_begin(f);
+    tm_tet_statistics_object(json, "before", &r->before);
+    tm_tet_statistics_object(json, "after", &r->after);
+    tm_json_double(json, "seconds", r->seconds);
     if (o->is_improve)
-        tm_improve_report_json(&json, &r->improve);
+        tm_improve_report_json(json, &r->improve);
     else
-        tm_lepp_report_json(&json, &o->lepp, &r->lepp);
-    tm_json_close(&json, '}');
-    tm_text_string(&text, "\n");
-    filter_write_json(f, &text);
-    tm_text_free(&text);
+        tm_lepp_report_json(json, &o->lepp, &r->lepp);
+    filter_json_end(f);
 }
 
 static double cpu_seconds(void)

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "vtk_legacy.h"
+#include "mesh_format.h"
 
+#include "../element/shape.h"
 #include "../mesh/cell_faces.h"
 #include "text_rows.h"
-#include "../element/vtk_cell_type.h"
 
 #include <stdio.h>
 
-enum { TETRAHEDRON = 4, HEXAHEDRON = 8, NAME = 32 };
+enum { NAME = 32 };
 
 typedef struct writer {
     const tm_block *node;
@@ -104,21 +104,13 @@ static size_t type_room(const void *context, size_t first, size_t past)
 
 static char *put_type(const void *context, size_t row, char *to)
 {
-    static const unsigned char of_content[] = {[TM_CONTENT_POINTS] = VTK_VERTEX,
-                                               [TM_CONTENT_SURFACE] = VTK_TRIANGLE,
-                                               [TM_CONTENT_TETRAHEDRA] = VTK_TETRA,
-                                               [TM_CONTENT_POLYHEDRA] = VTK_POLYHEDRON};
-    static const unsigned char of_size[] = {[TETRAHEDRON] = VTK_TETRA,
-                                            [5] = VTK_PYRAMID,
-                                            [6] = VTK_WEDGE,
-                                            [HEXAHEDRON] = VTK_HEXAHEDRON};
     const writer *w = context;
-    unsigned char type;
-    if (w->content == TM_CONTENT_MIXED)
-        type = of_size[w->cell->start[row + 1] - w->cell->start[row]];
-    else
-        type = of_content[w->content];
-    to = tm_write_uint32(to, type);
+    size_t nodes = 1;
+    if (w->content != TM_CONTENT_POINTS && w->content != TM_CONTENT_POLYHEDRA)
+        tm_row_nodes(w->cell, row, &nodes);
+    to =
+        tm_write_uint32(to, w->content == TM_CONTENT_POLYHEDRA ? TM_VTK_POLYHEDRON
+                                                               : tm_vtk_cell_type(nodes));
     *to++ = '\n';
     return to;
 }

@@ -126,11 +126,9 @@ tm_status tm_tet_mesh_copy(tm_tet_mesh *to, const tm_tet_mesh *from, tm_error *e
         copy(from->edge_of.slot, from->edge_of.room, sizeof *made.edge_of.slot, &done);
     made.locked.slot =
         copy(from->locked.slot, from->locked.room, sizeof *made.locked.slot, &done);
-    if (!done) {
-        tm_tet_mesh_free(&made);
+    tm_tet_mesh_free(done ? to : &made);
+    if (!done)
         return tm_fail_memory(error);
-    }
-    tm_tet_mesh_free(to);
     *to = made;
     return TM_OK;
 }

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whole meshes: what is sharp at turned boxes, and whether the elements of random solids
  * are valid, fit together, and end on the surface. */
+#include "../../lib/element/jens.h"
 #include "../../lib/examine/mixed_examine.h"
 #include "../../lib/octree/layer/adaptive_refinement.h"
-#include "../../lib/element/jens.h"
+#include "../../lib/octree/repair/repair_stream.h"
 #include "octree_fixture.h"
 
 #include <stdlib.h>
@@ -64,16 +65,17 @@ static double distance_from_place(const tm_octree_mesh *mesh, const tm_surface *
     return sqrt(closest.distance2);
 }
 
-/* All boundary nodes are on the surface, but those that are held. */
+/* All boundary nodes are on the surface, but those that are off it. */
 static void check_boundary(const tm_octree_mesh *mesh, const tm_surface *surface)
 {
     const double close = 1e-9 * sqrt(tm_distance2(surface->low, surface->high));
-    size_t held = 0;
+    size_t off_surface = 0;
     for (size_t s = 0; s < mesh->boundary.nodes; s++) {
-        held += mesh->held[s];
-        assert_true(mesh->held[s] || distance_from_place(mesh, surface, s) <= close);
+        off_surface += mesh->off_surface[s];
+        assert_true(mesh->off_surface[s] ||
+                    distance_from_place(mesh, surface, s) <= close);
     }
-    assert_int_equal(held, mesh->report.held_back);
+    assert_int_equal(off_surface, mesh->report.off_surface);
 }
 
 /* Whether two interior boundary nodes are the ends of an edge, or of a diagonal that cuts
@@ -153,7 +155,7 @@ static void check_corners(const tm_octree_mesh *mesh, const tm_surface *surface)
         if (mesh->feature.kind[s] == TM_ON_CORNER) {
             const uint32_t corner = mesh->feature.of[s];
             nodes[corner]++;
-            if (!mesh->held[s])
+            if (!mesh->off_surface[s])
                 assert_memory_equal(outer_point(mesh, s),
                                     surface->xyz[surface->corner[corner]],
                                     3 * sizeof(double));
@@ -252,7 +254,7 @@ static bool has_solid(const tm_octree *octree, const tm_surface *surface)
 static void test_random(void **state)
 {
     (void)state;
-    size_t elements = 0, boundary = 0, held = 0;
+    size_t elements = 0, boundary = 0, off_surface = 0;
     for (int round = 0; round < ROUNDS; round++) {
         const uint64_t seed = random_state;
         tm_surface surface;
@@ -272,7 +274,7 @@ static void test_random(void **state)
             check_boundary(&mesh, &surface);
             elements += mesh.assembly.mesh.elements;
             boundary += mesh.boundary.nodes;
-            held += mesh.report.held_back;
+            off_surface += mesh.report.off_surface;
         }
         assert_int_equal(surface.patches, patches);
         assert_ok(tm_surface_check(&surface, &error), &error);
@@ -280,9 +282,9 @@ static void test_random(void **state)
         tm_octree_free(&octree);
         tm_surface_free(&surface);
     }
-    printf("%zu elements; %zu of %zu boundary nodes are held back\n", elements, held,
-           boundary);
-    assert_true(elements > 0 && held < boundary);
+    printf("%zu elements; %zu of %zu boundary nodes are held back\n", elements,
+           off_surface, boundary);
+    assert_true(elements > 0 && off_surface < boundary);
 }
 
 /* A cube with a thin wall, in the middle of which are leaves from level 5 on. */
@@ -354,6 +356,41 @@ static void test_resolve(void **state)
     tm_surface_free(&surface);
 }
 
+/* Without an octree in the stream, and with nobody to tell why, nodes get their rules. */
+static void test_repair_without_octree(void **state)
+{
+    (void)state;
+    const double low[3] = {0, 0, 0}, high[3] = {1, 1, 1};
+    static const uint32_t tetrahedron[] = {0, 1, 2, 4}; /* corners of the box */
+    tm_polygon_surface box;
+    tm_surface surface;
+    tm_stream stream;
+    tm_repair_state repair;
+    tm_repair_notes notes;
+    tm_polygon_surface_init(&box);
+    tm_stream_init(&stream);
+    add_box(&box, low, high, false);
+    assert_int_equal(tm_surface_build(&surface, &box, &(tm_surface_options){0}, NULL),
+                     TM_OK);
+    assert_non_null(tm_stream_add(&stream, ".node"));
+    tm_block *mix = tm_stream_add(&stream, ".mix");
+    assert_int_equal(tm_repair_from_stream(&repair, &stream, NULL), TM_ERROR_INPUT);
+    tm_repair_state_free(&repair);
+    tm_block *node = tm_stream_find(&stream, ".node");
+    assert_int_equal(tm_block_allocate(node, surface.nodes, 0, NULL), TM_OK);
+    assert_int_equal(tm_block_allocate(mix, 1, 4, NULL), TM_OK);
+    memcpy(node->real, surface.xyz, surface.nodes * sizeof *surface.xyz);
+    memcpy(mix->item, tetrahedron, sizeof tetrahedron);
+    mix->start[1] = 4;
+    assert_int_equal(tm_repair_from_stream(&repair, &stream, NULL), TM_OK);
+    assert_int_equal(tm_repair_prepare(&repair, &stream, &surface, &notes, NULL), TM_OK);
+    assert_true(notes.no_octree.what[0] != '\0');
+    tm_repair_state_free(&repair);
+    tm_stream_free(&stream);
+    tm_surface_free(&surface);
+    tm_polygon_surface_free(&box);
+}
+
 int main(void)
 {
     random_start();
@@ -361,6 +398,7 @@ int main(void)
         cmocka_unit_test(test_boxes),
         cmocka_unit_test(test_random),
         cmocka_unit_test(test_resolve),
+        cmocka_unit_test(test_repair_without_octree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,8 +5,17 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-/* What Open MPI does not free is no leak of ours. */
+/* gcc and clang say it in different ways. */
 #ifdef __SANITIZE_ADDRESS__
+#define FINDS_LEAKS
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define FINDS_LEAKS
+#endif
+#endif
+
+/* What Open MPI does not free is no leak of ours. */
+#ifdef FINDS_LEAKS
 #include <sanitizer/lsan_interface.h>
 
 const char *__lsan_default_suppressions(void)
@@ -22,7 +31,7 @@ const char *__lsan_default_options(void)
 
 static void ignore_leaks(bool ignore)
 {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef FINDS_LEAKS
     if (ignore)
         __lsan_disable();
     else

@@ -19,7 +19,7 @@ typedef struct {
     tm_surface_point *at;
 } fitter;
 
-/* Puts an outer node to the place that its feature has closest to a point. */
+/* Puts an outer node to the point of its feature that is closest to one. */
 static void put(const fitter *projection, size_t s, const double point[3])
 {
     double *xyz = projection->assembly->mesh.xyz[projection->assembly->outer + s];
@@ -98,7 +98,7 @@ static void project_boundary(const fitter *projection)
 
 /* The nodes below the interior boundary that may move, and their neighbours. */
 typedef struct {
-    uint32_t *order; /* [nodes of the mesh]: its place in node[], or TM_NONE */
+    uint32_t *order; /* [nodes of the mesh]: its index in node[], or TM_NONE */
     size_t nodes;
     uint32_t *node;
     size_t *start;   /* [nodes + 1] */
@@ -157,7 +157,8 @@ static void visit_edges(zone *z, const tm_mixed_mesh *mesh, size_t e,
                         void (*visit)(zone *z, uint32_t from, uint32_t to))
 {
     const uint32_t *item = mesh->item + mesh->start[e];
-    const tm_mixed_shape *shape = &tm_mixed_shapes[mesh->start[e + 1] - mesh->start[e]];
+    const tm_element_shape *shape =
+        &tm_element_shapes[mesh->start[e + 1] - mesh->start[e]];
     for (unsigned i = 0; i < shape->edges; i++)
         for (unsigned end = 0; end < 2; end++) {
             const uint32_t from = z->order[item[shape->edge[i][end]]];

@@ -45,16 +45,16 @@ static tm_status find_octree(tm_repair_state *state, const tm_stream *stream,
                              const tm_surface *surface, tm_repair_notes *notes,
                              tm_error *error)
 {
-    notes->no_octree.what[0] = '\0';
     if (!surface)
         return TM_OK;
-    tm_status status =
-        tm_octree_read_blocks(&state->octree, stream, surface, &state->row, error);
-    if (status == TM_ERROR_INPUT) {
-        notes->no_octree = *error;
-        return TM_OK;
-    }
-    return status;
+    tm_error cause;
+    const tm_status status =
+        tm_octree_read_blocks(&state->octree, stream, surface, &state->row, &cause);
+    if (status == TM_ERROR_INPUT)
+        notes->no_octree = cause;
+    else if (status != TM_OK)
+        return tm_fail_as(error, &cause);
+    return TM_OK;
 }
 
 /* Marks the nodes of the boundary. */
@@ -66,8 +66,8 @@ static tm_status find_boundary(const tm_mixed_mesh *mesh, bool *where, tm_error 
     for (size_t f = 0; status == TM_OK && f < faces; f++) {
         const size_t e = face[f] >> TM_FACE_SHIFT;
         const uint32_t *item = mesh->item + mesh->start[e];
-        const tm_mixed_shape *shape =
-            &tm_mixed_shapes[mesh->start[e + 1] - mesh->start[e]];
+        const tm_element_shape *shape =
+            &tm_element_shapes[mesh->start[e + 1] - mesh->start[e]];
         const uint8_t *corner = shape->face[face[f] & ((1u << TM_FACE_SHIFT) - 1)];
         for (size_t i = 0; i < tm_mixed_face_nodes(corner); i++)
             where[item[corner[i]]] = true;

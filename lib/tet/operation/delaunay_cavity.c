@@ -367,9 +367,9 @@ static bool find(tm_delaunay_cavity *cavity, const tm_tet_mesh *mesh,
                  const uint32_t *ball, size_t count)
 {
     uint32_t *tet = tm_grow(cavity->tet, &cavity->tet_room, count, sizeof *tet);
+    cavity->tet = tet ? tet : cavity->tet;
     if (!tet || !tm_tet_marks_clear(&cavity->left_out, mesh->slots))
         return false;
-    cavity->tet = tet;
     memcpy(tet, ball, count * sizeof *tet);
     cavity->ball = count;
     cavity->only_ball = cavity->no_facets = cavity->is_cut_back = false;

@@ -33,10 +33,8 @@ bool tm_features_reserve(tm_features *features, size_t nodes)
 
 bool tm_features_copy(tm_features *to, const tm_features *from)
 {
-    if (to->room < from->room && !tm_features_reserve(to, from->room)) {
-        tm_features_free(to);
+    if (to->room < from->room && !tm_features_reserve(to, from->room))
         return false;
-    }
     memcpy(to->dimension, from->dimension, from->room * sizeof *to->dimension);
     memcpy(to->line, from->line, from->room * sizeof *to->line);
     to->flatness = from->flatness;
