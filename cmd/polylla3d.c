@@ -4,8 +4,7 @@
 #include "common/input/tet_input.h"
 
 #include "../lib/poly/facets.h"
-#include "../lib/tet/facet.h"
-#include "../lib/tet/mesh_order.h"
+#include "../lib/tet/mesh_measure.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -5,7 +5,7 @@
 #include "../base/array.h"
 #include "../base/disjoint_sets.h"
 #include "../geom/vector.h"
-#include "../tet/longest_edge.h"
+#include "../tet/mesh_measure.h"
 #include "../tet/operation/ball.h"
 
 #include <stdlib.h>

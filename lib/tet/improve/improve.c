@@ -173,9 +173,9 @@ static size_t snapshot_best(tm_improver *m)
     return m->best.bad;
 }
 
-/* A pass at a negative price: operations are rewarded for each tetrahedron that they add,
- * and done even where they make the cost higher by less than that. Where a cycle of kicks
- * has failed, what is nearly bad is kicked too; false where that is too many. */
+/* A pass at a price per tetrahedron that may be below 0: operations that add some are
+ * then done although nothing else gets better. Where a cycle of such passes has failed,
+ * what is nearly bad is worked on too; false where that is too many. */
 static bool kick_once(tm_improver *m, double price)
 {
     unsigned cycle = m->fails / CYCLE;

@@ -4,7 +4,6 @@
 #include "improve_engine.h"
 
 #include "../../geom/vector.h"
-#include "../operation/interpolation.h"
 #include "../operation/star_insertion.h"
 
 #include <string.h>

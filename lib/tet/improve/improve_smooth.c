@@ -6,7 +6,6 @@
 #include "improve_engine.h"
 
 #include "../../geom/vector.h"
-#include "../operation/interpolation.h"
 
 #include <string.h>
 
@@ -24,22 +23,6 @@ static void go_to_centre(const tm_cavity_boundary *boundary, const tm_freedom *f
     tm_freedom_restrict(freedom, way);
     for (int x = 0; x < 3; x++)
         p[x] += way[x];
-}
-
-/* Moves the ball's node; attributes stay a field. */
-static void move(tm_improver *m, const double p[3])
-{
-    tm_tet_mesh *mesh = m->mesh;
-    uint32_t v = m->ball.node;
-    size_t width = mesh->node_attributes;
-    if (width > 0) {
-        double *value = mesh->node_attribute + mesh->nodes * width; /* room of one more */
-        tm_tet_interpolate(mesh, m->ball.tet, m->ball.size, p, value);
-        memcpy(mesh->node_attribute + v * width, value, width * sizeof *value);
-    }
-    memcpy(mesh->xyz[v], p, sizeof mesh->xyz[v]);
-    tm_improve_note(m, m->ball.tet, m->ball.size);
-    m->report->done.op[TM_OP_SMOOTHING]++;
 }
 
 /* Whether the node costs less than `most` at p and sees all faces of its ball. */
@@ -83,7 +66,9 @@ static bool smooth_node(tm_improver *m, uint32_t t, uint32_t v)
     if (freedom.dimension == 0 ||
         !find_point(m, &boundary, &freedom, least, old - TM_IMPROVE_GAIN, p))
         return false;
-    move(m, p);
+    tm_ball_move_node(m->mesh, &m->ball, p);
+    tm_improve_note(m, m->ball.tet, m->ball.size);
+    m->report->done.op[TM_OP_SMOOTHING]++;
     return true;
 }
 

@@ -209,7 +209,6 @@ static void free_sweeper(tm_lepp_sweeper *s)
     tm_replacement_table_free(&s->table);
     free(s->tet_at);
     tm_tet_marks_free(&s->seen);
-    free(s->value);
 }
 
 static void free_engine(tm_lepp_engine *e)

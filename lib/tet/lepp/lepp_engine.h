@@ -58,8 +58,7 @@ typedef struct tm_lepp_sweeper {
     tm_replacement_table table;
     uint32_t *tet_at;  /* [nodes]: a tetrahedron that has the node, or TM_NONE */
     tm_tet_marks seen; /* nodes of a mean */
-    double *value;     /* [node_attributes] */
-    size_t tet_at_room, value_room;
+    size_t tet_at_room;
 } tm_lepp_sweeper;
 
 typedef struct tm_lepp_engine {

@@ -3,7 +3,6 @@
 #include "lepp_engine.h"
 
 #include "../../base/array.h"
-#include "../operation/interpolation.h"
 
 #include <string.h>
 
@@ -86,25 +85,6 @@ static bool is_better(const tm_lepp_engine *e, const tm_cavity_boundary *boundar
     return true;
 }
 
-/* Moves the node of the ball. */
-static bool move(tm_lepp_engine *e, const double p[3])
-{
-    tm_lepp_sweeper *s = &e->sweeper;
-    tm_tet_mesh *mesh = e->mesh;
-    size_t width = mesh->node_attributes;
-    if (width > 0) {
-        double *value = tm_grow(s->value, &s->value_room, width, sizeof *value);
-        if (!value)
-            return false;
-        s->value = value;
-        tm_tet_interpolate(mesh, s->ball.tet, s->ball.size, p, value);
-        memcpy(mesh->node_attribute + s->ball.node * width, value, width * sizeof *value);
-    }
-    memcpy(mesh->xyz[s->ball.node], p, sizeof mesh->xyz[0]);
-    return tm_lepp_note(e, s->ball.tet, s->ball.size) &&
-           tm_lepp_unblock(e, s->ball.tet, s->ball.size);
-}
-
 static tm_status smooth_node(tm_lepp_engine *e, uint32_t v, size_t sweep)
 {
     tm_lepp_sweep_report *report = &e->report->smooth;
@@ -125,9 +105,16 @@ static tm_status smooth_node(tm_lepp_engine *e, uint32_t v, size_t sweep)
     }
     if (!is_better(e, &boundary, p))
         return TM_OK;
+    tm_status status = tm_tet_mesh_reserve(e->mesh, 1, 0, 0, 0, e->error);
+    if (status != TM_OK)
+        return status;
+    tm_ball_move_node(e->mesh, &s->ball, p);
     report->done[sweep]++;
     report->on_surface += dimension < 3;
-    return move(e, p) ? TM_OK : tm_fail_memory(e->error);
+    return tm_lepp_note(e, s->ball.tet, s->ball.size) &&
+                   tm_lepp_unblock(e, s->ball.tet, s->ball.size)
+               ? TM_OK
+               : tm_fail_memory(e->error);
 }
 
 tm_status tm_lepp_smooth(tm_lepp_engine *e)

@@ -92,3 +92,14 @@ bool tm_ball_around(const tm_tet_mesh *mesh, uint32_t t, uint32_t v, tm_tet_mark
     }
     return true;
 }
+
+void tm_ball_move_node(tm_tet_mesh *mesh, const tm_ball *ball, const double p[3])
+{
+    size_t width = mesh->node_attributes;
+    if (width > 0) {
+        double *value = mesh->node_attribute + mesh->nodes * width;
+        tm_tet_interpolate(mesh, ball->tet, ball->size, p, value);
+        memcpy(mesh->node_attribute + ball->node * width, value, width * sizeof *value);
+    }
+    memcpy(mesh->xyz[ball->node], p, sizeof mesh->xyz[ball->node]);
+}

@@ -52,6 +52,10 @@ void tm_ball_free(tm_ball *ball);
 bool tm_ball_around(const tm_tet_mesh *mesh, uint32_t t, uint32_t v, tm_tet_marks *marks,
                     tm_ball *ball);
 
+/* Moves the node of a ball to p; attributes stay a field. There must be room for one more
+ * node, whose attributes are written over. O(size). */
+void tm_ball_move_node(tm_tet_mesh *mesh, const tm_ball *ball, const double p[3]);
+
 /* The faces around the ball; they hold until the ball or the mesh is changed. */
 static inline tm_cavity_boundary tm_boundary_of_ball(const tm_ball *ball,
                                                      const tm_tet_mesh *mesh)

@@ -4,7 +4,7 @@
 #include "../../base/array.h"
 #include "../../geom/predicates.h"
 #include "../../geom/vector.h"
-#include "../facet.h"
+#include "../mesh_measure.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 #include "delaunay_insertion.h"
 
 #include "../../base/array.h"
-#include "../facet.h"
+#include "../mesh_measure.h"
 #include "star_insertion.h"
 
 #include <stdlib.h>

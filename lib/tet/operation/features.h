@@ -5,7 +5,6 @@
 #define TM_OPERATION_FEATURES_H
 
 #include "ball.h"
-#include "smoothing.h"
 #include "../star.h"
 
 typedef struct tm_features {
