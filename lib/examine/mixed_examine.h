@@ -3,11 +3,14 @@
 #ifndef TM_EXAMINE_MIXED_EXAMINE_H
 #define TM_EXAMINE_MIXED_EXAMINE_H
 
+#include "../base/extern_c.h"
 #include "../base/error.h"
 #include "examination.h"
 
 #include <stddef.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 /* A mesh as flat arrays; all indices are below the counts. Arrays of count 0 may be NULL.
  * Nodes of elements are in the order of mixed_mesh.h; element e has 4, 5, 6 or 8 of them,
@@ -53,5 +56,7 @@ tm_mixed_arrays tm_mixed_arrays_of(const tm_stream *stream);
  * elements + rows). */
 tm_status tm_mixed_examine(tm_examination *found, const tm_mixed_arrays *mesh,
                            unsigned threads, tm_error *error);
+
+TM_EXTERN_C_END
 
 #endif

@@ -4,11 +4,14 @@
 #ifndef TM_EXAMINE_TET_EXAMINE_H
 #define TM_EXAMINE_TET_EXAMINE_H
 
+#include "../base/extern_c.h"
 #include "../base/error.h"
 #include "examination.h"
 
 #include <stddef.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 /* A mesh as flat arrays; all indices are below `nodes`. Arrays of count 0 may be NULL. */
 typedef struct tm_tet_arrays {
@@ -37,5 +40,7 @@ tm_tet_arrays tm_tet_arrays_of(const tm_stream *stream);
  * Expected O(nodes + tets + faces + edges). */
 tm_status tm_tet_examine(tm_examination *found, const tm_tet_arrays *mesh,
                          unsigned threads, tm_error *error);
+
+TM_EXTERN_C_END
 
 #endif

@@ -36,8 +36,8 @@ static tm_status add(const tm_mixed_face_order *order, uint32_t **face, size_t *
     return TM_OK;
 }
 
-tm_status tm_boundary_faces(const tm_mixed_mesh *mesh, uint32_t **face, size_t *faces,
-                            tm_error *error)
+tm_status tm_mixed_boundary_faces(const tm_mixed_mesh *mesh, uint32_t **face,
+                                  size_t *faces, tm_error *error)
 {
     *face = NULL;
     *faces = 0;
