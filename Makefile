@@ -139,8 +139,9 @@ $(unit_tests): $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(library)
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lcmocka $(LDLIBS)
 
-# In this one every allocation fails once.
+# In this one allocations fail.
 $(BUILD)/tests/test_memory: private LDFLAGS += -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc
+
 # Calls all functions with NULL for their tm_error.
 $(BUILD)/generated/null_error.h: tests/null_error.py $(headers)
 	@mkdir -p $(@D)

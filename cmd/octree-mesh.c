@@ -3,6 +3,7 @@
 #include "common/app/filter.h"
 #include "common/input/octree_rules.h"
 #include "common/input/surface_input.h"
+#include "common/process/mpi_environment.h"
 
 #include "../lib/octree/forest/octree_build.h"
 #include "../lib/octree/layer/octree_mesh_stream.h"
@@ -190,6 +191,7 @@ int main(int argc, char **argv)
     tm_octree_mesh mesh;
     tm_error error;
     surface_input_build(&f, &o.surface, &surface, &stream);
+    mpi_environment_set(&f);
     if (tm_octree_build(&octree, &surface, o.rules.rules.rule, o.rules.rules.count,
                         &error) != TM_OK ||
         tm_octree_mesh_refine_lost(&mesh, &octree, &surface, o.resolve, &error) != TM_OK)

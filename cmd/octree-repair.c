@@ -3,6 +3,7 @@
  * out. */
 #include "common/input/mesh_input.h"
 #include "common/input/surface_input.h"
+#include "common/process/mpi_environment.h"
 
 #include "../lib/examine/jens_statistics.h"
 #include "../lib/format/mesh_format.h"
@@ -278,6 +279,7 @@ static void prepare(program *p, const tm_stream *stream, tm_repair_state *state,
 {
     tm_error error;
     build_surface(p, stream);
+    mpi_environment_set(&p->f);
     if (tm_repair_prepare(state, stream, p->has_surface ? &p->boundary : NULL, notes,
                           &error) != TM_OK)
         fail(p, &error);
