@@ -163,7 +163,9 @@ uint32_t tm_tet_mesh_new_node(tm_tet_mesh *mesh, const double p[3]);
 /* Removes a node that no tetrahedron has any more. */
 void tm_tet_mesh_delete_node(tm_tet_mesh *mesh, uint32_t v);
 
-/* Makes half faces h and g each other's neighbours, with no face kept between them. */
+/* Makes half faces h and g each other's neighbours, with no constrained face between
+ * them.
+ */
 static inline void tm_tet_join(tm_tet_mesh *mesh, uint32_t h, uint32_t g)
 {
     mesh->neighbour[h / 4][h % 4] = g;
