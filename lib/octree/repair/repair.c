@@ -52,8 +52,13 @@ static tm_status bring_some(const repair *r, tm_repair_state *state, double shar
     double left = fmax(share * t, TM_REPAIR_LEAST);
     if (strict)
         left = fmax(left, score->floor);
-    score->floor = fmin(score->floor, left);
-    return tm_repair_move(state, r->surface, t, left, 1, score, error);
+    tm_repair_score from = *score;
+    from.floor = fmin(from.floor, left);
+    tm_repair_score now = from;
+    const tm_status status = tm_repair_move(state, r->surface, t, left, 1, &now, error);
+    if (tm_repair_better(&now, &from))
+        *score = now;
+    return status;
 }
 
 static tm_status bring_all(const repair *r, tm_repair_state *state, bool strict,
