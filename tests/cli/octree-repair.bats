@@ -126,7 +126,7 @@ OFF
 3 0 3 2
 3 1 2 3
 END
-    octree-mesh --no-history -s 2 corner.off >corner.tm
+    octree-mesh --no-history -s 3 corner.off >corner.tm
     octree-repair -q -t 0.2 -i 0 --json report.json -o left.tm corner.tm || [ $? -eq 1 ]
     worst() { jens-stats "$1" | sed -n 's/^worst quality *//p'; }
     awk -v a="$(worst left.tm)" -v b="$(worst corner.tm)" 'BEGIN { exit !(a >= b) }'
