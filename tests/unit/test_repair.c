@@ -230,7 +230,7 @@ static void test_split(void **unused)
                                            .iterations = i < 2 ? 4 : 1,
                                            .growth = of[i].growth});
         assert_true(report.iterations > 0);
-            printf("NONE %zu\n", i);
+        printf("NONE %zu\n", i);
         assert_true(i != 0 || report.after.bad == 0);
     }
 }
