@@ -86,7 +86,7 @@ $(BUILD)/generate/powers: lib/base/generate/powers.c
 
 $(BUILD)/generate/transitions: $(wildcard lib/octree/transition/generate/*.[ch]) \
 		lib/octree/transition/face_pieces.c lib/octree/transition/leaf_place.c lib/octree/transition/transition.h \
-		lib/element/jens.c
+		lib/element/shape.c
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $(filter %.c,$^) $(LDFLAGS) $(LDLIBS)
 

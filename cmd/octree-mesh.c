@@ -121,11 +121,11 @@ static void note_losses(const filter *f, const tm_surface *s,
                     "together for this level, as near (%g, %g, %g)",
                     r->corners_lost, r->curves_lost, r->feature_lost_at[0],
                     r->feature_lost_at[1], r->feature_lost_at[2]);
-    if (r->held_back)
+    if (r->off_surface)
         filter_note(f,
                     "%zu boundary nodes are not on the surface yet: there they would "
                     "invert an element (octree-repair takes them there)",
-                    r->held_back);
+                    r->off_surface);
     if (r->invalid)
         filter_note(f, "%zu elements are inverted", r->invalid);
 }
@@ -143,7 +143,7 @@ static void write_json(filter *f, const tm_octree *octree, const tm_octree_mesh 
 {
     const tm_octree_mesh_report *r = &mesh->report;
     const tm_mixed_mesh *m = &mesh->assembly.mesh;
-    size_t kind[TM_ELEMENT_NODES_MOST + 1] = {0};
+    size_t kind[TM_ELEMENT_NODES + 1] = {0};
     tm_text text = {0};
     tm_json json = {.text = &text};
     for (size_t e = 0; e < m->elements; e++)
@@ -152,13 +152,13 @@ static void write_json(filter *f, const tm_octree *octree, const tm_octree_mesh 
     tm_json_integer(&json, "octants", (int64_t)octree->leaves);
     tm_json_integer(&json, "nodes", (int64_t)m->nodes);
     tm_json_open(&json, "elements", '{');
-    tm_json_integer(&json, "tet", (int64_t)kind[4]);
-    tm_json_integer(&json, "pyramid", (int64_t)kind[5]);
-    tm_json_integer(&json, "wedge", (int64_t)kind[6]);
-    tm_json_integer(&json, "hex", (int64_t)kind[8]);
+    for (size_t i = 0; i < TM_ELEMENT_KINDS; i++) {
+        const size_t k = tm_element_kind_nodes[i];
+        tm_json_integer(&json, tm_element_shapes[k].name, (int64_t)kind[k]);
+    }
     tm_json_close(&json, '}');
     tm_json_integer(&json, "boundary_nodes", (int64_t)mesh->boundary.nodes);
-    tm_json_integer(&json, "held_back", (int64_t)r->held_back);
+    tm_json_integer(&json, "held_back", (int64_t)r->off_surface);
     tm_json_integer(&json, "inverted", (int64_t)r->invalid);
     tm_json_integer(&json, "lost_octants", (int64_t)r->lost);
     tm_json_integer(&json, "lost_corners", (int64_t)r->corners_lost);

@@ -2,9 +2,9 @@
 #include "aspect_ratio.h"
 
 #include "../geom/vector.h"
-#include "element_scale.h"
+#include "shape.h"
 
-enum { TETRAHEDRON = 4, PYRAMID = 5, WEDGE = 6, HEXAHEDRON = 8 };
+#include <string.h>
 
 /* The shortest and the longest of the squared lengths so far. */
 typedef struct span {
@@ -107,15 +107,17 @@ static double tetrahedron(const double (*p)[3])
 
 double tm_aspect_ratio(size_t nodes, const double (*xyz)[3], const uint32_t *item)
 {
-    double p[TM_SCALED_NODES][3];
-    if (!tm_scale_element(p, nodes, xyz, item))
+    double p[TM_ELEMENT_NODES][3];
+    for (size_t v = 0; v < nodes; v++)
+        memcpy(p[v], xyz[item[v]], sizeof p[v]);
+    if (!tm_bring_into_range(p, nodes))
         return 0;
     switch (nodes) {
-    case HEXAHEDRON:
+    case TM_HEX_NODES:
         return hexahedron(p);
-    case WEDGE:
+    case TM_WEDGE_NODES:
         return wedge(p);
-    case PYRAMID:
+    case TM_PYRAMID_NODES:
         return pyramid(p);
     default:
         return tetrahedron(p);

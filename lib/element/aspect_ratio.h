@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Of an element of so many nodes, 4, 5, 6 or 8, in the order of ../mixed/mixed_mesh.h.
+/* Of an element of so many nodes, 4, 5, 6 or 8, in the order of shape.h.
  * The lengths are:
  *
  * - hexahedron: between the centres of opposite faces, three;

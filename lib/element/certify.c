@@ -10,9 +10,6 @@
 #include <string.h>
 
 enum {
-    PYRAMID = 5,
-    WEDGE = 6,
-    HEXAHEDRON = 8,
     BASE_CORNERS = 4,
     COEFFICIENTS = 27,
     STRIDE_ETA = 3,
@@ -41,7 +38,7 @@ typedef double vectors[4][3];
 static int corner_sign(const tm_element_shape *shape, size_t i, const double (*xyz)[3],
                        const uint32_t *item)
 {
-    const unsigned char *n = shape->node[i];
+    const uint8_t *n = shape->corner[i];
     return tm_orient3d(xyz[item[n[0]]], xyz[item[n[1]]], xyz[item[n[2]]],
                        xyz[item[n[3]]]);
 }
@@ -121,7 +118,7 @@ static tm_certificate certify_wedge(const double (*xyz)[3], const uint32_t *item
     static const unsigned char lateral[3][2] = {{0, 3}, {1, 4}, {2, 5}};
     static const size_t edges[3] = {2, 2, 3};
     const double half = 0.5;
-    const tm_element_shape *shape = &tm_element_shapes[WEDGE];
+    const tm_element_shape *shape = &tm_element_shapes[TM_WEDGE_NODES];
     if (!corners_are_positive(shape, shape->corners, xyz, item))
         return TM_NOT_POSITIVE;
     vectors edge[3];
@@ -282,7 +279,7 @@ static tm_certificate certify_hexahedron(const double (*xyz)[3], const uint32_t 
     hexahedron_coefficients(edge, c);
     if (least_coefficient(c) > coefficient_error * scale)
         return TM_POSITIVE;
-    const tm_element_shape *shape = &tm_element_shapes[HEXAHEDRON];
+    const tm_element_shape *shape = &tm_element_shapes[TM_HEX_NODES];
     if (!corners_are_positive(shape, shape->corners, xyz, item))
         return TM_NOT_POSITIVE;
     return isfinite(scale) ? halve_again(c, scale) : TM_UNDECIDED;
@@ -292,11 +289,11 @@ tm_certificate tm_certify(size_t nodes, const double (*xyz)[3], const uint32_t *
 {
     const tm_element_shape *shape = &tm_element_shapes[nodes];
     switch (nodes) {
-    case HEXAHEDRON:
+    case TM_HEX_NODES:
         return certify_hexahedron(xyz, item);
-    case WEDGE:
+    case TM_WEDGE_NODES:
         return certify_wedge(xyz, item);
-    case PYRAMID:
+    case TM_PYRAMID_NODES:
         return corners_are_positive(shape, BASE_CORNERS, xyz, item) ? TM_POSITIVE
                                                                     : TM_NOT_POSITIVE;
     default:

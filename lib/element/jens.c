@@ -10,104 +10,17 @@
 #include <stdbool.h>
 #include <string.h>
 
-enum { TETRAHEDRON = 4, PYRAMID = 5, WEDGE = 6, HEXAHEDRON = 8, EDGES_MOST = 12 };
-
-#define ALL_4(k) (k), (k), (k), (k)
-
-const tm_element_shape tm_element_shapes[TM_ELEMENT_NODES_MOST + 1] = {
-    [TETRAHEDRON] = {4,
-                     {{0, 1, 2, 3}, {1, 2, 0, 3}, {2, 0, 1, 3}, {3, 0, 2, 1}},
-                     {ALL_4(TM_K_TETRAHEDRON)}},
-    [PYRAMID] = {8,
-                 {{0, 1, 3, 4},
-                  {1, 2, 0, 4},
-                  {2, 3, 1, 4},
-                  {3, 0, 2, 4},
-                  {4, 2, 1, 0},
-                  {4, 3, 2, 1},
-                  {4, 0, 3, 2},
-                  {4, 1, 0, 3}},
-                 {ALL_4(TM_K_PYRAMID_BASE), ALL_4(TM_K_PYRAMID_APEX)}},
-    [WEDGE] = {6,
-               {{0, 2, 1, 3},
-                {1, 0, 2, 4},
-                {2, 1, 0, 5},
-                {3, 4, 5, 0},
-                {4, 5, 3, 1},
-                {5, 3, 4, 2}},
-               {ALL_4(TM_K_WEDGE), TM_K_WEDGE, TM_K_WEDGE}},
-    [HEXAHEDRON] = {8,
-                    {{0, 1, 3, 4},
-                     {1, 2, 0, 5},
-                     {2, 3, 1, 6},
-                     {3, 0, 2, 7},
-                     {4, 7, 5, 0},
-                     {5, 4, 6, 1},
-                     {6, 5, 7, 2},
-                     {7, 6, 4, 3}},
-                    {ALL_4(TM_K_HEXAHEDRON), ALL_4(TM_K_HEXAHEDRON)}},
-};
-
-/* Edges from a node of the element to another, an even number of them, and the three at
- * each corner of tm_element_shapes, in such an order that their determinant is positive
- * where that of the edges that leave the corner is. */
-typedef struct edge_table {
-    size_t edges;
-    unsigned char edge[EDGES_MOST][2];
-    unsigned char corner[TM_CORNERS_MOST][3];
-} edge_table;
-
-static const edge_table edge_tables[TM_ELEMENT_NODES_MOST + 1] = {
-    [TETRAHEDRON] = {6,
-                     {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}},
-                     {{0, 1, 2}, {0, 3, 4}, {1, 3, 5}, {5, 2, 4}}},
-    [PYRAMID] = {8,
-                 {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 4}, {2, 3}, {2, 4}, {3, 4}},
-                 {{0, 1, 2},
-                  {0, 3, 4},
-                  {3, 5, 6},
-                  {1, 5, 7},
-                  {4, 6, 2},
-                  {6, 7, 4},
-                  {7, 2, 6},
-                  {2, 4, 7}}},
-    [WEDGE] =
-        {10, /* the last one twice */
-         {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 4}, {2, 5}, {3, 4}, {3, 5}, {4, 5}, {4, 5}},
-         {{1, 0, 2}, {3, 0, 4}, {3, 1, 5}, {7, 6, 2}, {8, 6, 4}, {8, 7, 5}}},
-    [HEXAHEDRON] = {12,
-                    {{0, 1},
-                     {0, 3},
-                     {0, 4},
-                     {1, 2},
-                     {1, 5},
-                     {2, 3},
-                     {2, 6},
-                     {3, 7},
-                     {4, 5},
-                     {4, 7},
-                     {5, 6},
-                     {6, 7}},
-                    {{0, 1, 2},
-                     {0, 3, 4},
-                     {3, 5, 6},
-                     {1, 5, 7},
-                     {8, 9, 2},
-                     {8, 10, 4},
-                     {10, 11, 6},
-                     {9, 11, 7}}},
-};
-
 typedef double pair __attribute__((vector_size(2 * sizeof(double))));
 
 typedef struct vector_pair {
     pair x, y, z;
 } vector_pair;
 
-/* The edges of an element: their vectors and squared lengths, in pairs. */
+/* The edges of an element, and where their number is odd one more that is not used: their
+ * vectors and squared lengths, in pairs. */
 typedef union edge_numbers {
-    pair two[EDGES_MOST / 2];
-    double one[EDGES_MOST];
+    pair two[TM_ELEMENT_EDGES / 2];
+    double one[TM_ELEMENT_EDGES];
 } edge_numbers;
 
 typedef struct edge_vectors {
@@ -118,11 +31,11 @@ typedef struct edge_vectors {
 static const double low = 1e-250;
 static const double high = 1e250;
 
-static inline void measure_edges(const edge_table *table, const double (*xyz)[3],
+static inline void measure_edges(const tm_element_shape *shape, const double (*xyz)[3],
                                  const uint32_t *item, edge_vectors *edge)
 {
-    for (size_t e = 0; e < table->edges; e += 2) {
-        const unsigned char *first = table->edge[e], *second = table->edge[e + 1];
+    for (size_t e = 0; e < shape->edges; e += 2) {
+        const uint8_t *first = shape->edge[e], *second = shape->edge[e + 1];
         const double *a = xyz[item[first[0]]], *b = xyz[item[first[1]]];
         const double *c = xyz[item[second[0]]], *d = xyz[item[second[1]]];
         const pair x = (pair){b[0], d[0]} - (pair){a[0], c[0]};
@@ -182,14 +95,13 @@ double tm_scaled_jacobian(const double p[3], const double a[3], const double b[3
 }
 
 void tm_scaled_jacobians(const tm_element_shape *shape, const double (*xyz)[3],
-                         const uint32_t *item, double jacobian[TM_CORNERS_MOST])
+                         const uint32_t *item, double jacobian[TM_ELEMENT_CORNERS])
 {
-    const edge_table *table = &edge_tables[shape - tm_element_shapes];
-    pair value[TM_CORNERS_MOST / 2], product[TM_CORNERS_MOST / 2];
+    pair value[TM_ELEMENT_CORNERS / 2], product[TM_ELEMENT_CORNERS / 2];
     edge_vectors edge;
-    measure_edges(table, xyz, item, &edge);
+    measure_edges(shape, xyz, item, &edge);
     for (size_t i = 0; i < shape->corners; i += 2) {
-        const unsigned char *m = table->corner[i], *n = table->corner[i + 1];
+        const uint8_t *m = shape->corner_edge[i], *n = shape->corner_edge[i + 1];
         value[i / 2] =
             determinant(two_edges(&edge, m[0], n[0]), two_edges(&edge, m[1], n[1]),
                         two_edges(&edge, m[2], n[2]));
@@ -198,7 +110,7 @@ void tm_scaled_jacobians(const tm_element_shape *shape, const double (*xyz)[3],
                          two_of(&edge.length2, m[2], n[2]);
     }
     for (size_t i = 0; i < shape->corners; i++) {
-        const unsigned char *n = shape->node[i];
+        const uint8_t *n = shape->corner[i];
         const double length6 = product[i / 2][i % 2];
         jacobian[i] = low < length6 && length6 < high
                           ? value[i / 2][i % 2] / sqrt(length6)
@@ -210,7 +122,7 @@ void tm_scaled_jacobians(const tm_element_shape *shape, const double (*xyz)[3],
 double tm_jens(size_t nodes, const double (*xyz)[3], const uint32_t *item)
 {
     const tm_element_shape *shape = &tm_element_shapes[nodes];
-    double jacobian[TM_CORNERS_MOST];
+    double jacobian[TM_ELEMENT_CORNERS];
     tm_scaled_jacobians(shape, xyz, item, jacobian);
     double least = 1;
     for (size_t i = 0; i < shape->corners; i++) {
@@ -224,7 +136,7 @@ double tm_least_scaled_jacobian(size_t nodes, const double (*xyz)[3],
                                 const uint32_t *item)
 {
     const tm_element_shape *shape = &tm_element_shapes[nodes];
-    double jacobian[TM_CORNERS_MOST];
+    double jacobian[TM_ELEMENT_CORNERS];
     tm_scaled_jacobians(shape, xyz, item, jacobian);
     double least = 1;
     for (size_t i = 0; i < shape->corners; i++)

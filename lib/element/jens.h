@@ -15,41 +15,16 @@
  * worst corner. A corner with an edge of length 0 has J_S = 0, as a flat one has: it is
  * not inverted, nor is it valid. So is one whose edges overflow.
  *
- * The nodes of elements are in the order of ../mixed/mixed_mesh.h, by which positive
- * means with a positive volume. */
+ * The nodes of elements are in the order of shape.h, by which positive means with a
+ * positive volume. */
 #ifndef TM_ELEMENT_JENS_H
 #define TM_ELEMENT_JENS_H
+
+#include "shape.h"
 
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
-
-/* The constants K. That of the apex is J_S at the apex of the pyramid whose base corners
- * have √6/3: a square base, and as high as the base is wide. */
-#define TM_SQRT_2 1.41421356237309504880
-#define TM_SQRT_3 1.73205080756887729353
-#define TM_SQRT_6 2.44948974278317809820
-
-#define TM_K_TETRAHEDRON  (TM_SQRT_2 / 2)
-#define TM_K_PYRAMID_BASE (TM_SQRT_6 / 3)
-#define TM_K_PYRAMID_APEX (2 * TM_SQRT_6 / 9)
-#define TM_K_WEDGE        (TM_SQRT_3 / 2)
-#define TM_K_HEXAHEDRON   1.0
-
-enum { TM_CORNERS_MOST = 8, TM_ELEMENT_NODES_MOST = 8 };
-
-/* The corners of an element. Corner i is at node[i][0], and its three neighbours, in
- * positive order, are node[i][1 … 3]. A pyramid has eight: those of its base, and at its
- * apex each three lateral edges that follow each other. */
-typedef struct tm_element_shape {
-    size_t corners;
-    unsigned char node[TM_CORNERS_MOST][4];
-    double k[TM_CORNERS_MOST];
-} tm_element_shape;
-
-/* By the number of nodes: 4 tetrahedron, 5 pyramid, 6 wedge, 8 hexahedron; others have no
- * corners. */
-extern const tm_element_shape tm_element_shapes[TM_ELEMENT_NODES_MOST + 1];
 
 /* J_ENS of a corner with that J_S. */
 static inline double tm_jens_of(double jacobian, double k)
@@ -62,7 +37,7 @@ static inline double tm_jens_of(double jacobian, double k)
 /* J_S of every corner, in the order of the shape, which is one of tm_element_shapes; item
  * are the element's nodes. */
 void tm_scaled_jacobians(const tm_element_shape *shape, const double (*xyz)[3],
-                         const uint32_t *item, double jacobian[TM_CORNERS_MOST]);
+                         const uint32_t *item, double jacobian[TM_ELEMENT_CORNERS]);
 
 /* J_ENS of an element of so many nodes, 4, 5, 6 or 8: the least of its corners. */
 double tm_jens(size_t nodes, const double (*xyz)[3], const uint32_t *item);

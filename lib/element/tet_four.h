@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* tm_tet_sine2() of four tetrahedra at a time, bit for bit the same: what tet_sine2.h
+/* tm_tet_sine2() of four tetrahedra at a time, bit for bit the same: what tet_quality.h
  * does for two edges is done here for four tetrahedra, in a vector of four doubles. For
  * machines with AVX2, of which a program learns at run time: what includes this header
  * has another way, and tm_has_four() chooses; made with
@@ -9,7 +9,7 @@
 #ifndef TM_ELEMENT_TET_FOUR_H
 #define TM_ELEMENT_TET_FOUR_H
 
-#include "tet_sine2.h"
+#include "tet_quality.h"
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -4,51 +4,28 @@
 #include "../geom/vector.h"
 
 #include <math.h>
-#include <stddef.h>
+#include <string.h>
 
 enum { DIMENSIONS = 3, CORNERS = 4 };
 
 static const double half_turn = 180; /* degrees */
 static const double pi = 3.14159265358979323846;
 
-const unsigned char tm_tet_edge_corner[TM_TET_EDGES][2] = {{0, 1}, {0, 2}, {0, 3},
-                                                           {1, 2}, {1, 3}, {2, 3}};
-
-/* Moves corner a to the origin; where products of coordinates could leave the range of
- * double, scales the largest one into [1/2, 1). False where all corners are one point or
- * a difference overflows. */
-static bool make_unit(double unit[CORNERS][DIMENSIONS],
-                      const double *const corner[CORNERS])
+static bool make_unit(double unit[CORNERS][DIMENSIONS], const double a[3],
+                      const double b[3], const double c[3], const double d[3])
 {
-    const double small = 1e-20;
-    const double large = 1e20;
-    double largest = 0;
-    for (size_t v = 0; v < CORNERS; v++) {
-        tm_subtract(unit[v], corner[v], corner[0]);
-        for (size_t i = 0; i < DIMENSIONS; i++) {
-            const double size = fabs(unit[v][i]);
-            largest = size > largest ? size : largest;
-        }
-    }
-    if (small < largest && largest < large)
-        return true;
-    if (!(largest > 0 && isfinite(largest)))
-        return false;
-    int exponent;
-    frexp(largest, &exponent);
-    for (size_t v = 0; v < CORNERS; v++) {
-        for (size_t i = 0; i < DIMENSIONS; i++)
-            unit[v][i] = ldexp(unit[v][i], -exponent);
-    }
-    return true;
+    memcpy(unit[0], a, sizeof unit[0]);
+    memcpy(unit[1], b, sizeof unit[1]);
+    memcpy(unit[2], c, sizeof unit[2]);
+    memcpy(unit[3], d, sizeof unit[3]);
+    return tm_bring_into_range(unit, CORNERS);
 }
 
 double tm_tet_sine2_scaled(const double a[3], const double b[3], const double c[3],
                            const double d[3])
 {
-    const double *const corner[CORNERS] = {a, b, c, d};
     double unit[CORNERS][DIMENSIONS];
-    if (!make_unit(unit, corner))
+    if (!make_unit(unit, a, b, c, d))
         return 0;
     bool measured;
     return tm_tet_sine2_measure(unit[0], unit[1], unit[2], unit[3], &measured);
@@ -78,9 +55,8 @@ static double dihedral(double sine, double normal_product)
 void tm_tet_dihedrals(const double a[3], const double b[3], const double c[3],
                       const double d[3], double degrees[TM_TET_EDGES])
 {
-    const double *const corner[CORNERS] = {a, b, c, d};
     double p[CORNERS][DIMENSIONS];
-    if (!make_unit(p, corner)) {
+    if (!make_unit(p, a, b, c, d)) {
         for (size_t e = 0; e < TM_TET_EDGES; e++)
             degrees[e] = 0;
         return;
@@ -93,8 +69,8 @@ void tm_tet_dihedrals(const double a[3], const double b[3], const double c[3],
     const double determinant = fabs(tm_dot(normal[3], p[3]));
     for (size_t e = 0; e < TM_TET_EDGES; e++) {
         /* The faces at an edge are those opposite to the corners of the opposite edge. */
-        const unsigned char *end = tm_tet_edge_corner[e];
-        const unsigned char *opposite = tm_tet_edge_corner[TM_TET_EDGES - 1 - e];
+        const uint8_t *end = tm_edge_corner[e];
+        const uint8_t *opposite = tm_edge_corner[TM_TET_EDGES - 1 - e];
         const double length = sqrt(tm_distance2(p[end[0]], p[end[1]]));
         degrees[e] = dihedral(determinant * length,
                               tm_dot(normal[opposite[0]], normal[opposite[1]]));
@@ -104,14 +80,13 @@ void tm_tet_dihedrals(const double a[3], const double b[3], const double c[3],
 double tm_tet_volume_quality(const double a[3], const double b[3], const double c[3],
                              const double d[3])
 {
-    const double *const corner[CORNERS] = {a, b, c, d};
     double p[CORNERS][DIMENSIONS];
-    if (!make_unit(p, corner))
+    if (!make_unit(p, a, b, c, d))
         return 0;
     double longest2 = 0;
     for (size_t e = 0; e < TM_TET_EDGES; e++)
-        longest2 = fmax(longest2, tm_distance2(p[tm_tet_edge_corner[e][0]],
-                                               p[tm_tet_edge_corner[e][1]]));
+        longest2 = fmax(longest2,
+                        tm_distance2(p[tm_edge_corner[e][0]], p[tm_edge_corner[e][1]]));
     const double per_volume = 8.48528137423857029281; /* 6√2 */
     return per_volume * tm_tet_volume(p[0], p[1], p[2], p[3]) /
            (longest2 * sqrt(longest2));

@@ -2,12 +2,11 @@
 #include "verdict.h"
 
 #include "../geom/vector.h"
-#include "element_scale.h"
 #include "jens.h"
 
 #include <string.h>
 
-enum { PYRAMID = 5, WEDGE = 6, HEXAHEDRON = 8, BASE_CORNERS = 4 };
+enum { BASE_CORNERS = 4 };
 
 static const double per_wedge = 2 / TM_SQRT_3;
 
@@ -39,12 +38,11 @@ static double centre_jacobian(const double (*xyz)[3], const uint32_t *item)
 
 static double tetrahedron_jacobian(const double (*xyz)[3], const uint32_t *item)
 {
-    enum { CORNERS = 4 };
-    const tm_element_shape *shape = &tm_element_shapes[CORNERS];
-    double j[TM_CORNERS_MOST];
+    const tm_element_shape *shape = &tm_element_shapes[TM_TET_NODES];
+    double j[TM_ELEMENT_CORNERS];
     tm_scaled_jacobians(shape, xyz, item, j);
     double nearest = j[0];
-    for (size_t i = 1; i < CORNERS; i++)
+    for (size_t i = 1; i < shape->corners; i++)
         nearest = fabs(j[i]) < fabs(nearest) ? j[i] : nearest;
     return TM_SQRT_2 * nearest;
 }
@@ -69,12 +67,12 @@ double tm_verdict_scaled_jacobian(size_t nodes, const double (*xyz)[3],
                                   const uint32_t *item)
 {
     switch (nodes) {
-    case HEXAHEDRON:
+    case TM_HEX_NODES:
         return fmin(tm_least_scaled_jacobian(nodes, xyz, item),
                     centre_jacobian(xyz, item));
-    case WEDGE:
+    case TM_WEDGE_NODES:
         return per_wedge * tm_least_scaled_jacobian(nodes, xyz, item);
-    case PYRAMID:
+    case TM_PYRAMID_NODES:
         return pyramid_jacobian(xyz, item);
     default:
         return tetrahedron_jacobian(xyz, item);
@@ -155,16 +153,18 @@ static double pyramid_shape(const double (*p)[3])
 
 double tm_verdict_shape(size_t nodes, const double (*xyz)[3], const uint32_t *item)
 {
-    double p[TM_SCALED_NODES][3], low = 1;
-    if (!tm_scale_element(p, nodes, xyz, item))
+    double p[TM_ELEMENT_NODES][3], low = 1;
+    for (size_t v = 0; v < nodes; v++)
+        memcpy(p[v], xyz[item[v]], sizeof p[v]);
+    if (!tm_bring_into_range(p, nodes))
         return 0;
-    if (nodes == PYRAMID)
+    if (nodes == TM_PYRAMID_NODES)
         return pyramid_shape(p);
-    if (nodes != WEDGE && nodes != HEXAHEDRON)
+    if (nodes != TM_WEDGE_NODES && nodes != TM_HEX_NODES)
         return fmin(tetrahedron_shape(p), 1);
     const tm_element_shape *shape = &tm_element_shapes[nodes];
     for (size_t i = 0; i < shape->corners; i++)
-        low = fmin(low, corner3(p, shape->node[i]));
+        low = fmin(low, corner3(p, shape->corner[i]));
     /* w = 2/√3, squared in a cube. */
-    return fmin(3 * cbrt(nodes == WEDGE ? low * per_wedge * per_wedge : low), 1);
+    return fmin(3 * cbrt(nodes == TM_WEDGE_NODES ? low * per_wedge * per_wedge : low), 1);
 }

@@ -15,7 +15,7 @@
 #include <stdint.h>
 
 /* The scaled Jacobian, of an element of 4, 5, 6 or 8 nodes in the order of
- * ../mixed/mixed_mesh.h. With J_S of jens.h:
+ * shape.h. With J_S of jens.h:
  *
  * - hexahedron: the least J_S of the eight corners and of the centre, where it is that of
  *   the three sums of parallel edges;

@@ -4,6 +4,7 @@
 #ifndef TM_EXAMINE_EXAMINATION_H
 #define TM_EXAMINE_EXAMINATION_H
 
+#include "../element/shape.h"
 #include "../base/error.h"
 #include "../base/json.h"
 #include "../base/text.h"
@@ -43,15 +44,6 @@ typedef enum tm_unmatched {
     TM_FACE_IN_ANOTHER_ORDER, /* a quadrilateral with the nodes of another, which follow
                                  each other in another order */
 } tm_unmatched;
-
-/* The kinds of mixed elements. */
-typedef enum tm_element_kind {
-    TM_TETRAHEDRON,
-    TM_PYRAMID,
-    TM_WEDGE,
-    TM_HEXAHEDRON,
-    TM_ELEMENT_KINDS
-} tm_element_kind;
 
 enum { TM_DEFECTS_LISTED = 5, TM_DEFECT_NUMBERS = 4 };
 

@@ -28,12 +28,10 @@ static const defect_name name[TM_DEFECTS] = {
     [TM_UNORIENTED_EDGE] = {"unoriented_edges", "unoriented edges"},
 };
 
-static const char *const kind_name[TM_ELEMENT_KINDS] = {
-    [TM_TETRAHEDRON] = "tetrahedra",
-    [TM_PYRAMID] = "pyramids",
-    [TM_WEDGE] = "wedges",
-    [TM_HEXAHEDRON] = "hexahedra",
-};
+static const char *kind_name(size_t kind)
+{
+    return tm_element_shapes[tm_element_kind_nodes[kind]].plural;
+}
 
 static void defect_json(tm_json *json, const tm_examination *found, tm_defect d)
 {
@@ -67,7 +65,7 @@ void tm_examination_json(tm_json *json, const tm_examination *found)
         defect_json(json, found, TM_UNORIENTED_EDGE);
     }
     for (size_t k = 0; found->mixed && k < TM_ELEMENT_KINDS; k++)
-        tm_json_integer(json, kind_name[k], (int64_t)found->kind[k]);
+        tm_json_integer(json, kind_name(k), (int64_t)found->kind[k]);
 }
 
 static void integer_row(tm_text *text, const char *label, int64_t value)
@@ -85,7 +83,7 @@ static void sizes(tm_text *text, const tm_examination *found)
     integer_row(text, "nodes", (int64_t)found->nodes);
     integer_row(text, found->elements, (int64_t)found->element_count);
     for (size_t k = 0; found->mixed && k < TM_ELEMENT_KINDS; k++)
-        integer_row(text, kind_name[k], (int64_t)found->kind[k]);
+        integer_row(text, kind_name(k), (int64_t)found->kind[k]);
     integer_row(text, "components", (int64_t)found->components);
     integer_row(text, "Euler number", found->euler);
     real_row(text, "volume", found->volume);

@@ -11,7 +11,7 @@
 
 /* Elements that one thread measures at a time. Sums are rounded chunk by chunk, so that
  * the last digits of averages depend on this number, but not on the threads. */
-enum { CHUNK = 8192, TETRAHEDRON = 4, PYRAMID = 5, WEDGE = 6, HEXAHEDRON = 8 };
+enum { CHUNK = 8192 };
 
 const double tm_jens_edge[TM_JENS_BUCKETS] = {0.0333, 0.05, 0.1,  0.15, 0.2,  0.25, 0.3,
                                               0.35,   0.4,  0.45, 0.5,  0.55, 0.6,  0.65,
@@ -62,10 +62,8 @@ static void count(tm_jens_histogram *h, double value, double threshold)
 
 static void count_kind(tm_jens_statistics *s, size_t nodes)
 {
-    static const unsigned char kind[] = {
-        [TETRAHEDRON] = 0, [PYRAMID] = 1, [WEDGE] = 2, [HEXAHEDRON] = 3};
     s->elements++;
-    s->kind[kind[nodes]]++;
+    s->kind[tm_element_shapes[nodes].kind]++;
 }
 
 static void name(tm_certified *c, size_t element)
@@ -80,7 +78,7 @@ static void measure_corners(tm_jens_statistics *s, size_t nodes, const double (*
                             const uint32_t *item, bool scaled)
 {
     const tm_element_shape *shape = &tm_element_shapes[nodes];
-    double jacobian[TM_CORNERS_MOST];
+    double jacobian[TM_ELEMENT_CORNERS];
     tm_scaled_jacobians(shape, xyz, item, jacobian);
     double least = 1, least_scaled = 1;
     for (size_t i = 0; i < shape->corners; i++) {

@@ -10,12 +10,13 @@
 #include "../base/json.h"
 #include "../base/text.h"
 #include "../element/certify.h"
+#include "../element/shape.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-enum { TM_JENS_BUCKETS = 21, TM_ELEMENT_KINDS = 4, TM_CERTIFICATES = 3, TM_NAMED = 10 };
+enum { TM_JENS_BUCKETS = 21, TM_CERTIFICATES = 3, TM_NAMED = 10 };
 
 /* The upper edges 0.0333, 0.05, 0.1, 0.15, … 1. */
 extern const double tm_jens_edge[TM_JENS_BUCKETS];
@@ -33,9 +34,8 @@ typedef struct tm_elements {
 static inline const uint32_t *tm_element_at(const tm_elements *elements, size_t e,
                                             size_t *nodes)
 {
-    enum { TETRAHEDRON = 4 };
-    const size_t first = elements->start ? elements->start[e] : TETRAHEDRON * e;
-    *nodes = elements->start ? elements->start[e + 1] - first : TETRAHEDRON;
+    const size_t first = elements->start ? elements->start[e] : TM_TET_NODES * e;
+    *nodes = elements->start ? elements->start[e + 1] - first : TM_TET_NODES;
     return elements->item + first;
 }
 

@@ -89,10 +89,10 @@ static void certified_json(tm_json *json, const tm_jens_statistics *statistics,
 void tm_jens_statistics_json(tm_json *json, const tm_jens_statistics *statistics,
                              const tm_jens_request *request, unsigned base)
 {
-    static const char *const kind[TM_ELEMENT_KINDS] = {"tet", "pyramid", "wedge", "hex"};
     tm_json_open(json, "elements", '{');
     for (size_t i = 0; i < TM_ELEMENT_KINDS; i++)
-        tm_json_integer(json, kind[i], (int64_t)statistics->kind[i]);
+        tm_json_integer(json, tm_element_shapes[tm_element_kind_nodes[i]].name,
+                        (int64_t)statistics->kind[i]);
     tm_json_close(json, '}');
     histogram_json(json, &statistics->jens);
     if (request->scaled_jacobian) {

@@ -43,21 +43,11 @@ static uint32_t node_twice(const uint32_t *n, size_t k)
     return TM_NONE;
 }
 
-static tm_element_kind kind_of(size_t k)
-{
-    enum { PYRAMID = 5, WEDGE = 6 };
-    if (k == PYRAMID)
-        return TM_PYRAMID;
-    if (k == WEDGE)
-        return TM_WEDGE;
-    return k < PYRAMID ? TM_TETRAHEDRON : TM_HEXAHEDRON;
-}
-
 static int8_t measure(measured *m, const tm_mixed_arrays *mesh, uint32_t e)
 {
     const size_t k = mesh->start[e + 1] - mesh->start[e];
     const uint32_t *n = mesh->item + mesh->start[e], twice = node_twice(n, k);
-    m->kind[kind_of(k)]++;
+    m->kind[tm_element_shapes[k].kind]++;
     if (twice != TM_NONE) {
         tm_defect_add(&m->degenerate, (uint32_t[TM_DEFECT_NUMBERS]){e, twice});
         return TM_MIXED_NODE_TWICE;

@@ -66,9 +66,9 @@ static uint32_t lesser(uint32_t a, uint32_t b)
 /* Edges ---------------------------------------------------------------------------- */
 
 /* The far edges of element e as bits. */
-static uint16_t far_edges(const uint32_t *n, const tm_mixed_shape *shape)
+static uint16_t far_edges(const uint32_t *n, const tm_element_shape *shape)
 {
-    uint32_t least[TM_MIXED_FACES];
+    uint32_t least[TM_ELEMENT_FACES];
     uint32_t far = 0;
     tm_mixed_least(shape, n, least);
     for (size_t i = 0; i < shape->edges; i++) {
@@ -87,8 +87,8 @@ static size_t count_far_edges(walk *w, uint16_t *far)
     size_t *count = w->far.start + 2, all = 0;
     for (size_t e = 0; e < mesh->elements; e++) {
         const uint32_t *n = mesh->item + mesh->start[e];
-        const tm_mixed_shape *shape =
-            &tm_mixed_shapes[mesh->start[e + 1] - mesh->start[e]];
+        const tm_element_shape *shape =
+            &tm_element_shapes[mesh->start[e + 1] - mesh->start[e]];
         far[e] = is_whole(w, e) ? far_edges(n, shape) : 0;
         for (uint32_t left = far[e]; left != 0; left &= left - 1, all++) {
             const uint8_t *edge = shape->edge[__builtin_ctz(left)];
@@ -115,8 +115,8 @@ static bool list_far_edges(walk *w)
         next[v + 1] += next[v];
     for (size_t e = 0; e < mesh->elements; e++) {
         const uint32_t *n = mesh->item + mesh->start[e];
-        const tm_mixed_shape *shape =
-            &tm_mixed_shapes[mesh->start[e + 1] - mesh->start[e]];
+        const tm_element_shape *shape =
+            &tm_element_shapes[mesh->start[e + 1] - mesh->start[e]];
         for (uint32_t left = far[e]; left != 0; left &= left - 1) {
             const uint8_t *edge = shape->edge[__builtin_ctz(left)];
             const uint32_t a = n[edge[0]], b = n[edge[1]], small = lesser(a, b);

@@ -30,13 +30,12 @@ static double cone_to_quadrilateral(const double a[3], const double b[3],
 
 double tm_mixed_volume(const double (*xyz)[3], const uint32_t *node, size_t k)
 {
-    enum { TETRAHEDRON = 4 };
     const double six = 6;
-    if (k == TETRAHEDRON)
+    if (k == TM_TET_NODES)
         return tm_tet_volume(xyz[node[0]], xyz[node[1]], xyz[node[2]], xyz[node[3]]);
-    const tm_mixed_shape *shape = &tm_mixed_shapes[k];
+    const tm_element_shape *shape = &tm_element_shapes[k];
     const uint8_t apex = (uint8_t)(k - 1); /* all cones begin there */
-    double at[TM_MIXED_NODES][3], sum = 0;
+    double at[TM_ELEMENT_NODES][3], sum = 0;
     for (size_t i = 0; i < k; i++)
         tm_subtract(at[i], xyz[node[i]], xyz[node[apex]]);
     for (size_t f = 0; f < shape->faces; f++) {
@@ -52,10 +51,10 @@ double tm_mixed_volume(const double (*xyz)[3], const uint32_t *node, size_t k)
 tm_mixed_corners tm_mixed_corners_of(const double (*xyz)[3], const uint32_t *node,
                                      size_t k)
 {
-    const tm_mixed_shape *shape = &tm_mixed_shapes[k];
+    const tm_element_shape *shape = &tm_element_shapes[k];
     tm_mixed_corners count = {0};
-    for (size_t i = 0; i < shape->corners; i++) {
-        const unsigned char *n = tm_element_shapes[k].node[i];
+    for (size_t i = 0; i < shape->determinants; i++) {
+        const uint8_t *n = shape->corner[i];
         const int sign = tm_orient3d(xyz[node[n[0]]], xyz[node[n[1]]], xyz[node[n[2]]],
                                      xyz[node[n[3]]]);
         count.negative += sign < 0;

@@ -6,6 +6,7 @@
 #include "tet_examine_faces.h"
 
 #include "../base/array.h"
+#include "../element/shape.h"
 #include "../base/disjoint_sets.h"
 #include "../mesh/edge_map.h"
 #include "../mesh/face_order.h"

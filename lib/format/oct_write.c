@@ -3,6 +3,7 @@
 #include "oct.h"
 
 #include "../base/array.h"
+#include "../element/shape.h"
 #include "octant_triangles.h"
 #include "../surface/point_table.h"
 #include "text_rows.h"
@@ -12,15 +13,10 @@
 
 #define FAIL(block, ...) tm_fail_at(w->error, TM_ERROR_INPUT, NULL, 0, block, __VA_ARGS__)
 
-enum { OCTANT_NUMBERS = 6, ROOT_REALS = 4, EDGES = 12, TRIANGLE = 3, LEVEL_MAX = 31 };
+enum { OCTANT_NUMBERS = 6, ROOT_REALS = 4, TRIANGLE = 3, LEVEL_MAX = 31 };
 
 /* Corners in the order of .m3d, as bits: 1 at the high side in x, 2 in y, 4 in z. */
 static const unsigned char corner_place[TM_OCT_CORNERS] = {0, 4, 5, 1, 2, 6, 7, 3};
-
-/* The ends of edges, as places in that order. */
-static const unsigned char edge_end[EDGES][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0},
-                                                 {4, 5}, {5, 6}, {6, 7}, {7, 4},
-                                                 {0, 4}, {1, 5}, {2, 6}, {3, 7}};
 
 typedef struct writer {
     const tm_stream *stream;
@@ -228,11 +224,12 @@ static tm_status add_edge(writer *w, uint32_t a, uint32_t b)
 
 static tm_status find_edges(writer *w)
 {
+    const tm_element_shape *hex = &tm_element_shapes[TM_HEX_NODES];
     tm_status status = TM_OK;
     for (size_t o = 0; o < w->octants; o++)
-        for (int e = 0; e < EDGES && status == TM_OK; e++)
+        for (int e = 0; e < hex->edges && status == TM_OK; e++)
             status =
-                add_edge(w, w->corner[o][edge_end[e][0]], w->corner[o][edge_end[e][1]]);
+                add_edge(w, w->corner[o][hex->edge[e][0]], w->corner[o][hex->edge[e][1]]);
     return status;
 }
 

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "vtk_legacy.h"
 
+#include "../element/shape.h"
 #include "../mesh/cell_faces.h"
 #include "text_rows.h"
-#include "../element/vtk_cell_type.h"
 
 #include <stdio.h>
 
-enum { TETRAHEDRON = 4, HEXAHEDRON = 8, NAME = 32 };
+enum { NAME = 32 };
 
 typedef struct writer {
     const tm_block *node;
@@ -104,18 +104,15 @@ static size_t type_room(const void *context, size_t first, size_t past)
 
 static char *put_type(const void *context, size_t row, char *to)
 {
-    static const unsigned char of_content[] = {[TM_CONTENT_POINTS] = VTK_VERTEX,
-                                               [TM_CONTENT_SURFACE] = VTK_TRIANGLE,
-                                               [TM_CONTENT_TETRAHEDRA] = VTK_TETRA,
-                                               [TM_CONTENT_POLYHEDRA] = VTK_POLYHEDRON};
-    static const unsigned char of_size[] = {[TETRAHEDRON] = VTK_TETRA,
-                                            [5] = VTK_PYRAMID,
-                                            [6] = VTK_WEDGE,
-                                            [HEXAHEDRON] = VTK_HEXAHEDRON};
+    static const unsigned char of_content[] = {[TM_CONTENT_POINTS] = TM_VTK_VERTEX,
+                                               [TM_CONTENT_SURFACE] = TM_VTK_TRIANGLE,
+                                               [TM_CONTENT_TETRAHEDRA] = TM_VTK_TETRA,
+                                               [TM_CONTENT_POLYHEDRA] =
+                                                   TM_VTK_POLYHEDRON};
     const writer *w = context;
     unsigned char type;
     if (w->content == TM_CONTENT_MIXED)
-        type = of_size[w->cell->start[row + 1] - w->cell->start[row]];
+        type = tm_element_shapes[w->cell->start[row + 1] - w->cell->start[row]].vtk_type;
     else
         type = of_content[w->content];
     to = tm_write_uint32(to, type);

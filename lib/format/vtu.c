@@ -3,17 +3,17 @@
 
 #include "../base/array.h"
 #include "../base/parallel.h"
+#include "../element/shape.h"
 #include "../element/tet_quality.h"
 #include "binary.h"
 #include "../mesh/cell_faces.h"
-#include "../element/vtk_cell_type.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
 
-enum { BLOCK_BYTES = 1 << 17, HEADER_BYTES = 8, TRIANGLE = 3, TETRAHEDRON = 4 };
+enum { BLOCK_BYTES = 1 << 17, HEADER_BYTES = 8, TRIANGLE = 3 };
 
 typedef enum { FLOAT64, INT32, INT64, UINT8 } number_type;
 
@@ -164,7 +164,7 @@ static tm_status write_quality(writer *w)
     if (!quality)
         return tm_fail_memory(w->error);
     for (size_t t = 0; t < w->cell->count; t++) {
-        const uint32_t *v = w->cell->integer + TETRAHEDRON * t;
+        const uint32_t *v = w->cell->integer + TM_TET_NODES * t;
         quality[t] =
             tm_sine2_to_degrees(tm_tet_sine2(xyz[v[0]], xyz[v[1]], xyz[v[2]], xyz[v[3]]));
     }
@@ -232,16 +232,14 @@ static void append_rows(const writer *w, cell_arrays *a, size_t k, unsigned char
 static void append_points(const writer *w, cell_arrays *a)
 {
     for (uint32_t v = 0; v < w->node->count; v++)
-        append_cell(a, &v, 1, v, VTK_VERTEX);
+        append_cell(a, &v, 1, v, TM_VTK_VERTEX);
 }
 
 static void append_elements(const writer *w, cell_arrays *a)
 {
-    static const unsigned char type_of[] = {
-        [4] = VTK_TETRA, [5] = VTK_PYRAMID, [6] = VTK_WEDGE, [8] = VTK_HEXAHEDRON};
     for (size_t c = 0; c < w->cell->count; c++) {
         size_t begin = w->cell->start[c], k = w->cell->start[c + 1] - begin;
-        append_cell(a, w->cell->item + begin, k, c, type_of[k]);
+        append_cell(a, w->cell->item + begin, k, c, tm_element_shapes[k].vtk_type);
     }
 }
 
@@ -267,7 +265,7 @@ static void append_polyhedron(const writer *w, cell_arrays *a, size_t c, uint32_
     }
     append(&a->face_offsets, a->faces.count);
     append(&a->offsets, a->connectivity.count);
-    a->type[c] = VTK_POLYHEDRON;
+    a->type[c] = TM_VTK_POLYHEDRON;
 }
 
 static tm_status append_polyhedra(const writer *w, cell_arrays *a)
@@ -285,10 +283,10 @@ static tm_status append_cells(const writer *w, cell_arrays *a)
 {
     switch (w->content) {
     case TM_CONTENT_SURFACE:
-        append_rows(w, a, TRIANGLE, VTK_TRIANGLE);
+        append_rows(w, a, TRIANGLE, TM_VTK_TRIANGLE);
         return TM_OK;
     case TM_CONTENT_TETRAHEDRA:
-        append_rows(w, a, TETRAHEDRON, VTK_TETRA);
+        append_rows(w, a, TM_TET_NODES, TM_VTK_TETRA);
         return TM_OK;
     case TM_CONTENT_MIXED:
         append_elements(w, a);

@@ -5,6 +5,8 @@
 #define TM_GEOM_VECTOR_H
 
 #include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
 
 /* out = a - b; out may be a or b. */
 static inline void tm_subtract(double out[3], const double a[3], const double b[3])
@@ -98,6 +100,32 @@ static inline double tm_tet_volume(const double a[3], const double b[3],
     tm_triangle_normal(normal, a, b, c);
     tm_subtract(ad, d, a);
     return tm_dot(normal, ad) / determinant_per_volume;
+}
+
+/* Moves the points so that the first is the origin; where products of coordinates could
+ * leave the range of double, multiplies by a power of two that brings the largest one
+ * into [1/2, 1). False where all points are one or a difference overflows. */
+static inline bool tm_bring_into_range(double (*p)[3], size_t count)
+{
+    const double small = 1e-20, large = 1e20;
+    double largest = 0;
+    for (size_t v = count; v-- > 0;) {
+        tm_subtract(p[v], p[v], p[0]);
+        for (size_t i = 0; i < 3; i++) {
+            const double size = fabs(p[v][i]);
+            largest = size > largest ? size : largest;
+        }
+    }
+    if (small < largest && largest < large)
+        return true;
+    if (!(largest > 0 && isfinite(largest)))
+        return false;
+    int exponent;
+    frexp(largest, &exponent);
+    for (size_t v = 0; v < count; v++)
+        for (size_t i = 0; i < 3; i++)
+            p[v][i] = ldexp(p[v][i], -exponent);
+    return true;
 }
 
 #endif

@@ -55,11 +55,10 @@ typedef struct finder {
 
 static const uint32_t *nodes_of(const finder *find, size_t e, size_t *k)
 {
-    enum { TETRAHEDRON = 4 };
     const tm_block *block = find->element;
     if (!block->start) {
-        *k = TETRAHEDRON;
-        return block->integer + TETRAHEDRON * e;
+        *k = TM_TET_NODES;
+        return block->integer + TM_TET_NODES * e;
     }
     *k = block->start[e + 1] - block->start[e];
     return block->item + block->start[e];
@@ -67,7 +66,8 @@ static const uint32_t *nodes_of(const finder *find, size_t e, size_t *k)
 
 /* Six times the volume that the fans of triangles of all faces enclose, as seen from the
  * first node. */
-static double volume6(const finder *find, const uint32_t *v, const tm_mixed_shape *shape)
+static double volume6(const finder *find, const uint32_t *v,
+                      const tm_element_shape *shape)
 {
     double volume = 0;
     const double *origin = find->xyz[v[0]];
@@ -93,7 +93,7 @@ static int sign_of(const finder *find, size_t e)
     if (k == 4)
         return tm_orient3d(find->xyz[v[0]], find->xyz[v[1]], find->xyz[v[2]],
                            find->xyz[v[3]]);
-    double volume = volume6(find, v, &tm_mixed_shapes[k]);
+    double volume = volume6(find, v, &tm_element_shapes[k]);
     return (volume > 0) - (volume < 0);
 }
 
@@ -174,7 +174,7 @@ static tm_status add_element(finder *find, size_t e, tm_error *error)
 {
     size_t k;
     const uint32_t *v = nodes_of(find, e, &k);
-    const tm_mixed_shape *shape = &tm_mixed_shapes[k];
+    const tm_element_shape *shape = &tm_element_shapes[k];
     tm_cell_faces *faces = find->faces;
     if (has_node_twice(v, k))
         return FAIL(find->element->name, "element %zu has a node twice", e + find->base);
@@ -215,10 +215,10 @@ static tm_status mark(const finder *find, const tm_block *rows, tm_error *error)
 static size_t count_faces(const tm_block *element)
 {
     if (!element->start)
-        return tm_mixed_shapes[4].faces * element->count;
+        return tm_element_shapes[TM_TET_NODES].faces * element->count;
     size_t faces = 0;
     for (size_t e = 0; e < element->count; e++)
-        faces += tm_mixed_shapes[element->start[e + 1] - element->start[e]].faces;
+        faces += tm_element_shapes[element->start[e + 1] - element->start[e]].faces;
     return faces;
 }
 

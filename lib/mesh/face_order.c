@@ -2,11 +2,10 @@
 #include "face_order.h"
 
 #include "../base/array.h"
+#include "../element/shape.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-const uint8_t tm_face_corner[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
 static inline uint32_t lesser(uint32_t a, uint32_t b)
 {

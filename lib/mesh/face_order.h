@@ -44,8 +44,4 @@ void tm_face_order_free(tm_face_order *order);
  * memory is out. */
 bool tm_face_order_next(tm_face_order *order, tm_status *status, tm_error *error);
 
-/* The nodes of face i of a tetrahedron, turning counter-clockwise seen from outside of
- * a positive one: tm_face_corner[i]. */
-extern const uint8_t tm_face_corner[4][3];
-
 #endif

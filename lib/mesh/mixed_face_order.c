@@ -41,7 +41,8 @@ bool tm_mixed_row_is_face(const uint32_t *n, size_t count)
 size_t tm_mixed_face_of(const tm_mixed_arrays *mesh, uint32_t half, uint32_t node[4])
 {
     const size_t e = half / HALVES, begin = mesh->start[e];
-    const uint8_t *face = tm_mixed_shapes[mesh->start[e + 1] - begin].face[half % HALVES];
+    const uint8_t *face =
+        tm_element_shapes[mesh->start[e + 1] - begin].face[half % HALVES];
     for (size_t i = 0; i < QUADRILATERAL; i++)
         node[i] = mesh->item[begin + face[i]];
     return tm_mixed_face_nodes(face);
@@ -67,9 +68,9 @@ static size_t count_faces(tm_mixed_face_order *order, const int8_t *sign)
     for (size_t e = 0; e < mesh->elements; e++) {
         if (sign[e] == TM_MIXED_NODE_TWICE)
             continue;
-        const tm_mixed_shape *shape =
-            &tm_mixed_shapes[mesh->start[e + 1] - mesh->start[e]];
-        uint32_t least[TM_MIXED_FACES];
+        const tm_element_shape *shape =
+            &tm_element_shapes[mesh->start[e + 1] - mesh->start[e]];
+        uint32_t least[TM_ELEMENT_FACES];
         tm_mixed_least(shape, mesh->item + mesh->start[e], least);
         for (size_t i = 0; i < shape->faces; i++)
             count[least[i]]++;
@@ -94,9 +95,9 @@ static void fill(tm_mixed_face_order *order, const int8_t *sign)
     for (size_t e = 0; e < mesh->elements; e++) {
         if (sign[e] == TM_MIXED_NODE_TWICE)
             continue;
-        const tm_mixed_shape *shape =
-            &tm_mixed_shapes[mesh->start[e + 1] - mesh->start[e]];
-        uint32_t least[TM_MIXED_FACES];
+        const tm_element_shape *shape =
+            &tm_element_shapes[mesh->start[e + 1] - mesh->start[e]];
+        uint32_t least[TM_ELEMENT_FACES];
         tm_mixed_least(shape, mesh->item + mesh->start[e], least);
         for (size_t i = 0; i < shape->faces; i++)
             order->half[next[least[i]]++] = (uint32_t)(HALVES * e + i);

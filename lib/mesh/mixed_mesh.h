@@ -9,11 +9,7 @@
 #include <stdint.h>
 
 /* Element e has the nodes item[start[e]] … item[start[e + 1] - 1]: 4 of a tetrahedron, 5
- * of a pyramid, 6 of a wedge, 8 of a hexahedron, in the order of .mix, which is VTK's:
- * the base 0 1 2 3 of a hexahedron turns counter-clockwise seen from the top 4 5 6 7,
- * that of a pyramid seen from its apex 4, the triangle 0 1 2 of a tetrahedron seen from
- * 3, but that of a wedge seen from outside, away from the triangle 3 4 5, where 3 is over
- * 0. */
+ * of a pyramid, 6 of a wedge, 8 of a hexahedron, in the order of shape.h. */
 typedef struct tm_mixed_mesh {
     size_t nodes;
     double (*xyz)[3];

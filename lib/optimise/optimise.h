@@ -24,10 +24,10 @@ typedef enum tm_node_freedom {
 typedef struct tm_node_rule {
     uint32_t where; /* the patch, curve or corner; TM_NONE: any patch */
     uint8_t freedom;
-    bool held;
+    bool off_surface;
 } tm_node_rule;
 
-/* A place on the boundary, and its normal or, on a curve, its direction, of length 1. */
+/* A point of the boundary, and its normal or, on a curve, its direction, of length 1. */
 typedef struct tm_boundary_point {
     double xyz[3];
     double axis[3];
@@ -35,8 +35,8 @@ typedef struct tm_boundary_point {
 } tm_boundary_point;
 
 /* The boundary, as what is closest to a point. The functions read at->guess and fill *at;
- * the closest place of a place must be that place, up to rounding. Of a corner there is
- * one place, without an axis. */
+ * the closest point of a point of it must be that one, up to rounding. Of a corner there
+ * is one point, without an axis. */
 typedef struct tm_boundary {
     const void *of;
     void (*on_surface)(const void *of, uint32_t patch, const double point[3],
@@ -48,14 +48,14 @@ typedef struct tm_boundary {
 
 /* An element is bad if its J_ENS is below its threshold. */
 typedef struct tm_optimise_options {
-    double threshold;         /* of all elements … */
-    const double *thresholds; /* … or of each, where this is not NULL */
-    double held_threshold;    /* the same for elements near nodes that are brought to the
-                                 boundary; above 0, and not above the others */
-    double release_threshold; /* nodes of elements that stay below it may leave their
-                                 corner, curve and patch for other places of the surface;
-                                 0: none may */
-    unsigned effort; /* how often what remains is tried again, from other places; 1 is
+    double threshold;             /* of all elements … */
+    const double *thresholds;     /* … or of each, where this is not NULL */
+    double off_surface_threshold; /* the same for elements near nodes that are brought to
+                              the boundary; above 0, and not above the others */
+    double release_threshold;     /* nodes of elements that stay below it may leave their
+                                     corner, curve and patch for other parts of the surface;
+                                     0: none may */
+    unsigned effort; /* how often what remains is tried again, from other positions; 1 is
                         usual, 0 half as slow where much remains */
     size_t most_measured; /* no more is begun once so many elements were measured in all;
                              0: no limit */
@@ -65,7 +65,7 @@ typedef struct tm_optimise_report {
     size_t bad_before, bad_after;
     size_t inverted_before, inverted_after; /* J_ENS <= 0 */
     double worst_before, worst_after;       /* J_ENS; 1 of no elements */
-    size_t held_before, held_after;
+    size_t off_surface_before, off_surface_after;
     size_t moved;       /* nodes */
     size_t released;    /* of these: that had to leave their corner, curve or patch */
     size_t clusters;    /* of bad elements that were worked on, each time counted */
@@ -74,7 +74,7 @@ typedef struct tm_optimise_report {
 } tm_optimise_report;
 
 /* Raises J_ENS of bad elements by moving nodes up to three elements away from them, and
- * brings nodes that are off the surface to their places.
+ * brings nodes that are off the surface to it.
  *
  * Bad elements that touch, and the nodes around them, are one problem: a sum over all
  * corners that grows exponentially with what is missing to the threshold (so the worst
@@ -85,14 +85,14 @@ typedef struct tm_optimise_report {
  *   - no more are bad, no more are inverted, and fewer of either or the worst is better,
  *   - the worst has not become worse, unless some were inverted;
  * else the nodes are where they were. So no mesh becomes worse, but for elements that
- * fall below their threshold, not below held_threshold, for a node that was off the
- * surface.
+ * fall below their threshold, not below off_surface_threshold, for a node that was off
+ * the surface.
  *
- * Before: rules [nodes] with nodes that are not off the surface on their places; element
+ * Before: rules [nodes] with nodes that are not off the surface on it; element
  * nodes in range; `boundary` may be NULL where no rule needs it, and its functions that
  * none needs. After: nodes of the boundary that moved are where `boundary` says that the
- * closest place is; rule[v].held is false of those that were brought there; nodes that
- * were released have the rule TM_MOVES_ON_SURFACE, TM_NONE. Deterministic.
+ * closest point is; rule[v].off_surface is false of those that were brought there; nodes
+ * that were released have the rule TM_MOVES_ON_SURFACE, TM_NONE. Deterministic.
  * TM_ERROR_SYSTEM where memory is out: the mesh is then as good as it has become.
  * O(elements), in little more than the time of tm_jens() for each; some ten milliseconds
  * for a cluster that cannot be mended, a tenth of that for others. */

@@ -44,7 +44,7 @@ static bool add_element(tm_cluster *cluster, const tm_cluster_source *source, ui
 
 static bool may_move(const tm_node_rule *rule)
 {
-    return rule->freedom == TM_MOVES_AT_CORNER ? rule->held
+    return rule->freedom == TM_MOVES_AT_CORNER ? rule->off_surface
                                                : rule->freedom != TM_MOVES_NOT;
 }
 
@@ -117,17 +117,17 @@ static bool make_room(tm_cluster *cluster, size_t old_nodes, size_t old_elements
     bool made = true;
     if (nodes > old_nodes)
         made = RENEW(cluster->xyz, nodes) && RENEW(cluster->rule, nodes) &&
-               RENEW(cluster->place, nodes) && RENEW(cluster->offset, nodes) &&
+               RENEW(cluster->point, nodes) && RENEW(cluster->offset, nodes) &&
                RENEW(cluster->size, nodes) && RENEW(cluster->old, nodes) &&
-               RENEW(cluster->places, nodes) && RENEW(cluster->best, nodes) &&
+               RENEW(cluster->old_point, nodes) && RENEW(cluster->best, nodes) &&
                RENEW(cluster->pull, nodes) &&
                RENEW(cluster->vector, 3 * nodes * TM_CLUSTER_VECTORS);
     if (elements > old_elements)
         made = made && RENEW(cluster->start, elements + 1) &&
-               RENEW(cluster->item, elements * TM_ELEMENT_NODES_MOST) &&
+               RENEW(cluster->item, elements * TM_ELEMENT_NODES) &&
                RENEW(cluster->threshold, elements) && RENEW(cluster->before, elements) &&
                RENEW(cluster->jens, elements) && RENEW(cluster->element_size, elements) &&
-               RENEW(cluster->corner, elements * TM_CORNERS_MOST);
+               RENEW(cluster->corner, elements * TM_ELEMENT_CORNERS);
     return made;
 }
 
@@ -158,9 +158,9 @@ static void measure_sizes(tm_cluster *cluster)
         const tm_element_shape *shape =
             &tm_element_shapes[cluster->start[e + 1] - cluster->start[e]];
         for (size_t i = 0; i < shape->corners; i++) {
-            const uint32_t v = item[shape->node[i][0]];
+            const uint32_t v = item[shape->corner[i][0]];
             for (size_t j = 1; v < cluster->moving && j < 4; j++) {
-                const double *to = cluster->xyz[item[shape->node[i][j]]];
+                const double *to = cluster->xyz[item[shape->corner[i][j]]];
                 cluster->size[v] += sqrt(tm_distance2(cluster->xyz[v], to));
                 count[v][0]++;
             }
@@ -179,24 +179,24 @@ static void measure_elements(tm_cluster *cluster)
         double sum = 0;
         for (size_t i = 0; i < shape->corners; i++)
             for (size_t j = 1; j < 4; j++)
-                sum += sqrt(tm_distance2(cluster->xyz[item[shape->node[i][0]]],
-                                         cluster->xyz[item[shape->node[i][j]]]));
+                sum += sqrt(tm_distance2(cluster->xyz[item[shape->corner[i][0]]],
+                                         cluster->xyz[item[shape->corner[i][j]]]));
         cluster->element_size[e] = sum > 0 ? sum / (double)(3 * shape->corners) : 1;
     }
 }
 
 /* Where nodes of the boundary are on it, and how far from it those that are off the
  * surface. */
-static void find_places(tm_cluster *cluster)
+static void find_points(tm_cluster *cluster)
 {
     for (size_t v = 0; v < cluster->moving; v++) {
         const tm_node_rule *rule = &cluster->rule[v];
         const double *p = cluster->xyz[v];
-        tm_boundary_point *at = &cluster->place[v];
+        tm_boundary_point *at = &cluster->point[v];
         *at = (tm_boundary_point){.guess = TM_NONE};
         memset(cluster->offset[v], 0, sizeof *cluster->offset);
         tm_cluster_find(cluster, v, p);
-        if (rule->held)
+        if (rule->off_surface)
             tm_subtract(cluster->offset[v], p, at->xyz);
     }
 }
@@ -220,7 +220,7 @@ tm_status tm_cluster_gather(tm_cluster *cluster, const tm_cluster_source *source
         copy_elements(cluster, source);
         measure_sizes(cluster);
         measure_elements(cluster);
-        find_places(cluster);
+        find_points(cluster);
         memcpy(cluster->best, cluster->xyz, cluster->moving * sizeof *cluster->best);
         cluster->first = cluster->best_score = tm_cluster_score(cluster);
     }
@@ -243,7 +243,7 @@ void tm_cluster_approach(tm_cluster *cluster, size_t v, double factor, double th
         cluster->best_score.worst = -INFINITY;
     for (size_t i = 0; i < 3; i++) {
         cluster->offset[v][i] *= factor;
-        cluster->xyz[v][i] = cluster->place[v].xyz[i] + cluster->offset[v][i];
+        cluster->xyz[v][i] = cluster->point[v].xyz[i] + cluster->offset[v][i];
     }
 }
 
@@ -252,11 +252,11 @@ void tm_cluster_free(tm_cluster *cluster)
     free(cluster->node);
     free(cluster->xyz);
     free(cluster->rule);
-    free(cluster->place);
+    free(cluster->point);
     free(cluster->offset);
     free(cluster->size);
     free(cluster->old);
-    free(cluster->places);
+    free(cluster->old_point);
     free(cluster->best);
     free(cluster->pull);
     free(cluster->vector);

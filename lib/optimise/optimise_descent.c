@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* L-BFGS over the places of a cluster's nodes (D. C. Liu and J. Nocedal, On the limited
- * memory BFGS method for large scale optimization, 1989), each measured in the length of
- * its edges, with steps along the boundary that end on it. */
+/* L-BFGS over the positions of a cluster's nodes (D. C. Liu and J. Nocedal, On the
+ * limited memory BFGS method for large scale optimization, 1989), each measured in the
+ * length of its edges, with steps along the boundary that end on it. */
 #include "optimise_parts.h"
 
 #include "../geom/vector.h"
@@ -146,7 +146,7 @@ static void go(const descent *d, double length)
 static void restore(tm_cluster *cluster)
 {
     memcpy(cluster->xyz, cluster->old, cluster->moving * sizeof *cluster->old);
-    memcpy(cluster->place, cluster->places, cluster->moving * sizeof *cluster->place);
+    memcpy(cluster->point, cluster->old_point, cluster->moving * sizeof *cluster->point);
 }
 
 /* Goes along the direction until the value has become enough smaller. */
@@ -157,7 +157,7 @@ static bool search_line(const descent *d, double *value)
     if (!(rate < 0))
         return false;
     memcpy(cluster->old, cluster->xyz, cluster->moving * sizeof *cluster->old);
-    memcpy(cluster->places, cluster->place, cluster->moving * sizeof *cluster->place);
+    memcpy(cluster->old_point, cluster->point, cluster->moving * sizeof *cluster->point);
     double length = 1;
     for (int trial = 0; trial < LINE_TRIALS; trial++) {
         go(d, length);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is minimised over the places of a cluster's nodes. */
+/* What is minimised over the positions of a cluster's nodes. */
 #include "optimise_parts.h"
 
 #include "../geom/vector.h"
@@ -15,7 +15,7 @@ void tm_cluster_find(tm_cluster *cluster, size_t v, const double point[3])
 {
     const tm_node_rule *rule = &cluster->rule[v];
     const tm_boundary *boundary = cluster->boundary;
-    tm_boundary_point *at = &cluster->place[v];
+    tm_boundary_point *at = &cluster->point[v];
     switch (rule->freedom) {
     case TM_MOVES_ON_SURFACE:
         boundary->on_surface(boundary->of, rule->where, point, at);
@@ -37,13 +37,13 @@ void tm_cluster_move(tm_cluster *cluster, size_t v, const double point[3])
     tm_subtract(on, point, cluster->offset[v]);
     tm_cluster_find(cluster, v, on);
     for (size_t i = 0; i < 3; i++)
-        cluster->xyz[v][i] = cluster->place[v].xyz[i] + cluster->offset[v][i];
+        cluster->xyz[v][i] = cluster->point[v].xyz[i] + cluster->offset[v][i];
 }
 
 void tm_cluster_along(const tm_cluster *cluster, size_t v, double vector[3])
 {
     const uint8_t freedom = cluster->rule[v].freedom;
-    const double *axis = cluster->place[v].axis;
+    const double *axis = cluster->point[v].axis;
     if (freedom == TM_MOVES_FREELY)
         return;
     if (freedom == TM_MOVES_AT_CORNER) {
@@ -65,7 +65,7 @@ static double value_of_missing(tm_cluster *cluster, double sharpness)
         const size_t start = cluster->start[e];
         const tm_element_shape *shape = &tm_element_shapes[cluster->start[e + 1] - start];
         const double target = cluster->threshold[e] + margin;
-        double jacobian[TM_CORNERS_MOST], least = 1;
+        double jacobian[TM_ELEMENT_CORNERS], least = 1;
         tm_scaled_jacobians(shape, xyz, cluster->item + start, jacobian);
         for (size_t i = 0; i < shape->corners; i++) {
             const double jens = tm_jens_of(jacobian[i], shape->k[i]);
@@ -95,7 +95,7 @@ static void slope_of_missing(const tm_cluster *cluster, double (*slope)[3])
             &tm_element_shapes[cluster->start[corner->element + 1] - start];
         uint32_t node[4];
         for (size_t i = 0; i < 4; i++)
-            node[i] = cluster->item[start + shape->node[corner->corner][i]];
+            node[i] = cluster->item[start + shape->corner[corner->corner][i]];
         double part[4][3];
         tm_scaled_jacobian_slope(cluster->xyz[node[0]], cluster->xyz[node[1]],
                                  cluster->xyz[node[2]], cluster->xyz[node[3]], part);

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The parts of the optimiser, for lib/mixed/optimise*.c only. */
+/* The parts of the optimiser, for optimise*.c only. optimise.c calls
+ * optimise_off_surface.c and optimise_release.c; all three call optimise_mend.c, and that
+ * optimise_descent.c, which minimises what optimise_objective.c and optimise_untangle.c
+ * measure over the nodes that optimise_cluster.c has gathered. */
 #ifndef TM_OPTIMISE_OPTIMISE_PARTS_H
 #define TM_OPTIMISE_OPTIMISE_PARTS_H
 
@@ -45,13 +48,13 @@ typedef struct tm_cluster {
     uint32_t *node;           /* [nodes] in the mesh */
     double (*xyz)[3];         /* [nodes] */
     tm_node_rule *rule;       /* [moving] */
-    tm_boundary_point *place; /* [moving]: on the boundary */
+    tm_boundary_point *point; /* [moving]: on the boundary */
     double (*offset)[3]; /* [moving]: from there to the node, if it is off the surface */
     double *size;        /* [moving]: the mean length of its edges */
     double (*old)[3];    /* [moving]: before a step */
-    tm_boundary_point *places; /* [moving]: the same */
-    double (*best)[3];         /* [moving]: with the best score so far */
-    double *vector;            /* [moving * 3 * TM_CLUSTER_VECTORS]: of the descent */
+    tm_boundary_point *old_point; /* [moving]: the same */
+    double (*best)[3];            /* [moving]: with the best score so far */
+    double *vector;               /* [moving * 3 * TM_CLUSTER_VECTORS]: of the descent */
 
     size_t elements;
     size_t element_room;
@@ -62,7 +65,7 @@ typedef struct tm_cluster {
     double *threshold;        /* [elements] */
     double *before;           /* [elements]: J_ENS at first */
     double *jens;             /* [elements]: J_ENS now */
-    tm_active_corner *corner; /* [elements * TM_CORNERS_MOST] */
+    tm_active_corner *corner; /* [elements * TM_ELEMENT_CORNERS] */
     size_t corners;
     double sum;               /* of the terms of the objective */
     double *element_size;     /* [elements]: the mean length of the edges, at first */
@@ -103,10 +106,10 @@ tm_status tm_cluster_gather(tm_cluster *cluster, const tm_cluster_source *source
                             tm_error *error);
 void tm_cluster_free(tm_cluster *cluster);
 
-/* Finds place[v], where node v should be that is at a point. */
+/* Finds point[v], where node v should be that is at a point. */
 void tm_cluster_find(tm_cluster *cluster, size_t v, const double point[3]);
 
-/* Puts node v of the cluster, which moves, to the allowed place closest to a point. */
+/* Puts node v of the cluster, which moves, to the allowed point closest to that one. */
 void tm_cluster_move(tm_cluster *cluster, size_t v, const double point[3]);
 
 /* What is minimised: the distortion of optimise_untangle.c with the number ε, or what is
@@ -137,12 +140,12 @@ void tm_cluster_along(const tm_cluster *cluster, size_t v, double vector[3]);
 tm_score tm_cluster_score(const tm_cluster *cluster);
 bool tm_score_better(const tm_score *score, const tm_score *than);
 
-/* Lets node v, which is off the surface, come closer to its place, by that factor of the
- * way that is missing; 0: all of it. All elements are from now on compared with how they
- * were when gathered, by thresholds of at most `threshold`. */
+/* Lets node v, which is off the surface, come closer to its point of the boundary, by
+ * that factor of the way that is missing; 0: all of it. All elements are from now on
+ * compared with how they were when gathered, by thresholds of at most `threshold`. */
 void tm_cluster_approach(tm_cluster *cluster, size_t v, double factor, double threshold);
 
-/* Minimises from where the nodes are. Places with a score better than best_score are
+/* Minimises from where the nodes are. Positions with a score better than best_score are
  * kept in best[]. Ends early where nothing is bad. Returns by which part of the value it
  * became less. */
 double tm_cluster_descend(tm_cluster *cluster, tm_objective objective,
@@ -171,7 +174,7 @@ void tm_optimise_descend(tm_optimise_work *work, bool may_untangle);
 /* Whether no more is to be begun, by most_measured. */
 bool tm_optimise_is_spent(const tm_optimise_work *work);
 
-/* Takes the best places of the cluster into the mesh. */
+/* Takes the best positions of the cluster into the mesh. */
 void tm_optimise_accept(tm_optimise_work *work);
 
 /* Mends what is bad and near the nodes that vicinity has, pass after pass. */
@@ -181,7 +184,7 @@ tm_status tm_optimise_mend(tm_optimise_work *work, unsigned effort, tm_error *er
  * patches, and mends again. */
 tm_status tm_optimise_release(tm_optimise_work *work, tm_error *error);
 
-/* Brings nodes that are off the surface to their places. */
+/* Brings nodes that are off the surface to it. */
 tm_status tm_optimise_off_surface(tm_optimise_work *work, tm_error *error);
 
 #endif

@@ -27,7 +27,7 @@ typedef struct list {
 
 static bool can_be_released(const tm_node_rule *rule, size_t step)
 {
-    if (rule->held)
+    if (rule->off_surface)
         return false;
     if (rule->freedom == TM_MOVES_ON_SURFACE)
         return rule->where != TM_NONE;

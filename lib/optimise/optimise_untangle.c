@@ -37,13 +37,13 @@ static const regular apex = {{{1.25, -1, 0.25}, {-1, 2, -1}, {0.25, -1, 1.25}}, 
 
 static const regular *regular_of(size_t nodes, size_t corner)
 {
-    enum { TETRAHEDRON = 4, PYRAMID = 5, WEDGE = 6, BASE_CORNERS = 4 };
+    enum { BASE_CORNERS = 4 };
     switch (nodes) {
-    case TETRAHEDRON:
+    case TM_TET_NODES:
         return &tetrahedron;
-    case PYRAMID:
+    case TM_PYRAMID_NODES:
         return corner < BASE_CORNERS ? &base : &apex;
-    case WEDGE:
+    case TM_WEDGE_NODES:
         return &wedge;
     default:
         return &right;
@@ -78,7 +78,7 @@ static void measure(const tm_cluster *cluster, size_t e, size_t corner, double e
                     distortion *d)
 {
     const size_t start = cluster->start[e], nodes = cluster->start[e + 1] - start;
-    const unsigned char *at = tm_element_shapes[nodes].node[corner];
+    const uint8_t *at = tm_element_shapes[nodes].corner[corner];
     const double scale = 1 / cluster->element_size[e];
     d->of = regular_of(nodes, corner);
     for (size_t i = 0; i < 4; i++)

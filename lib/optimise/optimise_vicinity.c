@@ -19,7 +19,7 @@ static void mark_seeds(uint8_t *ring, const tm_mixed_mesh *mesh, const uint32_t 
         for (size_t i = mesh->start[seed[s]]; i < mesh->start[seed[s] + 1]; i++)
             ring[mesh->item[i]] = 0;
     for (size_t v = 0; v < mesh->nodes; v++)
-        if (rule[v].held)
+        if (rule[v].off_surface)
             ring[v] = 0;
 }
 
@@ -50,7 +50,7 @@ static tm_status number_rows(tm_vicinity *vicinity, const tm_mixed_mesh *mesh,
     return vicinity->start ? TM_OK : tm_fail_memory(error);
 }
 
-/* Counting sort: start[] is one place ahead while rows are filled. */
+/* Counting sort: start[] is one row ahead while rows are filled. */
 static tm_status fill_rows(tm_vicinity *vicinity, const tm_mixed_mesh *mesh,
                            tm_error *error)
 {

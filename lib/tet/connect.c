@@ -3,6 +3,7 @@
 #include "connect.h"
 
 #include "../base/array.h"
+#include "../element/shape.h"
 #include "../geom/predicates.h"
 #include "../mesh/face_order.h"
 #include "../mesh/face_pairs.h"

@@ -5,9 +5,6 @@
 
 #include <stdlib.h>
 
-const uint8_t tm_edge_corner[6][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2},
-                                      {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}};
-
 enum { CORNER_SUM = 0 + 1 + 2 + 3 };
 
 /* The edge between two corners. */

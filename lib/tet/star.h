@@ -3,6 +3,7 @@
 #ifndef TM_TET_STAR_H
 #define TM_TET_STAR_H
 
+#include "../element/shape.h"
 #include "mesh.h"
 
 /* Tetrahedron i has the nodes a, b, ring[i], ring[i + 1], and (a, b, ring[i],
@@ -22,10 +23,6 @@ typedef struct tm_star {
 } tm_star;
 
 void tm_star_free(tm_star *star);
-
-/* The six edges of a tetrahedron as pairs of corners; the other two corners follow, such
- * that the four are an even permutation of 0 1 2 3. */
-extern const uint8_t tm_edge_corner[6][4];
 
 /* Collects the star of edge e (0 … 5) of tetrahedron t, which is its first one if the
  * star is closed. False where memory is out. O(size). */

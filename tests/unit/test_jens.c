@@ -59,7 +59,7 @@ static void test_regular(void **state)
     for (size_t k = 0; k < KINDS; k++) {
         const size_t nodes = kinds[k];
         const tm_element_shape *shape = &tm_element_shapes[nodes];
-        double jacobian[TM_CORNERS_MOST];
+        double jacobian[TM_ELEMENT_CORNERS];
         tm_scaled_jacobians(shape, regular[nodes], item, jacobian);
         for (size_t i = 0; i < shape->corners; i++)
             assert_near(jacobian[i], shape->k[i], 4e-16);
@@ -152,14 +152,14 @@ static void test_random(void **state)
 {
     (void)state;
     for (int trial = 0; trial < 1000; trial++) {
-        double p[8][3], jacobian[TM_CORNERS_MOST], slope[4][3];
+        double p[8][3], jacobian[TM_ELEMENT_CORNERS], slope[4][3];
         random_points(p, 8);
         for (size_t k = 0; k < KINDS; k++) {
             const tm_element_shape *shape = &tm_element_shapes[kinds[k]];
             double least = 2, jens = 2;
             tm_scaled_jacobians(shape, p, item, jacobian);
             for (size_t i = 0; i < shape->corners; i++) {
-                const unsigned char *n = shape->node[i];
+                const unsigned char *n = shape->corner[i];
                 const double one = tm_scaled_jacobian(p[n[0]], p[n[1]], p[n[2]], p[n[3]]);
                 assert_near(jacobian[i], one, 1e-13);
                 assert_near(

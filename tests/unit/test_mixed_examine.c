@@ -78,7 +78,7 @@ static void test_shapes(void **state)
     (void)state;
     for (size_t i = 0; i < 4; i++) {
         const size_t k = kinds[i];
-        const tm_mixed_shape *s = &tm_mixed_shapes[k];
+        const tm_element_shape *s = &tm_element_shapes[k];
         int run[8][8] = {{0}};
         double centre[3] = {0};
         for (size_t v = 0; v < k; v++)
@@ -107,10 +107,13 @@ static void test_shapes(void **state)
             assert_int_equal(run[n[0]][n[1]] | run[n[1]][n[0]], 1 << f[0] | 1 << f[1]);
             assert_true(f[0] != f[1]);
         }
-        const unsigned char(*corner)[4] = tm_element_shapes[kinds[i]].node;
+        const unsigned char(*corner)[4] = tm_element_shapes[kinds[i]].corner;
         for (size_t c = 0; c < s->corners; c++)
             for (size_t j = 1; j < 4; j++)
                 assert_true(run[corner[c][0]][corner[c][j]] != 0);
+        assert_in_range(s->determinants, 1, s->corners);
+        assert_int_equal(s->kind, i);
+        assert_int_equal(tm_element_kind_nodes[i], k);
     }
 }
 
@@ -128,7 +131,7 @@ static void test_each_kind(void **state)
         assert_int_equal(found.element_count, 1);
         for (size_t j = 0; j < 4; j++)
             assert_int_equal(found.kind[j], i == j);
-        assert_int_equal(found.boundary_faces, tm_mixed_shapes[k].faces);
+        assert_int_equal(found.boundary_faces, tm_element_shapes[k].faces);
         assert_int_equal(found.components, 1);
         assert_int_equal(found.unused_nodes, 0);
         assert_int_equal(found.euler, 1);
@@ -144,9 +147,9 @@ static void test_corners(void **state)
     (void)state;
     for (size_t i = 0; i < 4; i++) {
         const size_t k = kinds[i];
-        const tm_mixed_shape *s = &tm_mixed_shapes[k];
-        const unsigned char(*corner)[4] = tm_element_shapes[k].node;
-        for (size_t c = 0; c < s->corners; c++) {
+        const tm_element_shape *s = &tm_element_shapes[k];
+        const unsigned char(*corner)[4] = tm_element_shapes[k].corner;
+        for (size_t c = 0; c < s->determinants; c++) {
             double xyz[8][3], middle[3], *x = xyz[corner[c][0]];
             memcpy(xyz, model[k], sizeof xyz);
             for (size_t j = 0; j < 3; j++)
@@ -583,7 +586,7 @@ static void add_facets(division *d)
 {
     for (size_t e = 0; e < d->elements; e++) {
         const uint32_t *n = d->item + d->start[e];
-        const tm_mixed_shape *s = &tm_mixed_shapes[d->start[e + 1] - d->start[e]];
+        const tm_element_shape *s = &tm_element_shapes[d->start[e + 1] - d->start[e]];
         for (size_t f = 0; f < s->faces; f++) {
             const size_t k = tm_mixed_face_nodes(s->face[f]);
             for (int side = 0; side < 6; side++) {

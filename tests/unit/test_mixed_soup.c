@@ -116,7 +116,7 @@ static void list_faces(soup *s)
 {
     for (size_t e = 0; e < s->mesh.elements; e++) {
         const uint32_t *n = s->item + s->start[e];
-        const tm_mixed_shape *shape = &tm_mixed_shapes[size_of(s, e)];
+        const tm_element_shape *shape = &tm_element_shapes[size_of(s, e)];
         s->sign[e] = has_twice(n, size_of(s, e)) ? 2 : 0;
         for (size_t f = 0; s->sign[e] != 2 && f < shape->faces; f++) {
             polygon *p = &s->of[s->faces++];
@@ -245,7 +245,7 @@ static int determinant_sign(const soup *s, size_t e, const size_t c[4])
 static void count_corners(const soup *s, size_t e, size_t count[3])
 {
     const size_t k = size_of(s, e);
-    const tm_mixed_shape *shape = &tm_mixed_shapes[k];
+    const tm_element_shape *shape = &tm_element_shapes[k];
     for (size_t v = 0; v < k; v++) {
         size_t c[5] = {v}, found = 1;
         for (size_t i = 0; i < shape->edges; i++)

@@ -64,16 +64,17 @@ static double distance_from_place(const tm_octree_mesh *mesh, const tm_surface *
     return sqrt(closest.distance2);
 }
 
-/* All boundary nodes are on the surface, but those that are held. */
+/* All boundary nodes are on the surface, but those that are off it. */
 static void check_boundary(const tm_octree_mesh *mesh, const tm_surface *surface)
 {
     const double close = 1e-9 * sqrt(tm_distance2(surface->low, surface->high));
-    size_t held = 0;
+    size_t off_surface = 0;
     for (size_t s = 0; s < mesh->boundary.nodes; s++) {
-        held += mesh->held[s];
-        assert_true(mesh->held[s] || distance_from_place(mesh, surface, s) <= close);
+        off_surface += mesh->off_surface[s];
+        assert_true(mesh->off_surface[s] ||
+                    distance_from_place(mesh, surface, s) <= close);
     }
-    assert_int_equal(held, mesh->report.held_back);
+    assert_int_equal(off_surface, mesh->report.off_surface);
 }
 
 /* Whether two interior boundary nodes are the ends of an edge, or of a diagonal that cuts
@@ -153,7 +154,7 @@ static void check_corners(const tm_octree_mesh *mesh, const tm_surface *surface)
         if (mesh->feature.kind[s] == TM_ON_CORNER) {
             const uint32_t corner = mesh->feature.of[s];
             nodes[corner]++;
-            if (!mesh->held[s])
+            if (!mesh->off_surface[s])
                 assert_memory_equal(outer_point(mesh, s),
                                     surface->xyz[surface->corner[corner]],
                                     3 * sizeof(double));
@@ -252,7 +253,7 @@ static bool has_solid(const tm_octree *octree, const tm_surface *surface)
 static void test_random(void **state)
 {
     (void)state;
-    size_t elements = 0, boundary = 0, held = 0;
+    size_t elements = 0, boundary = 0, off_surface = 0;
     for (int round = 0; round < ROUNDS; round++) {
         const uint64_t seed = random_state;
         tm_surface surface;
@@ -272,7 +273,7 @@ static void test_random(void **state)
             check_boundary(&mesh, &surface);
             elements += mesh.assembly.mesh.elements;
             boundary += mesh.boundary.nodes;
-            held += mesh.report.held_back;
+            off_surface += mesh.report.off_surface;
         }
         assert_int_equal(surface.patches, patches);
         assert_ok(tm_surface_check(&surface, &error), &error);
@@ -280,9 +281,9 @@ static void test_random(void **state)
         tm_octree_free(&octree);
         tm_surface_free(&surface);
     }
-    printf("%zu elements; %zu of %zu boundary nodes are held back\n", elements, held,
-           boundary);
-    assert_true(elements > 0 && held < boundary);
+    printf("%zu elements; %zu of %zu boundary nodes are held back\n", elements,
+           off_surface, boundary);
+    assert_true(elements > 0 && off_surface < boundary);
 }
 
 /* A cube with a thin wall, in the middle of which are leaves from level 5 on. */

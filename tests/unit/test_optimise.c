@@ -264,7 +264,7 @@ static void check(const grid *g, const tm_boundary *boundary, double threshold,
     for (size_t v = 0; v < g->mesh.nodes; v++) {
         double before[3];
         memcpy(before, g->mesh.xyz[v], sizeof before);
-        if (g->rule[v].held)
+        if (g->rule[v].off_surface)
             continue;
         place_node((grid *)g, boundary, v);
         assert_true(tm_distance2(before, g->mesh.xyz[v]) < 1e-18 * SIDE * SIDE);
@@ -274,7 +274,7 @@ static void check(const grid *g, const tm_boundary *boundary, double threshold,
 static tm_optimise_report optimise(grid *g, const tm_boundary *boundary, double threshold)
 {
     const tm_optimise_options options = {
-        .threshold = threshold, .held_threshold = threshold, .effort = 3};
+        .threshold = threshold, .off_surface_threshold = threshold, .effort = 3};
     tm_optimise_report report;
     tm_error error;
     assert_int_equal(
@@ -456,16 +456,16 @@ static void test_held(void **state)
             tm_node_rule *rule = &g.rule[v];
             if (g.mesh.xyz[v][0] > 0 || random_below(8) > 0)
                 continue;
-            rule->held = true;
+            rule->off_surface = true;
             g.mesh.xyz[v][0] = 0.2 + 0.3 * random_unit();
         }
         remember(&g);
         const tm_optimise_report report = optimise(&g, &cube, threshold);
         check(&g, &cube, threshold, &report);
-        assert_true(report.held_before > 0);
-        assert_int_equal(report.held_after, 0);
+        assert_true(report.off_surface_before > 0);
+        assert_int_equal(report.off_surface_after, 0);
         for (uint32_t v = 0; v < GRID; v++)
-            assert_false(g.rule[v].held);
+            assert_false(g.rule[v].off_surface);
         free_grid(&g);
     }
 }
@@ -479,14 +479,14 @@ static void test_held_stays(void **state)
     for (size_t i = 0; i < g.mesh.nodes; i++)
         if (i != v)
             g.rule[i].freedom = TM_MOVES_NOT;
-    g.rule[v].held = true;
+    g.rule[v].off_surface = true;
     g.mesh.xyz[v + 1][0] = -0.5;
     g.mesh.xyz[v][0] = -0.9;
     remember(&g);
     const tm_optimise_report report = optimise(&g, &cube, 0.03);
-    assert_int_equal(report.held_before, 1);
-    assert_int_equal(report.held_after, 1);
-    assert_true(g.rule[v].held);
+    assert_int_equal(report.off_surface_before, 1);
+    assert_int_equal(report.off_surface_after, 1);
+    assert_true(g.rule[v].off_surface);
     check(&g, &cube, 0.03, &report);
     free_grid(&g);
 }
@@ -507,7 +507,7 @@ static void test_released(void **state)
         memcpy(g.mesh.xyz[1], g.mesh.xyz[0], sizeof *g.mesh.xyz);
         remember(&g);
         const tm_optimise_options options = {.threshold = 0.03,
-                                             .held_threshold = 0.03,
+                                             .off_surface_threshold = 0.03,
                                              .release_threshold = may * 0.01,
                                              .effort = 1};
         tm_optimise_report report;
@@ -541,7 +541,7 @@ static void test_thresholds(void **state)
         bad += g.before[e] < thresholds[e];
     }
     const tm_optimise_options options = {
-        .thresholds = thresholds, .held_threshold = 0.02, .effort = 3};
+        .thresholds = thresholds, .off_surface_threshold = 0.02, .effort = 3};
     tm_optimise_report report;
     tm_error error;
     assert_int_equal(tm_mixed_optimise(&g.mesh, g.rule, &cube, &options, &report, &error),
@@ -563,10 +563,10 @@ static void test_spent(void **state)
     grid g = make_grid(ANY);
     throw_nodes(&g, &cube, 0.45, 1);
     for (uint32_t v = 0; v < GRID; v += WIDE * WIDE + 1)
-        g.rule[v].held = g.rule[v].freedom == TM_MOVES_ON_SURFACE;
+        g.rule[v].off_surface = g.rule[v].freedom == TM_MOVES_ON_SURFACE;
     remember(&g);
     const tm_optimise_options options = {.threshold = 0.1,
-                                         .held_threshold = 0.1,
+                                         .off_surface_threshold = 0.1,
                                          .release_threshold = 0.1,
                                          .effort = 1,
                                          .most_measured = 1};
@@ -576,7 +576,7 @@ static void test_spent(void **state)
                      TM_OK);
     check(&g, &cube, 0.1, &report);
     assert_int_equal(report.clusters, 1);
-    assert_int_equal(report.held_after, report.held_before);
+    assert_int_equal(report.off_surface_after, report.off_surface_before);
     free_grid(&g);
 }
 

@@ -4,7 +4,7 @@
 #include "../../lib/geom/predicates.h"
 #include "../../lib/geom/vector.h"
 #include "../../lib/element/tet_four.h"
-#include "../../lib/element/tet_gain.h"
+#include "../../lib/element/tet_measure.h"
 #include "../../lib/element/tet_quality.h"
 #include "random.h"
 
@@ -79,7 +79,7 @@ static void test_right_corner(void **state)
     tm_tet_dihedrals(right_corner[0], right_corner[1], right_corner[2], right_corner[3],
                      angle);
     for (size_t e = 0; e < TM_TET_EDGES; e++) {
-        const bool at_corner = tm_tet_edge_corner[e][0] == 0;
+        const bool at_corner = tm_edge_corner[e][0] == 0;
         assert_near(angle[e], at_corner ? 90 : acos(1 / sqrt(3)) * 180 / pi, 1e-13);
     }
     assert_near(sine2(right_corner), 2.0 / 3, 1e-15);
@@ -96,8 +96,8 @@ static void test_edge_order(void **state)
 {
     (void)state;
     for (size_t e = 0; e < TM_TET_EDGES; e++) {
-        const unsigned char *end = tm_tet_edge_corner[e];
-        const unsigned char *opposite = tm_tet_edge_corner[TM_TET_EDGES - 1 - e];
+        const unsigned char *end = tm_edge_corner[e];
+        const unsigned char *opposite = tm_edge_corner[TM_TET_EDGES - 1 - e];
         tetrahedron t = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
         t[end[1]][2] = 1;
         t[opposite[0]][0] = 1;
@@ -220,8 +220,8 @@ static void test_dihedrals_are_angles_across_edges(void **state)
         double angle[TM_TET_EDGES];
         tm_tet_dihedrals(t[0], t[1], t[2], t[3], angle);
         for (size_t e = 0; e < TM_TET_EDGES; e++) {
-            const double expected = angle_at_edge(
-                t, tm_tet_edge_corner[e], tm_tet_edge_corner[TM_TET_EDGES - 1 - e]);
+            const double expected =
+                angle_at_edge(t, tm_edge_corner[e], tm_edge_corner[TM_TET_EDGES - 1 - e]);
             assert_near(angle[e], expected, 1e-7);
         }
     }
@@ -423,9 +423,8 @@ static void test_four_are_as_each(void **state)
             assert_int_equal(valid >> k & 1, measured);
             assert_memory_equal(&sine2_of[k], &one, sizeof one);
             for (int e = 0; e < TM_TET_EDGES; e++)
-                assert_true(length2[e][k] ==
-                            tm_distance2(t[k][tm_tet_edge_corner[e][0]],
-                                         t[k][tm_tet_edge_corner[e][1]]));
+                assert_true(length2[e][k] == tm_distance2(t[k][tm_edge_corner[e][0]],
+                                                          t[k][tm_edge_corner[e][1]]));
             if (positive >> k & 1)
                 assert_int_equal(tm_orient3d_exact(t[k][0], t[k][1], t[k][2], t[k][3]),
                                  1);

@@ -30,13 +30,13 @@ static void list_nodes(tm_text *text, size_t nodes, const double (*xyz)[3],
                        const uint32_t *item)
 {
     const tm_element_shape *shape = &tm_element_shapes[nodes];
-    double jacobian[TM_CORNERS_MOST], least[TM_ELEMENT_NODES_MOST];
+    double jacobian[TM_ELEMENT_CORNERS], least[TM_ELEMENT_NODES];
     tm_scaled_jacobians(shape, xyz, item, jacobian);
     for (size_t v = 0; v < nodes; v++)
         least[v] = 1;
     for (size_t i = 0; i < shape->corners; i++) {
         const double jens = tm_jens_of(jacobian[i], shape->k[i]);
-        double *node = &least[shape->node[i][0]];
+        double *node = &least[shape->corner[i][0]];
         *node = jens < *node ? jens : *node;
     }
     for (size_t v = 0; v < nodes; v++)

@@ -52,7 +52,7 @@ static uint8_t *mark_off_surface(const tm_octree_mesh *mesh, const tm_octree *oc
     uint8_t *split = tm_new(octree->leaves, sizeof *split);
     bool *near = calloc(octree->nodes + 1, sizeof *near);
     for (size_t s = 0; near && s < mesh->boundary.nodes; s++)
-        near[mesh->boundary.grid_node[s]] = mesh->held[s];
+        near[mesh->boundary.grid_node[s]] = mesh->off_surface[s];
     for (int ring = 0; split && near && ring < 2; ring++) {
         for (size_t l = 0; l < octree->leaves; l++) {
             split[l] = 0;
@@ -77,7 +77,7 @@ static tm_status try_split(tm_octree_mesh *mesh, tm_octree *octree, tm_surface *
                            unsigned deepest, const uint8_t *split, bool *better,
                            tm_error *error)
 {
-    const size_t held = mesh->report.held_back;
+    const size_t off_surface = mesh->report.off_surface;
     tm_octree finer;
     tm_octree_mesh_free(mesh);
     tm_status status = tm_octree_copy(&finer, octree, error);
@@ -85,7 +85,7 @@ static tm_status try_split(tm_octree_mesh *mesh, tm_octree *octree, tm_surface *
         status = tm_octree_refine(&finer, surface, split, error);
     if (status == TM_OK)
         status = make_without_loss(mesh, &finer, surface, deepest, error);
-    *better = status == TM_OK && mesh->report.held_back < held;
+    *better = status == TM_OK && mesh->report.off_surface < off_surface;
     if (*better) {
         tm_octree_free(octree);
         *octree = finer;
@@ -116,7 +116,7 @@ tm_status tm_octree_mesh_refine_lost(tm_octree_mesh *mesh, tm_octree *octree,
                            : tm_octree_mesh_make(mesh, octree, surface, error);
     for (bool better = levels > 0; status == TM_OK && better;) {
         uint8_t *split =
-            mesh->report.held_back > 0 ? mark_off_surface(mesh, octree, deepest) : NULL;
+            mesh->report.off_surface > 0 ? mark_off_surface(mesh, octree, deepest) : NULL;
         if (!split)
             break;
         status = try_split(mesh, octree, surface, deepest, split, &better, error);

@@ -14,8 +14,8 @@ static tm_status find_closest(tm_octree_mesh *m, const tm_surface *surface,
                               tm_error *error)
 {
     m->at = tm_new(m->boundary.nodes, sizeof *m->at);
-    m->held = calloc(m->boundary.nodes + 1, sizeof *m->held);
-    if (!m->at || !m->held)
+    m->off_surface = calloc(m->boundary.nodes + 1, sizeof *m->off_surface);
+    if (!m->at || !m->off_surface)
         return tm_fail_memory(error);
     uint32_t guess = TM_NONE;
     for (size_t s = 0; s < m->boundary.nodes; s++) {
@@ -73,9 +73,9 @@ static tm_status find_boundary_once(tm_octree_mesh *m, const tm_octree *octree,
 {
     tm_interior_boundary_free(&m->boundary);
     free(m->at);
-    free(m->held);
+    free(m->off_surface);
     m->at = NULL;
-    m->held = NULL;
+    m->off_surface = NULL;
     m->report.components = 0;
     tm_status status =
         tm_interior_boundary_find(&m->boundary, octree, &m->interior, error);
@@ -166,6 +166,6 @@ void tm_octree_mesh_free(tm_octree_mesh *mesh)
     tm_feature_free(&mesh->feature);
     tm_assembly_free(&mesh->assembly);
     free(mesh->at);
-    free(mesh->held);
+    free(mesh->off_surface);
     *mesh = (tm_octree_mesh){0};
 }

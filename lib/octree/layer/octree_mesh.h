@@ -13,10 +13,10 @@ typedef struct tm_octree_mesh_report {
     double lost_at[3];                /* the centre of one of them */
     size_t corners_lost, curves_lost; /* of the surface */
     double feature_lost_at[3];
-    size_t held_back;  /* boundary nodes that are not on the surface */
-    size_t invalid;    /* elements with J_ENS <= 0 */
-    size_t components; /* of the boundary */
-    int64_t euler;     /* of the boundary */
+    size_t off_surface; /* boundary nodes that are not on the surface */
+    size_t invalid;     /* elements with J_ENS <= 0 */
+    size_t components;  /* of the boundary */
+    int64_t euler;      /* of the boundary */
 } tm_octree_mesh_report;
 
 typedef struct tm_octree_mesh {
@@ -25,8 +25,8 @@ typedef struct tm_octree_mesh {
     tm_feature feature;
     tm_assembly assembly;
     tm_surface_point
-        *at;    /* [nodes of the interior boundary]: where they are on the surface */
-    bool *held; /* [nodes of the interior boundary]: it is not there */
+        *at; /* [nodes of the interior boundary]: where they are on the surface */
+    bool *off_surface; /* [nodes of the interior boundary]: it is not there */
     tm_octree_mesh_report report;
 } tm_octree_mesh;
 

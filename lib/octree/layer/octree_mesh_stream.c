@@ -25,7 +25,7 @@ static tm_status give_nodes(tm_octree_mesh *m, tm_stream *stream, tm_error *erro
         return tm_fail_memory(error);
     for (size_t s = 0; s < m->boundary.nodes; s++) {
         const double place = TM_NODE_ON_PATCH + m->feature.kind[s];
-        node->attribute[a->outer + s] = m->held[s] ? -place : place;
+        node->attribute[a->outer + s] = m->off_surface[s] ? -place : place;
     }
     node->count = a->mesh.nodes;
     node->attributes = 1;

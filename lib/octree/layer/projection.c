@@ -157,7 +157,8 @@ static void visit_edges(zone *z, const tm_mixed_mesh *mesh, size_t e,
                         void (*visit)(zone *z, uint32_t from, uint32_t to))
 {
     const uint32_t *item = mesh->item + mesh->start[e];
-    const tm_mixed_shape *shape = &tm_mixed_shapes[mesh->start[e + 1] - mesh->start[e]];
+    const tm_element_shape *shape =
+        &tm_element_shapes[mesh->start[e + 1] - mesh->start[e]];
     for (unsigned i = 0; i < shape->edges; i++)
         for (unsigned end = 0; end < 2; end++) {
             const uint32_t from = z->order[item[shape->edge[i][end]]];

@@ -81,8 +81,8 @@ static void retreat_all(tm_octree_mesh *m, retreat *r)
         ;
     m->report.invalid = r->invalid;
     for (size_t s = 0; s < m->boundary.nodes; s++) {
-        m->held[s] = r->steps[m->assembly.outer + s] > 0;
-        m->report.held_back += m->held[s];
+        m->off_surface[s] = r->steps[m->assembly.outer + s] > 0;
+        m->report.off_surface += m->off_surface[s];
     }
 }
 
@@ -135,7 +135,7 @@ tm_status tm_untangle_layer(tm_octree_mesh *mesh, const tm_octree *octree,
     const size_t few = 1, at_least = 1500000;
     const tm_optimise_options options = {
         .threshold = threshold,
-        .held_threshold = threshold,
+        .off_surface_threshold = threshold,
         .effort = 1,
         .most_measured = at_least + few * mesh->assembly.mesh.elements};
     tm_optimise_report report;

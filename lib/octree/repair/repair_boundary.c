@@ -103,7 +103,7 @@ static tm_node_rule on_patch(const finder *f, const tm_surface_point *at, uint8_
     *place = TM_NODE_ON_PATCH;
     return (tm_node_rule){.where = f->surface->patch[at->triangle],
                           .freedom = TM_MOVES_ON_SURFACE,
-                          .held = at->distance2 > f->near2};
+                          .off_surface = at->distance2 > f->near2};
 }
 
 /* The rule of a node that is to be on a corner or a curve: that closest to it; of the
@@ -121,12 +121,12 @@ static tm_node_rule rule_given(const finder *f, const double xyz[3],
                       : find_curve(f, xyz, at->triangle, all);
     if (best.what == TM_NONE)
         return on_patch(f, at, place);
-    const bool held = best.distance2 > f->near2;
-    if (corner && !held)
+    const bool off_surface = best.distance2 > f->near2;
+    if (corner && !off_surface)
         return (tm_node_rule){.where = TM_NONE, .freedom = TM_MOVES_NOT};
     return (tm_node_rule){.where = best.what,
                           .freedom = corner ? TM_MOVES_AT_CORNER : TM_MOVES_ON_CURVE,
-                          .held = held};
+                          .off_surface = off_surface};
 }
 
 /* The rule of a boundary node by its coordinates. */

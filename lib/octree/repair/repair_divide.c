@@ -56,13 +56,12 @@ static tm_status add_division(divider *d, size_t e, double jens, unsigned open,
 
 static tm_status find_divisions(divider *d, tm_error *error)
 {
-    enum { TETRAHEDRON = 4 };
     const tm_mixed_mesh *mesh = &d->state->mesh;
     size_t next = 0;
     tm_status status = tm_boundary_faces(mesh, &d->face, &d->faces, error);
     for (size_t e = 0; status == TM_OK && e < mesh->elements; e++) {
         const double jens = tm_mixed_jens(mesh, e);
-        if (mesh->start[e + 1] - mesh->start[e] > TETRAHEDRON &&
+        if (mesh->start[e + 1] - mesh->start[e] > TM_TET_NODES &&
             tm_repair_is_bad(mesh, e, jens, d->threshold))
             status = add_division(d, e, jens, find_open(d, e, &next), error);
     }

@@ -13,7 +13,8 @@ static bool is_face(const tm_mixed_mesh *mesh, size_t e, size_t k, const uint32_
                     bool reversed)
 {
     const uint32_t *item = mesh->item + mesh->start[e];
-    const tm_mixed_shape *shape = &tm_mixed_shapes[mesh->start[e + 1] - mesh->start[e]];
+    const tm_element_shape *shape =
+        &tm_element_shapes[mesh->start[e + 1] - mesh->start[e]];
     for (size_t f = 0; f < shape->faces; f++) {
         const uint8_t *corner = shape->face[f];
         if (tm_mixed_face_nodes(corner) != k)

@@ -34,7 +34,7 @@ static tm_status move(tm_repair_state *state, const tm_boundary *boundary,
 }
 
 tm_status tm_repair_move(tm_repair_state *state, const tm_surface *surface,
-                         double threshold, double held_threshold, unsigned effort,
+                         double threshold, double off_surface_threshold, unsigned effort,
                          tm_repair_score *score, tm_error *error)
 {
     tm_boundary boundary = {0};
@@ -46,8 +46,8 @@ tm_status tm_repair_move(tm_repair_state *state, const tm_surface *surface,
         thresholds ? tm_repair_save(&best, state, error) : tm_fail_memory(error);
     tm_optimise_options options = {.thresholds = thresholds,
                                    .threshold = threshold,
-                                   .held_threshold =
-                                       fmax(held_threshold, TM_REPAIR_LEAST),
+                                   .off_surface_threshold =
+                                       fmax(off_surface_threshold, TM_REPAIR_LEAST),
                                    .effort = effort};
     bool is_best = true;
     for (int round = 0; status == TM_OK && round < ROUNDS; round++) {

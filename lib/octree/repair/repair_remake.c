@@ -67,7 +67,7 @@ static tm_status take_mesh(tm_repair_state *to, tm_octree_mesh *made,
         to->origin[e] = (uint32_t)e;
     for (size_t s = 0; s < made->boundary.nodes; s++) {
         const double place = TM_NODE_ON_PATCH + made->feature.kind[s];
-        given[made->assembly.outer + s] = made->held[s] ? -place : place;
+        given[made->assembly.outer + s] = made->off_surface[s] ? -place : place;
     }
     const tm_status status =
         tm_repair_find_rules(surface, nodes, (const double(*)[3])to->mesh.xyz, given,

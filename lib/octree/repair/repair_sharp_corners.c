@@ -139,7 +139,7 @@ static tm_status replace(const corners *t, const uint32_t *core, size_t cores,
             continue;
         }
         for (size_t p = 0; e == core[0] && p < parts->parts; p++) {
-            uint32_t node[TM_MIXED_NODES];
+            uint32_t node[TM_ELEMENT_NODES];
             const size_t k = parts->start[p + 1] - parts->start[p];
             for (size_t i = 0; i < k; i++)
                 node[i] = t->trial.node[parts->item[parts->start[p] + i]];

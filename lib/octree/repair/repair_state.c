@@ -23,7 +23,7 @@ tm_repair_score tm_repair_measure(const tm_repair_state *state, double threshold
     tm_repair_score score = {.worst = 1};
     double sum = 0;
     for (size_t v = 0; v < mesh->nodes; v++)
-        score.held += state->rule[v].held;
+        score.held += state->rule[v].off_surface;
     for (size_t e = 0; e < mesh->elements; e++) {
         const double jens = tm_mixed_jens(mesh, e);
         const bool invalid = tm_repair_is_bad(mesh, e, jens, 0);
@@ -69,7 +69,7 @@ static size_t sort_once(uint32_t *octant, size_t count)
 static bool has_held(const tm_repair_state *state, size_t e)
 {
     for (size_t i = state->mesh.start[e]; i < state->mesh.start[e + 1]; i++)
-        if (state->rule[state->mesh.item[i]].held)
+        if (state->rule[state->mesh.item[i]].off_surface)
             return true;
     return false;
 }
@@ -132,7 +132,7 @@ tm_status tm_repair_widen(const tm_repair_state *state, uint32_t **octant, size_
 void tm_repair_free_off_surface(tm_repair_state *state)
 {
     for (size_t v = 0; v < state->mesh.nodes; v++)
-        if (state->rule[v].held && state->rule[v].freedom == TM_MOVES_ON_SURFACE)
+        if (state->rule[v].off_surface && state->rule[v].freedom == TM_MOVES_ON_SURFACE)
             state->rule[v].where = TM_NONE;
 }
 

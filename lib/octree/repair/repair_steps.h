@@ -7,10 +7,10 @@
 #include "repair_state.h"
 
 /* Moves nodes, with that effort, so that bad elements become good; nodes that are off
- * the surface may leave elements of `held_threshold` behind. *score is that of the state,
- * before and after; it does not become worse. */
+ * the surface may leave elements of `off_surface_threshold` behind. *score is that of the
+ * state, before and after; it does not become worse. */
 tm_status tm_repair_move(tm_repair_state *state, const tm_surface *surface,
-                         double threshold, double held_threshold, unsigned effort,
+                         double threshold, double off_surface_threshold, unsigned effort,
                          tm_repair_score *score, tm_error *error);
 
 /* Makes elements at sharp tips of the surface anew (sharp_corner.h), where that makes

@@ -22,8 +22,8 @@ static void *renew(void **array, size_t count, size_t size)
 static void set_places(const tm_repair_state *state, tm_block *node)
 {
     for (size_t v = 0; v < node->count; v++)
-        node->attribute[v] =
-            state->rule[v].held ? -(double)state->place[v] : (double)state->place[v];
+        node->attribute[v] = state->rule[v].off_surface ? -(double)state->place[v]
+                                                        : (double)state->place[v];
 }
 
 /* More rows of .node: nodes that were added are nothing special. */
@@ -219,7 +219,7 @@ static tm_status give_facets(const tm_repair_state *state, const tm_surface *sur
     for (size_t f = 0; status == TM_OK && f < faces; f++) {
         const size_t e = face[f] >> TM_FACE_SHIFT;
         const uint32_t *item = mesh->item + mesh->start[e];
-        const uint8_t *corner = tm_mixed_shapes[mesh->start[e + 1] - mesh->start[e]]
+        const uint8_t *corner = tm_element_shapes[mesh->start[e + 1] - mesh->start[e]]
                                     .face[face[f] & ((1u << TM_FACE_SHIFT) - 1)];
         const size_t k = tm_mixed_face_nodes(corner);
         double middle[3] = {0, 0, 0};

@@ -11,7 +11,7 @@
 /* A star as a mesh of its own: the element's nodes, then the middle. */
 typedef struct {
     size_t k;
-    double xyz[TM_MIXED_NODES + 1][3];
+    double xyz[TM_ELEMENT_NODES + 1][3];
     size_t parts;
     size_t start[TM_STAR_PARTS + 1];
     uint32_t item[TM_STAR_ITEMS];
@@ -27,9 +27,9 @@ static void add_part(small *s, size_t corners, const uint8_t *face)
 }
 
 /* The parts, each quadrilateral uncut (0) or cut from its corner 0 or 1 (1, 2). */
-static void add_parts(small *s, const uint8_t cut[TM_MIXED_FACES])
+static void add_parts(small *s, const uint8_t cut[TM_ELEMENT_FACES])
 {
-    const tm_mixed_shape *shape = &tm_mixed_shapes[s->k];
+    const tm_element_shape *shape = &tm_element_shapes[s->k];
     s->parts = 0;
     s->start[0] = 0;
     for (size_t f = 0; f < shape->faces; f++) {
@@ -58,7 +58,7 @@ static double measure(const small *s)
 /* Moves the middle alone, from the mean of the corners. */
 static tm_status place_middle(small *s, double threshold, tm_error *error)
 {
-    tm_node_rule rule[TM_MIXED_NODES + 1];
+    tm_node_rule rule[TM_ELEMENT_NODES + 1];
     for (size_t i = 0; i <= s->k; i++)
         rule[i] = (tm_node_rule){.where = TM_NONE,
                                  .freedom = i == s->k ? TM_MOVES_FREELY : TM_MOVES_NOT};
@@ -74,13 +74,13 @@ static tm_status place_middle(small *s, double threshold, tm_error *error)
                           .start = s->start,
                           .item = s->item};
     const tm_optimise_options options = {.threshold = threshold,
-                                         .held_threshold = threshold};
+                                         .off_surface_threshold = threshold};
     tm_optimise_report report;
     return tm_mixed_optimise(&mesh, rule, NULL, &options, &report, error);
 }
 
 /* Tries one way to cut the faces; it becomes *star if it is better. */
-static tm_status try_cut(tm_star *star, small *s, const uint8_t cut[TM_MIXED_FACES],
+static tm_status try_cut(tm_star *star, small *s, const uint8_t cut[TM_ELEMENT_FACES],
                          const uint32_t *node, double threshold, tm_error *error)
 {
     add_parts(s, cut);
@@ -101,16 +101,16 @@ tm_status tm_star_find(tm_star *star, const tm_mixed_mesh *mesh, size_t e, unsig
 {
     const uint32_t *node = mesh->item + mesh->start[e];
     small s = {.k = mesh->start[e + 1] - mesh->start[e]};
-    const tm_mixed_shape *shape = &tm_mixed_shapes[s.k];
+    const tm_element_shape *shape = &tm_element_shapes[s.k];
     for (size_t i = 0; i < s.k; i++)
         memcpy(s.xyz[i], mesh->xyz[node[i]], sizeof s.xyz[i]);
     *star = (tm_star){.parts = 0};
-    uint8_t best[TM_MIXED_FACES] = {0};
+    uint8_t best[TM_ELEMENT_FACES] = {0};
     tm_status status = try_cut(star, &s, best, node, threshold, error);
     for (size_t f = 0; f < shape->faces; f++) {
         if (!(open >> f & 1) || tm_mixed_face_nodes(shape->face[f]) == 3)
             continue;
-        uint8_t cut[TM_MIXED_FACES];
+        uint8_t cut[TM_ELEMENT_FACES];
         memcpy(cut, best, sizeof cut);
         for (uint8_t way = 1; way <= 2 && status == TM_OK; way++) {
             const double before = star->worst;

@@ -73,8 +73,8 @@ bool tm_sharp_corner_divide(tm_sharp_corner *parts, const tm_mixed_mesh *mesh,
     parts->start[0] = 0;
     for (size_t e = 0; e < count; e++) {
         const uint32_t *item = mesh->item + mesh->start[element[e]];
-        const tm_mixed_shape *shape =
-            &tm_mixed_shapes[mesh->start[element[e] + 1] - mesh->start[element[e]]];
+        const tm_element_shape *shape =
+            &tm_element_shapes[mesh->start[element[e] + 1] - mesh->start[element[e]]];
         for (size_t i = 0; i < shape->faces; i++) {
             const size_t k = tm_mixed_face_nodes(shape->face[i]);
             uint32_t face[4];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Improvement of a mesh by all local operations together, on the bad tetrahedra: a
- * hill climb by a cost (tet_cost.h) that counts them and says how bad they are, with
+ * hill climb by a cost (tet_measure.h) that counts them and says how bad they are, with
  * kicks out of its local optima. The surface (features.h) stays exactly where it is. */
 #ifndef TM_IMPROVE_IMPROVE_H
 #define TM_IMPROVE_IMPROVE_H

@@ -8,10 +8,7 @@
 
 #include "lepp.h"
 
-#include "../../element/angle_limits.h"
-
-#include "../../element/tet_gain.h"
-
+#include "../../element/tet_measure.h"
 #include "../operation/ball.h"
 #include "../operation/delaunay_insertion.h"
 #include "../operation/edge_removal.h"

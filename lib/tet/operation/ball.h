@@ -62,9 +62,11 @@ static inline tm_cavity_boundary tm_boundary_of_ball(const tm_ball *ball,
 static inline void tm_tet_face_below(const tm_tet_mesh *mesh, uint32_t t, uint32_t i,
                                      uint32_t face[3])
 {
-    static const uint8_t below[4][3] = {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}};
-    for (int k = 0; k < 3; k++)
-        face[k] = mesh->tet[t][below[i][k]];
+    const uint32_t *n = mesh->tet[t];
+    const uint8_t *corner = tm_face_corner[i];
+    face[0] = n[corner[0]];
+    face[1] = n[corner[2]];
+    face[2] = n[corner[1]];
 }
 
 #endif

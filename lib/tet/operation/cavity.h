@@ -4,7 +4,7 @@
 #ifndef TM_OPERATION_CAVITY_H
 #define TM_OPERATION_CAVITY_H
 
-#include "../../element/tet_cost.h"
+#include "../../element/tet_measure.h"
 #include "ball.h"
 #include "cavity_boundary.h"
 #include "replacement.h"

@@ -4,7 +4,7 @@
 #ifndef TM_OPERATION_CAVITY_BOUNDARY_H
 #define TM_OPERATION_CAVITY_BOUNDARY_H
 
-#include "../../element/tet_cost.h"
+#include "../../element/tet_measure.h"
 
 #include <stddef.h>
 #include <stdint.h>

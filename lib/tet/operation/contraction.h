@@ -4,7 +4,7 @@
 #ifndef TM_OPERATION_CONTRACTION_H
 #define TM_OPERATION_CONTRACTION_H
 
-#include "../../element/tet_cost.h"
+#include "../../element/tet_measure.h"
 #include "ball.h"
 
 /* What the tetrahedra of the ball that stay would cost with node b in the place of the

@@ -8,7 +8,7 @@
 #ifndef TM_OPERATION_EDGE_REMOVAL_H
 #define TM_OPERATION_EDGE_REMOVAL_H
 
-#include "../../element/tet_cost.h"
+#include "../../element/tet_measure.h"
 #include "../star.h"
 
 /* Larger stars are not tried: the thesis saw 14, the programme costs O(n³). */

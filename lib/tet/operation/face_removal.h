@@ -6,7 +6,7 @@
 #ifndef TM_OPERATION_FACE_REMOVAL_H
 #define TM_OPERATION_FACE_REMOVAL_H
 
-#include "../../element/tet_cost.h"
+#include "../../element/tet_measure.h"
 #include "../mesh.h"
 
 /* Faces beyond the first are looked for so many edges away, and are so many at most. */

@@ -9,39 +9,14 @@
 
 enum { POINTS = 64 };
 
-/* The faces of each kind, counter-clockwise seen from outside; in this order, which
- * decides between divisions that are as good. */
-typedef struct kind {
-    unsigned faces;
-    tm_piece face[PIECE_FACES];
-} kind;
-
-static const kind kinds[TM_ELEMENT_NODES_MOST + 1] = {
-    [4] = {4, {{3, {0, 2, 1}}, {3, {0, 1, 3}}, {3, {1, 2, 3}}, {3, {2, 0, 3}}}},
-    [5] = {5,
-           {{4, {0, 3, 2, 1}},
-            {3, {0, 1, 4}},
-            {3, {1, 2, 4}},
-            {3, {2, 3, 4}},
-            {3, {3, 0, 4}}}},
-    [6] = {5,
-           {{3, {0, 1, 2}},
-            {3, {3, 5, 4}},
-            {4, {0, 3, 4, 1}},
-            {4, {1, 4, 5, 2}},
-            {4, {2, 5, 3, 0}}}},
-    [8] = {6,
-           {{4, {0, 3, 2, 1}},
-            {4, {4, 5, 6, 7}},
-            {4, {0, 1, 5, 4}},
-            {4, {1, 2, 6, 5}},
-            {4, {2, 3, 7, 6}},
-            {4, {3, 0, 4, 7}}}}};
-
-static const kind *kind_of(const tm_piece *piece)
-{
-    return &kinds[piece->k];
-}
+/* The order of the faces of each kind, which decides between divisions that are as
+ * good. */
+static const uint8_t order[TM_ELEMENT_NODES + 1][PIECE_FACES] = {
+    [TM_TET_NODES] = {3, 0, 1, 2},
+    [TM_PYRAMID_NODES] = {0, 1, 2, 3, 4},
+    [TM_WEDGE_NODES] = {0, 1, 2, 3, 4},
+    [TM_HEX_NODES] = {4, 5, 2, 1, 3, 0},
+};
 
 static void edge_of(unsigned from, unsigned to, int edge[3])
 {
@@ -96,15 +71,16 @@ piece_face face_of(unsigned k, const uint8_t *place)
 /* Face f of an element. */
 static tm_piece face_at(const tm_piece *piece, unsigned f)
 {
-    tm_piece face = kind_of(piece)->face[f];
+    const uint8_t *corner = tm_element_shapes[piece->k].face[order[piece->k][f]];
+    tm_piece face = {.k = (uint8_t)tm_mixed_face_nodes(corner)};
     for (unsigned i = 0; i < face.k; i++)
-        face.place[i] = piece->place[face.place[i]];
+        face.place[i] = piece->place[corner[i]];
     return face;
 }
 
 unsigned faces_of_piece(const tm_piece *piece, piece_face face[PIECE_FACES])
 {
-    const unsigned n = kind_of(piece)->faces;
+    const unsigned n = tm_element_shapes[piece->k].faces;
     for (unsigned f = 0; f < n; f++) {
         const tm_piece is = face_at(piece, f);
         face[f] = face_of(is.k, is.place);
@@ -114,7 +90,7 @@ unsigned faces_of_piece(const tm_piece *piece, piece_face face[PIECE_FACES])
 
 bool is_convex_piece(const tm_piece *piece)
 {
-    for (unsigned f = 0; f < kind_of(piece)->faces; f++) {
+    for (unsigned f = 0; f < tm_element_shapes[piece->k].faces; f++) {
         const tm_piece face = face_at(piece, f);
         if (face.k == 4 && !is_convex(face.place))
             return false;
@@ -130,7 +106,7 @@ bool is_convex_piece(const tm_piece *piece)
 int volume_of(const tm_piece *piece)
 {
     int volume = 0;
-    for (unsigned f = 0; f < kind_of(piece)->faces; f++) {
+    for (unsigned f = 0; f < tm_element_shapes[piece->k].faces; f++) {
         const tm_piece face = face_at(piece, f);
         for (unsigned i = 2; i < face.k; i++)
             volume -= volume_of_four(face.place[0], face.place[i - 1], face.place[i],
@@ -154,7 +130,7 @@ static void point(unsigned i, double at[3])
 uint64_t points_in(const tm_piece *piece)
 {
     uint64_t in = UINT64_MAX;
-    for (unsigned f = 0; f < kind_of(piece)->faces; f++) {
+    for (unsigned f = 0; f < tm_element_shapes[piece->k].faces; f++) {
         const tm_piece face = face_at(piece, f);
         const unsigned char *origin = tm_leaf_point[face.place[0]];
         int n[3];
@@ -181,7 +157,7 @@ double quality_of(const tm_piece *piece)
     const tm_element_shape *shape = &tm_element_shapes[piece->k];
     double worst = 1;
     for (size_t c = 0; c < shape->corners; c++) {
-        const unsigned char *corner = shape->node[c];
+        const unsigned char *corner = shape->corner[c];
         const unsigned at = piece->place[corner[0]];
         double length = 1;
         for (unsigned i = 1; i < 4; i++) {

@@ -37,7 +37,7 @@ static tm_status approach(tm_optimise_work *w, uint32_t node, double factor, boo
     if (v == cluster->moving)
         return TM_OK;
     w->report->clusters++;
-    tm_cluster_approach(cluster, v, factor, w->options->held_threshold);
+    tm_cluster_approach(cluster, v, factor, w->options->off_surface_threshold);
     tm_optimise_descend(w, true);
     *done = cluster->best_score.bad <= cluster->first.bad;
     if (*done)
@@ -49,8 +49,8 @@ static tm_status approach(tm_optimise_work *w, uint32_t node, double factor, boo
 static tm_status bring(tm_optimise_work *w, uint32_t node, bool *closer, tm_error *error)
 {
     size_t f = 0;
-    for (size_t t = 0;
-         t < TRIES && f < FACTORS && w->rule[node].held && !tm_optimise_is_spent(w);
+    for (size_t t = 0; t < TRIES && f < FACTORS && w->rule[node].off_surface &&
+                       !tm_optimise_is_spent(w);
          t++) {
         bool done;
         const tm_status status = approach(w, node, factors[f], &done, error);
@@ -58,7 +58,7 @@ static tm_status bring(tm_optimise_work *w, uint32_t node, bool *closer, tm_erro
             return status;
         *closer |= done;
         if (done && f == 0)
-            w->rule[node].held = false;
+            w->rule[node].off_surface = false;
         f = done ? 0 : f + 1;
     }
     return TM_OK;
@@ -70,7 +70,7 @@ tm_status tm_optimise_off_surface(tm_optimise_work *w, tm_error *error)
     for (size_t round = 0; round < ROUNDS && closer; round++) {
         closer = false;
         for (uint32_t v = 0; v < w->mesh->nodes; v++) {
-            if (!w->rule[v].held || w->rule[v].freedom == TM_MOVES_NOT ||
+            if (!w->rule[v].off_surface || w->rule[v].freedom == TM_MOVES_NOT ||
                 w->vicinity.start[w->vicinity.row[v]] ==
                     w->vicinity.start[w->vicinity.row[v] + 1])
                 continue;
