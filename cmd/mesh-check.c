@@ -2,9 +2,8 @@
 /* mesh-check: what is wrong with a mesh, as exit status and as a list. */
 #include "common/app/filter.h"
 
-#include "../lib/examine/mixed_examine.h"
+#include "../lib/examine/element_examine.h"
 #include "../lib/examine/poly_examine.h"
-#include "../lib/examine/tet_examine.h"
 
 static const struct option long_options[] = {FILTER_OPTIONS};
 
@@ -37,12 +36,10 @@ static void examine(const filter *f, const tm_stream *stream, tm_examination *fo
     if (chosen == POLYHEDRA) {
         const tm_poly_arrays mesh = tm_poly_arrays_of(stream);
         status = tm_poly_examine(found, &mesh, f->threads, &error);
-    } else if (chosen == MIXED) {
-        const tm_mixed_arrays mesh = tm_mixed_arrays_of(stream);
-        status = tm_mixed_examine(found, &mesh, f->threads, &error);
     } else {
-        const tm_tet_arrays mesh = tm_tet_arrays_of(stream);
-        status = tm_tet_examine(found, &mesh, f->threads, &error);
+        const tm_mesh_view mesh = chosen == MIXED ? tm_mesh_view_of_mixed(stream)
+                                                  : tm_mesh_view_of_tets(stream);
+        status = tm_element_examine(found, &mesh, f->threads, &error);
     }
     if (status != TM_OK)
         filter_fail(f, &error);

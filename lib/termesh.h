@@ -33,6 +33,7 @@
 /* mesh: views of flat arrays */
 #include "mesh/cell_faces.h"
 #include "mesh/edge_map.h"
+#include "mesh/mesh_view.h"
 #include "mesh/mixed_mesh.h"
 #include "mesh/poly_arrays.h"
 
@@ -42,13 +43,12 @@
 #include "surface/surface_defects.h"
 
 /* examine: what is wrong with a mesh, and how good it is */
+#include "examine/element_examine.h"
 #include "examine/examination.h"
 #include "examine/jens_statistics.h"
-#include "examine/mixed_examine.h"
 #include "examine/poly_boundary.h"
 #include "examine/poly_examine.h"
 #include "examine/poly_statistics.h"
-#include "examine/tet_examine.h"
 #include "examine/tet_statistics.h"
 
 /* format: files of other programs */

@@ -17,8 +17,7 @@ typedef struct spoke {
 } spoke;
 
 typedef struct surface {
-    const uint32_t *face; /* [faces][corners] */
-    size_t corners;
+    const uint32_t (*face)[4];
     size_t faces;
     size_t *start;     /* [nodes + 1]: the faces at v are */
     uint32_t *face_at; /* face_at[start[v] … start[v + 1]) */
@@ -37,29 +36,29 @@ static void surface_free(surface *s)
 }
 
 /* How many nodes a face has. */
-static size_t corners_of(const surface *s, const uint32_t *face)
+static size_t corners_of(const uint32_t *face)
 {
-    return s->corners == 4 && face[3] == TM_NONE ? 3 : s->corners;
+    return face[3] == TM_NONE ? 3 : 4;
 }
 
 static bool list_faces(surface *s, size_t nodes)
 {
     s->start = calloc(nodes + 2, sizeof *s->start);
-    s->face_at = tm_new(s->faces, s->corners * sizeof *s->face_at);
+    s->face_at = tm_new(s->faces, 4 * sizeof *s->face_at);
     if (!s->start || !s->face_at)
         return false;
     /* start[v + 2] counts, then start[v + 1] is where the next face of v goes. */
     size_t *next = s->start + 1;
     for (size_t f = 0; f < s->faces; f++) {
-        const uint32_t *n = s->face + s->corners * f;
-        for (size_t i = 0; i < corners_of(s, n); i++)
+        const uint32_t *n = s->face[f];
+        for (size_t i = 0; i < corners_of(n); i++)
             next[n[i] + 1]++;
     }
     for (size_t v = 0; v < nodes; v++)
         next[v + 1] += next[v];
     for (size_t f = 0; f < s->faces; f++) {
-        const uint32_t *n = s->face + s->corners * f;
-        for (size_t i = 0; i < corners_of(s, n); i++)
+        const uint32_t *n = s->face[f];
+        for (size_t i = 0; i < corners_of(n); i++)
             s->face_at[next[n[i]]++] = (uint32_t)f;
     }
     return true;
@@ -99,8 +98,8 @@ static bool find_spokes(surface *s, uint32_t v, size_t count)
         return false;
     size_t found = 0;
     for (uint32_t i = 0; i < count; i++) {
-        const uint32_t *n = s->face + s->corners * s->face_at[s->start[v] + i];
-        const size_t k = corners_of(s, n);
+        const uint32_t *n = s->face[s->face_at[s->start[v] + i]];
+        const size_t k = corners_of(n);
         size_t at = 0;
         while (n[at] != v)
             at++;
@@ -150,19 +149,18 @@ static double area(const surface *s, const double (*xyz)[3])
 {
     tm_sum sum = {0};
     for (size_t f = 0; f < s->faces; f++) {
-        const uint32_t *n = s->face + s->corners * f;
+        const uint32_t *n = s->face[f];
         const double *a = xyz[n[0]], *b = xyz[n[1]], *c = xyz[n[2]];
-        tm_sum_add(&sum, corners_of(s, n) == 3 ? tm_triangle_area(a, b, c)
-                                               : tm_bilinear_area(a, b, c, xyz[n[3]]));
+        tm_sum_add(&sum, corners_of(n) == 3 ? tm_triangle_area(a, b, c)
+                                            : tm_bilinear_area(a, b, c, xyz[n[3]]));
     }
     return tm_sum_value(sum);
 }
 
 tm_status tm_examine_boundary(tm_examination *found, const double (*xyz)[3], size_t nodes,
-                              const uint32_t *face, size_t corners, size_t faces,
-                              tm_error *error)
+                              const uint32_t (*face)[4], size_t faces, tm_error *error)
 {
-    surface s = {.face = face, .corners = corners, .faces = faces};
+    surface s = {.face = face, .faces = faces};
     bool enough = list_faces(&s, nodes);
     for (uint32_t v = 0; enough && v < nodes; v++)
         enough = check_node(found, &s, v);

@@ -1,18 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whether a boundary of triangles and quadrilaterals is a closed manifold surface; a part
- * of tm_tet_examine() and tm_mixed_examine(). */
+ * of tm_element_examine(). */
 #ifndef TM_EXAMINE_EXAMINATION_BOUNDARY_H
 #define TM_EXAMINE_EXAMINATION_BOUNDARY_H
 
 #include "examination.h"
 
 /* Finds in *found: open and non-manifold edges, non-manifold vertices, the area: the sum
- * of tm_triangle_area() and tm_bilinear_area(). Face f has the nodes face[corners · f] …,
- * with corners 3 or 4; TM_NONE for the fourth node makes it a triangle. All nodes of a
- * face differ, and no two faces are the same. O(nodes + faces) where few faces meet at a
- * node. */
+ * of tm_triangle_area() and tm_bilinear_area(). TM_NONE for the fourth node of a face
+ * makes it a triangle. All nodes of a face differ, and no two faces are the same. O(nodes
+ * + faces) where few faces meet at a node. */
 tm_status tm_examine_boundary(tm_examination *found, const double (*xyz)[3], size_t nodes,
-                              const uint32_t *face, size_t corners, size_t faces,
-                              tm_error *error);
+                              const uint32_t (*face)[4], size_t faces, tm_error *error);
 
 #endif

@@ -5,6 +5,7 @@
 #include "../geom/predicates.h"
 #include "../geom/vector.h"
 #include "../element/shape.h"
+#include "face_table.h"
 #include "polygon_table.h"
 
 #include <stdlib.h>
@@ -46,23 +47,12 @@ tm_block *tm_content_block(const tm_stream *stream, tm_content content)
 
 typedef struct finder {
     tm_cell_faces *faces;
-    const double (*xyz)[3];
-    const tm_block *element; /* .ele or .mix */
+    tm_mesh_view mesh; /* rows only where they have markers */
+    const char *block; /* .ele or .mix */
     unsigned base;
-    tm_polygon_table table;
+    uint32_t *mate; /* see tm_face_mates(); of halves that were met: their facet */
     size_t side_room, start_room, node_room;
 } finder;
-
-static const uint32_t *nodes_of(const finder *find, size_t e, size_t *k)
-{
-    const tm_block *block = find->element;
-    if (!block->start) {
-        *k = TM_TET_NODES;
-        return block->integer + TM_TET_NODES * e;
-    }
-    *k = block->start[e + 1] - block->start[e];
-    return block->item + block->start[e];
-}
 
 /* Six times the volume that the fans of triangles of all faces enclose, as seen from the
  * first node. */
@@ -70,14 +60,14 @@ static double volume6(const finder *find, const uint32_t *v,
                       const tm_element_shape *shape)
 {
     double volume = 0;
-    const double *origin = find->xyz[v[0]];
+    const double *origin = find->mesh.xyz[v[0]];
     for (size_t i = 0; i < shape->faces; i++) {
         const uint8_t *face = shape->face[i];
         for (size_t j = 2; j < tm_mixed_face_nodes(face); j++) {
             double a[3], b[3], c[3], normal[3];
-            tm_subtract(a, find->xyz[v[face[0]]], origin);
-            tm_subtract(b, find->xyz[v[face[j - 1]]], origin);
-            tm_subtract(c, find->xyz[v[face[j]]], origin);
+            tm_subtract(a, find->mesh.xyz[v[face[0]]], origin);
+            tm_subtract(b, find->mesh.xyz[v[face[j - 1]]], origin);
+            tm_subtract(c, find->mesh.xyz[v[face[j]]], origin);
             tm_cross(normal, a, b);
             volume += tm_dot(normal, c);
         }
@@ -89,10 +79,10 @@ static double volume6(const finder *find, const uint32_t *v,
 static int sign_of(const finder *find, size_t e)
 {
     size_t k;
-    const uint32_t *v = nodes_of(find, e, &k);
+    const uint32_t *v = tm_mesh_view_nodes(&find->mesh, e, &k);
     if (k == 4)
-        return tm_orient3d(find->xyz[v[0]], find->xyz[v[1]], find->xyz[v[2]],
-                           find->xyz[v[3]]);
+        return tm_orient3d(find->mesh.xyz[v[0]], find->mesh.xyz[v[1]],
+                           find->mesh.xyz[v[2]], find->mesh.xyz[v[3]]);
     double volume = volume6(find, v, &tm_element_shapes[k]);
     return (volume > 0) - (volume < 0);
 }
@@ -126,7 +116,7 @@ static tm_status meet(finder *find, uint32_t f, const uint32_t *polygon, size_t 
                       uint32_t e, tm_error *error)
 {
     uint32_t *side = find->faces->side[f];
-    const char *block = find->element->name;
+    const char *block = find->block;
     unsigned base = find->base;
     if (side[1] != TM_NONE || side[0] == e)
         return FAIL(block,
@@ -146,24 +136,30 @@ static tm_status meet(finder *find, uint32_t f, const uint32_t *polygon, size_t 
     return TM_OK;
 }
 
-/* Appends a face of element e as a facet, or finds the one that it is. */
-static tm_status add_face(finder *find, const uint32_t *v, const uint8_t *face, bool turn,
-                          uint32_t e, uint32_t *facet, tm_error *error)
+/* Appends face i of element e as a facet, or meets the one that it is. */
+static tm_status add_face(finder *find, uint32_t e, size_t i, bool turn, uint32_t *facet,
+                          tm_error *error)
 {
     tm_cell_faces *faces = find->faces;
+    size_t count;
+    const uint32_t *v = tm_mesh_view_nodes(&find->mesh, e, &count);
+    const uint8_t *face = tm_element_shapes[count].face[i];
     size_t k = tm_mixed_face_nodes(face), f = faces->facets, begin = faces->start[f];
+    uint32_t half = tm_half_face(&find->mesh, e, i), *mate = find->mate;
     tm_status status = make_room(find, f + 1, begin + k, error);
     if (status != TM_OK)
         return status;
     uint32_t *polygon = faces->node + begin;
-    for (size_t i = 0; i < k; i++)
-        polygon[i] = v[face[turn ? k - 1 - i : i]];
-    faces->start[f + 1] = begin + k;
-    if (!tm_polygon_table_join(&find->table, faces->start, faces->node, (uint32_t)f,
-                               facet))
-        return tm_fail_memory(error);
-    if (*facet != f)
+    for (size_t j = 0; j < k; j++)
+        polygon[j] = v[face[turn ? k - 1 - j : j]];
+    /* The second one of a facet has been given its number, which is less than its own. */
+    const bool is_first = mate[half] != TM_NONE && mate[half] >= half;
+    *facet = is_first ? (uint32_t)f : mate[half];
+    if (!is_first)
         return meet(find, *facet, polygon, k, e, error);
+    const uint32_t other = mate[half];
+    mate[other] = mate[half] = *facet;
+    faces->start[f + 1] = begin + k;
     faces->side[f][0] = e;
     faces->side[f][1] = TM_NONE;
     faces->facets++;
@@ -173,80 +169,86 @@ static tm_status add_face(finder *find, const uint32_t *v, const uint8_t *face, 
 static tm_status add_element(finder *find, size_t e, tm_error *error)
 {
     size_t k;
-    const uint32_t *v = nodes_of(find, e, &k);
-    const tm_element_shape *shape = &tm_element_shapes[k];
+    const uint32_t *v = tm_mesh_view_nodes(&find->mesh, e, &k);
+    const size_t count = tm_element_shapes[k].faces;
     tm_cell_faces *faces = find->faces;
     if (has_node_twice(v, k))
-        return FAIL(find->element->name, "element %zu has a node twice", e + find->base);
+        return FAIL(find->block, "element %zu has a node twice", e + find->base);
     bool turn = sign_of(find, e) < 0;
     size_t begin = faces->cell_start[e];
     tm_status status = TM_OK;
-    for (size_t i = 0; i < shape->faces && status == TM_OK; i++)
-        status = add_face(find, v, shape->face[i], turn, (uint32_t)e,
-                          &faces->cell_facet[begin + i], error);
-    faces->cell_start[e + 1] = begin + shape->faces;
+    for (size_t i = 0; i < count && status == TM_OK; i++)
+        status =
+            add_face(find, (uint32_t)e, i, turn, &faces->cell_facet[begin + i], error);
+    faces->cell_start[e + 1] = begin + count;
     return status;
 }
 
-/* The markers that the rows of .face or .facet give; those that are no facet are passed
- * over. */
-static tm_status mark(const finder *find, const tm_block *rows, tm_error *error)
+/* The markers that the rows of .face or .facet give, whose first number is `row`; those
+ * that are no facet are passed over. */
+static tm_status mark(const finder *find, const int32_t *marker, size_t rows, size_t row,
+                      tm_error *error)
 {
     tm_cell_faces *faces = find->faces;
-    if (!rows || !rows->marker)
+    if (rows == 0)
         return TM_OK;
     if (!faces->marker)
         faces->marker = calloc(faces->facets, sizeof *faces->marker);
     if (!faces->marker)
         return tm_fail_memory(error);
-    for (size_t i = 0; i < rows->count; i++) {
-        const bool is_list = rows->start;
-        const uint32_t *node =
-            is_list ? rows->item + rows->start[i] : rows->integer + TRIANGLE * i;
-        size_t k = is_list ? rows->start[i + 1] - rows->start[i] : TRIANGLE;
-        uint32_t f =
-            tm_polygon_table_find(&find->table, faces->start, faces->node, node, k);
-        if (f != TM_NONE)
-            faces->marker[f] = rows->marker[i];
+    for (size_t i = 0; i < rows; i++) {
+        const uint32_t half = find->mate[row + i];
+        if (half != TM_NONE)
+            faces->marker[find->mate[half]] = marker[i];
     }
     return TM_OK;
 }
 
-static size_t count_faces(const tm_block *element)
+static size_t count_faces(const tm_mesh_view *mesh)
 {
-    if (!element->start)
-        return tm_element_shapes[TM_TET_NODES].faces * element->count;
-    size_t faces = 0;
-    for (size_t e = 0; e < element->count; e++)
-        faces += tm_element_shapes[element->start[e + 1] - element->start[e]].faces;
+    size_t faces = 0, k;
+    for (size_t e = 0; e < mesh->elements; e++) {
+        tm_mesh_view_nodes(mesh, e, &k);
+        faces += tm_element_shapes[k].faces;
+    }
     return faces;
 }
 
 static tm_status find_of_elements(tm_cell_faces *faces, const tm_stream *stream,
                                   const tm_block *element, tm_error *error)
 {
-    const tm_block *node = tm_stream_find(stream, ".node");
+    const tm_block *face = tm_stream_find(stream, ".face");
+    const tm_block *facet = tm_stream_find(stream, ".facet");
     finder find = {.faces = faces,
-                   .xyz = (const double(*)[3])node->real,
-                   .element = element,
+                   .mesh = element->kind == TM_MIX ? tm_mesh_view_of_mixed(stream)
+                                                   : tm_mesh_view_of_tets(stream),
+                   .block = element->name,
                    .base = stream->base};
-    faces->cells = element->count;
+    if (!face || !face->marker)
+        find.mesh.faces = 0;
+    if (!facet || !facet->marker)
+        find.mesh.facets = 0;
+    faces->cells = find.mesh.elements;
     faces->cell_start = tm_new(faces->cells + 1, sizeof *faces->cell_start);
-    faces->cell_facet = tm_new(count_faces(element), sizeof *faces->cell_facet);
+    faces->cell_facet = tm_new(count_faces(&find.mesh), sizeof *faces->cell_facet);
     tm_status status = make_room(&find, 1, 1, error);
     if (status == TM_OK && !(faces->cell_start && faces->cell_facet))
         status = tm_fail_memory(error);
+    if (status == TM_OK)
+        status = tm_face_mates(&find.mate, &find.mesh, error);
     if (status == TM_OK) {
         faces->start[0] = 0;
         faces->cell_start[0] = 0;
     }
     for (size_t e = 0; e < faces->cells && status == TM_OK; e++)
         status = add_element(&find, e, error);
-    if (status == TM_OK)
-        status = mark(&find, tm_stream_find(stream, ".face"), error);
-    if (status == TM_OK && element->kind == TM_MIX)
-        status = mark(&find, tm_stream_find(stream, ".facet"), error);
-    tm_polygon_table_free(&find.table);
+    const size_t first_row = tm_half_faces(&find.mesh);
+    if (status == TM_OK && find.mesh.faces > 0)
+        status = mark(&find, face->marker, find.mesh.faces, first_row, error);
+    if (status == TM_OK && find.mesh.facets > 0)
+        status = mark(&find, facet->marker, find.mesh.facets, first_row + find.mesh.faces,
+                      error);
+    free(find.mate);
     return status;
 }
 

@@ -2,30 +2,20 @@
 #include "polygon_table.h"
 
 #include "../base/array.h"
+#include "../base/hash.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 enum { SLOTS_MIN = 1024 };
 
-/* The finaliser of MurmurHash3 (A. Appleby, 2011). */
-static uint64_t mix(uint64_t h)
-{
-    h ^= h >> 33;
-    h *= UINT64_C(0xff51afd7ed558ccd);
-    h ^= h >> 33;
-    h *= UINT64_C(0xc4ceb9fe1a85ec53);
-    h ^= h >> 33;
-    return h;
-}
-
 /* The sum does not depend on where the polygon begins, nor on how it turns. */
 static size_t hash(const uint32_t *node, size_t k)
 {
     uint64_t sum = k;
     for (size_t i = 0; i < k; i++)
-        sum += mix(node[i] + UINT64_C(1));
-    return (size_t)mix(sum);
+        sum += tm_hash(0, node[i] + UINT64_C(1));
+    return (size_t)tm_hash(0, sum);
 }
 
 int tm_polygon_compare(const uint32_t *a, const uint32_t *b, size_t k)

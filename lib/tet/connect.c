@@ -5,8 +5,7 @@
 #include "../base/array.h"
 #include "../element/shape.h"
 #include "../geom/predicates.h"
-#include "../mesh/face_order.h"
-#include "../mesh/face_pairs.h"
+#include "../mesh/face_table.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -106,25 +105,25 @@ static tm_status connect_face(tm_tet_mesh *mesh, const uint32_t *half, size_t co
     return TM_OK;
 }
 
-/* Takes a run of equal faces apart: tetrahedra and rows of .face. */
-static tm_status connect_run(tm_tet_mesh *mesh, const tm_face_entry *run, size_t size,
-                             unsigned base, tm_error *error)
+/* Takes the members of a face apart: tetrahedra and rows of .face. */
+static tm_status connect_members(tm_tet_mesh *mesh, const tm_face_table *table,
+                                 const tm_face *face, unsigned base, tm_error *error)
 {
     uint32_t half[2], listed = TM_NONE;
     size_t count = 0;
-    for (size_t i = 0; i < size; i++) {
-        uint32_t h = run[i].half;
-        if (h & TM_FACE_ORDER_ADDED) {
-            h &= ~TM_FACE_ORDER_ADDED;
+    for (uint32_t m = face->first; m != TM_FACE_END; m = table->member[m].next) {
+        const uint32_t id = table->member[m].id;
+        if (id >= table->first_row) {
+            const uint32_t row = id - table->first_row;
             if (listed != TM_NONE)
                 return FAIL(".face", "rows %u and %u are the same triangle",
-                            listed + base, h + base);
-            listed = h;
+                            listed + base, row + base);
+            listed = row;
         } else if (count == 2) {
             return FAIL(".ele", "tetrahedra %u, %u and %u have one face in common",
-                        half[0] / 4 + base, half[1] / 4 + base, h / 4 + base);
+                        half[0] / 4 + base, half[1] / 4 + base, id / 4 + base);
         } else {
-            half[count++] = h;
+            half[count++] = id;
         }
     }
     if (count > 0)
@@ -133,45 +132,51 @@ static tm_status connect_run(tm_tet_mesh *mesh, const tm_face_entry *run, size_t
     return TM_OK;
 }
 
-/* The way that finds what is wrong, and says so. */
-static tm_status connect_in_order(tm_tet_mesh *mesh, const uint32_t (*listed)[3],
-                                  size_t listed_count, unsigned base, tm_error *error)
+/* Whether a face is between tetrahedra on the same side of it, or flat ones. */
+static bool is_folded(const tm_face_table *table, const tm_face *face)
 {
-    tm_face_order order;
-    tm_status status =
-        tm_face_order_init(&order, (const uint32_t(*)[4])mesh->tet, mesh->slots, listed,
-                           listed_count, mesh->nodes, error);
-    if (status != TM_OK)
-        return status;
-    while (status == TM_OK && tm_face_order_next(&order, &status, error)) {
-        for (size_t i = 0, next; i < order.entries && status == TM_OK; i = next) {
-            for (next = i + 1; next < order.entries; next++)
-                if (order.entry[next].key != order.entry[i].key)
-                    break;
-            status = connect_run(mesh, order.entry + i, next - i, base, error);
-        }
-    }
-    tm_face_order_free(&order);
-    return status;
+    const tm_face_member *first = &table->member[face->first];
+    return face->elements == 2 && first->turned == table->member[first->next].turned;
 }
 
-/* *folded: there may be two tetrahedra on the same side of a face. */
+/* Joins two tetrahedra at each face of a node; *folded as below. False, with the rest to
+ * be forgotten, where they are of different regions. */
+static bool join_pairs(tm_tet_mesh *mesh, const tm_face_table *table, bool *folded)
+{
+    for (size_t f = 0; f < table->faces; f++) {
+        const tm_face_member *first = &table->member[table->face[f].first];
+        const tm_face_member *second = &table->member[first->next];
+        if (mesh->regions > 0 && !same_region(mesh, first->id / 4, second->id / 4))
+            return false;
+        *folded |= first->turned == second->turned;
+        tm_tet_join(mesh, first->id, second->id);
+    }
+    return true;
+}
+
+/* *folded: there are tetrahedra on the same side of a face, or flat ones. */
 static tm_status connect_faces(tm_tet_mesh *mesh, const uint32_t (*listed)[3],
                                size_t listed_count, unsigned base, bool *folded,
                                tm_error *error)
 {
-    tm_face_pairs pairs;
-    tm_status status = tm_face_pairs_find(&pairs, mesh, listed, listed_count, error);
-    *folded = pairs.folded || !pairs.whole;
-    if (status == TM_OK && !pairs.whole)
-        status = connect_in_order(mesh, listed, listed_count, base, error);
-    for (size_t i = 0; i < pairs.opens && status == TM_OK && pairs.whole; i++) {
-        uint32_t h = pairs.open[i];
-        uint32_t half[2] = {h, mesh->neighbour[h / 4][h % 4]};
-        size_t count = half[1] == TM_NONE ? 1 : 2;
-        status = connect_face(mesh, half, count, TM_NONE, error);
+    const tm_mesh_view view = {.nodes = mesh->nodes,
+                               .elements = mesh->slots,
+                               .item = (const uint32_t *)mesh->tet,
+                               .faces = listed_count,
+                               .face = listed};
+    tm_face_table table;
+    tm_status status = tm_face_table_make(&table, &view, error);
+    for (uint32_t v = 0; v < mesh->nodes && status == TM_OK; v++) {
+        status = tm_face_table_at(&table, v, error);
+        if (status != TM_OK || (table.plain && join_pairs(mesh, &table, folded)))
+            continue;
+        tm_face_table_sort(&table);
+        for (size_t f = 0; f < table.faces && status == TM_OK; f++) {
+            *folded |= is_folded(&table, &table.face[f]);
+            status = connect_members(mesh, &table, &table.face[f], base, error);
+        }
     }
-    tm_face_pairs_free(&pairs);
+    tm_face_table_free(&table);
     return status;
 }
 
@@ -247,7 +252,7 @@ static void drop_faces(tm_tet_mesh *mesh, size_t listed_count)
 tm_status tm_tet_mesh_connect(tm_tet_mesh *mesh, unsigned base, tm_error *error)
 {
     size_t listed_count = mesh->faces;
-    bool folded = true;
+    bool folded = false;
     uint32_t(*listed)[3] = tm_new(listed_count, sizeof *listed);
     if (!listed)
         return tm_fail_memory(error);

@@ -9,7 +9,7 @@
  * Every FILTER_EVERY-th case goes through the filters: no signal, no report of a
  * sanitizer, no other exit status than 0, 1 and 3. No case may take longer than SECONDS.
  * TM_SEED repeats a run. The first case that fails is kept in a file. */
-#include "../../lib/examine/mixed_examine.h"
+#include "../../lib/examine/element_examine.h"
 #include "../../lib/examine/poly_examine.h"
 #include "../../lib/examine/poly_statistics.h"
 #include "../../lib/tet/improve/improve.h"
@@ -245,9 +245,9 @@ static void check_mixed_elements(const tm_stream *stream)
 {
     tm_examination found, again;
     tm_error error;
-    const tm_mixed_arrays mesh = tm_mixed_arrays_of(stream);
-    require(tm_mixed_examine(&found, &mesh, 1, &error) == TM_OK &&
-                tm_mixed_examine(&again, &mesh, 2, &error) == TM_OK,
+    const tm_mesh_view mesh = tm_mesh_view_of_mixed(stream);
+    require(tm_element_examine(&found, &mesh, 1, &error) == TM_OK &&
+                tm_element_examine(&again, &mesh, 2, &error) == TM_OK,
             "mixed elements are not examined");
     require(memcmp(found.defect, again.defect, sizeof found.defect) == 0 &&
                 found.euler == again.euler && found.components <= mesh.elements &&

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Every defect on the smallest mesh that has it; meshes of known shape. */
 #include "../../lib/base/sum.h"
-#include "../../lib/examine/tet_examine.h"
+#include "../../lib/examine/element_examine.h"
 #include "cube_mesh.h"
 #include "random.h"
 
@@ -20,17 +20,17 @@ static const double points[][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0},  {0, 0, 1},
                                    {8, 1, 0}, {7, 1, 1}};
 enum { POINTS = sizeof points / sizeof *points };
 
-static tm_examination examine(const tm_tet_arrays *mesh)
+static tm_examination examine(const tm_mesh_view *mesh)
 {
     tm_examination found;
-    assert_int_equal(tm_tet_examine(&found, mesh, 1, NULL), TM_OK);
+    assert_int_equal(tm_element_examine(&found, mesh, 1, NULL), TM_OK);
     return found;
 }
 
 static tm_examination examine_points(const uint32_t (*tet)[4], size_t tets)
 {
-    return examine(
-        &(tm_tet_arrays){.nodes = POINTS, .xyz = points, .tets = tets, .tet = tet});
+    return examine(&(tm_mesh_view){
+        .nodes = POINTS, .xyz = points, .elements = tets, .item = tet[0]});
 }
 
 /* A kind of defects and how many of it there must be. */
@@ -95,7 +95,7 @@ static void test_one_tetrahedron(void **state)
 static void test_nothing(void **state)
 {
     (void)state;
-    tm_examination found = examine(&(tm_tet_arrays){0});
+    tm_examination found = examine(&(tm_mesh_view){0});
     ASSERT_GOOD(&found);
     assert_true(found.volume == 0 && found.area == 0 && found.euler == 0);
     assert_int_equal(found.components, 0);
@@ -228,7 +228,7 @@ static void test_duplicate_nodes(void **state)
                                     {0, -0.0, 0}, {0, 0, 1}};
     static const uint32_t tet[][4] = {{0, 1, 2, 3}};
     const tm_examination found =
-        examine(&(tm_tet_arrays){.nodes = 8, .xyz = xyz, .tets = 1, .tet = tet});
+        examine(&(tm_mesh_view){.nodes = 8, .xyz = xyz, .elements = 1, .item = tet[0]});
     ASSERT_ONLY(&found, {TM_DUPLICATE_NODE, 3});
     ASSERT_PLACE(&found, TM_DUPLICATE_NODE, 0, 5, 0);
     ASSERT_PLACE(&found, TM_DUPLICATE_NODE, 1, 6, 0);
@@ -244,8 +244,14 @@ static void test_rows_of_face_and_edge(void **state)
                                        {0, 1, 5}, {1, 1, 2}, {7, 8, 9}, {8, 9, 7}};
     static const uint32_t edge[][2] = {{3, 2}, {0, 0}, {2, 3}, {5, 0},
                                        {0, 1}, {8, 7}, {5, 3}};
-    const tm_examination found =
-        examine(&(tm_tet_arrays){POINTS, points, 2, tet, 8, face, 7, edge});
+    const tm_examination found = examine(&(tm_mesh_view){.nodes = POINTS,
+                                                         .xyz = points,
+                                                         .elements = 2,
+                                                         .item = tet[0],
+                                                         .faces = 8,
+                                                         .face = face,
+                                                         .edges = 7,
+                                                         .edge = edge});
     ASSERT_ONLY(&found, {TM_REPEATED_FACE, 2}, {TM_DANGLING_FACE, 3},
                 {TM_REPEATED_EDGE, 1}, {TM_DANGLING_EDGE, 3});
     ASSERT_PLACE(&found, TM_REPEATED_FACE, 0, 3, 1);
@@ -262,10 +268,10 @@ static void test_rows_of_face_and_edge(void **state)
 
 static tm_examination examine_cubes(const cube_mesh *m)
 {
-    return examine(&(tm_tet_arrays){.nodes = m->nodes,
-                                    .xyz = (const double(*)[3])m->xyz,
-                                    .tets = m->tets,
-                                    .tet = (const uint32_t(*)[4])m->tet});
+    return examine(&(tm_mesh_view){.nodes = m->nodes,
+                                   .xyz = (const double(*)[3])m->xyz,
+                                   .elements = m->tets,
+                                   .item = m->tet[0]});
 }
 
 static void test_cube_of_five(void **state)
@@ -324,12 +330,12 @@ static void test_wide_star(void **state)
         xyz[v][1] = sin(v * turn);
         memcpy(tet[v], (uint32_t[]){v, (v + 1) % RING, RING, RING + 1}, sizeof tet[v]);
     }
-    tm_tet_arrays mesh = {.nodes = RING + 2,
-                          .xyz = (const double(*)[3])xyz,
-                          .tets = RING,
-                          .tet = (const uint32_t(*)[4])tet};
+    tm_mesh_view mesh = {.nodes = RING + 2,
+                         .xyz = (const double(*)[3])xyz,
+                         .elements = RING,
+                         .item = tet[0]};
     for (size_t open = 0; open < 2; open++) {
-        const size_t tets = mesh.tets = RING - open;
+        const size_t tets = mesh.elements = RING - open;
         const tm_examination found = examine(&mesh);
         ASSERT_GOOD(&found);
         assert_int_equal(found.euler, 1);
@@ -471,10 +477,10 @@ static void test_threads(void **state)
         n[0] = n[1];
         n[1] = first;
     }
-    const tm_tet_arrays mesh = {.nodes = m.nodes,
-                                .xyz = (const double(*)[3])m.xyz,
-                                .tets = m.tets,
-                                .tet = (const uint32_t(*)[4])m.tet};
+    const tm_mesh_view mesh = {.nodes = m.nodes,
+                               .xyz = (const double(*)[3])m.xyz,
+                               .elements = m.tets,
+                               .item = m.tet[0]};
     const tm_examination alone = examine(&mesh);
     ASSERT_ONLY(&alone, {TM_INVERTED, INVERTED});
     for (size_t i = 0; i < TM_DEFECTS_LISTED; i++)
@@ -482,7 +488,7 @@ static void test_threads(void **state)
                      (uint32_t)(m.tets - 1 - (INVERTED - 1 - i) * m.tets / INVERTED));
     for (unsigned threads = 2; threads < 6; threads++) {
         tm_examination found;
-        assert_int_equal(tm_tet_examine(&found, &mesh, threads, NULL), TM_OK);
+        assert_int_equal(tm_element_examine(&found, &mesh, threads, NULL), TM_OK);
         assert_memory_equal(&found, &alone, sizeof found);
     }
     cube_mesh_free(&m);

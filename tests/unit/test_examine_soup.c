@@ -2,7 +2,7 @@
 /* Random tetrahedra, triangles and edges on few nodes, wrong in all ways at once: every
  * count agrees with one that is made plainly from the definition. */
 #include "../../lib/geom/predicates.h"
-#include "../../lib/examine/tet_examine.h"
+#include "../../lib/examine/element_examine.h"
 #include "random.h"
 
 #include <setjmp.h>
@@ -231,20 +231,40 @@ static size_t unused_nodes(const soup *s)
     return unused;
 }
 
+/* The same tetrahedra as mixed elements have the same defects. */
+static void check_as_mixed(const tm_mesh_view *tets, const tm_examination *found)
+{
+    size_t start[TETS + 1];
+    for (size_t t = 0; t <= tets->elements; t++)
+        start[t] = 4 * t;
+    tm_mesh_view mesh = *tets;
+    mesh.start = start;
+    tm_examination mixed;
+    assert_int_equal(tm_element_examine(&mixed, &mesh, 1, NULL), TM_OK);
+    assert_true(mixed.mixed && !found->mixed);
+    assert_int_equal(mixed.kind[TM_TETRAHEDRON], tets->elements);
+    assert_memory_equal(mixed.defect, found->defect, sizeof mixed.defect);
+    assert_int_equal(mixed.boundary_faces, found->boundary_faces);
+    assert_int_equal(mixed.components, found->components);
+    assert_int_equal(mixed.euler, found->euler);
+    assert_int_equal(mixed.unused_nodes, found->unused_nodes);
+    assert_true(mixed.volume == found->volume);
+}
+
 static void check(const soup *s)
 {
-    const tm_tet_arrays mesh = {.nodes = s->nodes,
-                                .xyz = s->xyz,
-                                .tets = s->tets,
-                                .tet = s->tet,
-                                .faces = s->faces,
-                                .face = s->face,
-                                .edges = s->edges,
-                                .edge = s->edge};
+    const tm_mesh_view mesh = {.nodes = s->nodes,
+                               .xyz = s->xyz,
+                               .elements = s->tets,
+                               .item = (const uint32_t *)s->tet,
+                               .faces = s->faces,
+                               .face = s->face,
+                               .edges = s->edges,
+                               .edge = s->edge};
     const soup before = *s;
     size_t count[TM_DEFECTS] = {0}, boundary = 0;
     tm_examination found;
-    assert_int_equal(tm_tet_examine(&found, &mesh, 1, NULL), TM_OK);
+    assert_int_equal(tm_element_examine(&found, &mesh, 1, NULL), TM_OK);
     assert_memory_equal(s, &before, sizeof before);
     count_tets_and_nodes(s, count);
     count_faces(s, count, &boundary);
@@ -261,6 +281,7 @@ static void check(const soup *s)
     assert_int_equal(found.components, components(s));
     assert_int_equal(found.euler, euler(s));
     assert_int_equal(found.unused_nodes, unused_nodes(s));
+    check_as_mixed(&mesh, &found);
 }
 
 static void test_random_soups(void **state)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* From leaves to elements on the lattice, on random octrees: octant masks, the interior,
  * its interior boundary, and the elements there. */
-#include "../../lib/examine/mixed_examine.h"
+#include "../../lib/examine/element_examine.h"
 #include "../../lib/examine/mixed_volume.h"
 #include "../../lib/octree/layer/octree_mesh_parts.h"
 #include "../../lib/element/jens.h"
@@ -371,12 +371,12 @@ static void check_elements(const tm_octree *octree, const tm_interior *interior,
         assert_memory_equal(base[a->outer + s], at, sizeof at);
     }
     tm_examination found;
-    const tm_mixed_arrays arrays = {.nodes = mesh->nodes,
+    const tm_mesh_view arrays = {.nodes = mesh->nodes,
                                     .xyz = (const double(*)[3])base,
                                     .elements = mesh->elements,
                                     .start = mesh->start,
                                     .item = mesh->item};
-    assert_ok(tm_mixed_examine(&found, &arrays, 1, &error), &error);
+    assert_ok(tm_element_examine(&found, &arrays, 1, &error), &error);
     assert_true(tm_examination_is_good(&found));
     assert_int_equal(found.unused_nodes, 0);
     free(base);

@@ -3,7 +3,7 @@
  * be; random divisions of cubes, which are good. test_mixed_soup.c has what is wrong in
  * many ways at once. */
 #include "../../lib/geom/vector.h"
-#include "../../lib/examine/mixed_examine.h"
+#include "../../lib/examine/element_examine.h"
 #include "../../lib/element/shape.h"
 #include "../../lib/element/jens.h"
 #include "../../lib/examine/mixed_volume.h"
@@ -34,11 +34,11 @@ static const double model[9][8][3] = {
 };
 static const uint32_t identity[8] = {0, 1, 2, 3, 4, 5, 6, 7};
 
-static tm_examination examine(const tm_mixed_arrays *mesh)
+static tm_examination examine(const tm_mesh_view *mesh)
 {
     tm_examination found;
     tm_error error;
-    assert_int_equal(tm_mixed_examine(&found, mesh, 1, &error), TM_OK);
+    assert_int_equal(tm_element_examine(&found, mesh, 1, &error), TM_OK);
     return found;
 }
 
@@ -67,7 +67,7 @@ static void assert_one(const tm_examination *found, tm_defect d,
 static tm_examination examine_one(size_t k, const double (*xyz)[3])
 {
     const size_t start[2] = {0, k};
-    return examine(&(tm_mixed_arrays){
+    return examine(&(tm_mesh_view){
         .nodes = k, .xyz = xyz, .elements = 1, .start = start, .item = identity});
 }
 
@@ -218,16 +218,16 @@ static const double two[12][3] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0},
 static const uint32_t two_cubes[16] = {0, 1, 4, 3, 6, 7, 10, 9, 1, 2, 5, 4, 7, 8, 11, 10};
 static const size_t two_start[3] = {0, 8, 16};
 
-static tm_mixed_arrays cubes(void)
+static tm_mesh_view cubes(void)
 {
-    return (tm_mixed_arrays){
+    return (tm_mesh_view){
         .nodes = 12, .xyz = two, .elements = 2, .start = two_start, .item = two_cubes};
 }
 
 static void test_two_cubes(void **state)
 {
     (void)state;
-    const tm_mixed_arrays mesh = cubes();
+    const tm_mesh_view mesh = cubes();
     const tm_examination found = examine(&mesh);
     assert_true(tm_examination_is_good(&found));
     assert_int_equal(found.boundary_faces, 10);
@@ -244,7 +244,7 @@ static void test_halves(void **state)
     static const size_t start[4] = {0, 8, 14, 20};
     /* Cut by the plane of 1, 7, 11, 5: the side 1 4 10 7 stays. */
     uint32_t item[20] = {0, 1, 4, 3, 6, 7, 10, 9, 1, 5, 2, 7, 11, 8, 1, 4, 5, 7, 10, 11};
-    tm_mixed_arrays mesh = {
+    tm_mesh_view mesh = {
         .nodes = 12, .xyz = two, .elements = 3, .start = start, .item = item};
     tm_examination found = examine(&mesh);
     assert_true(tm_examination_is_good(&found));
@@ -276,11 +276,11 @@ static void test_unmatched(void **state)
     double xyz[13][3] = {{0}};
     memcpy(xyz, two, sizeof two);
     xyz[12][0] = 3;
-    tm_mixed_arrays mesh = {.nodes = 13,
-                            .xyz = (const double(*)[3])xyz,
-                            .elements = 3,
-                            .start = start,
-                            .item = item};
+    tm_mesh_view mesh = {.nodes = 13,
+                         .xyz = (const double(*)[3])xyz,
+                         .elements = 3,
+                         .start = start,
+                         .item = item};
     /* A third element at the common face. */
     tm_examination found = examine(&mesh);
     assert_int_equal(found.defect[TM_UNMATCHED_FACE].count, 1);
@@ -310,11 +310,11 @@ static void test_overlapping(void **state)
     uint32_t item[13] = {0, 1, 4, 3, 6, 7, 10, 9, 1, 7, 10, 4, 12};
     memcpy(xyz, two, sizeof two);
     memcpy(xyz[12], apex, sizeof apex);
-    const tm_mixed_arrays mesh = {.nodes = 13,
-                                  .xyz = (const double(*)[3])xyz,
-                                  .elements = 2,
-                                  .start = start,
-                                  .item = item};
+    const tm_mesh_view mesh = {.nodes = 13,
+                               .xyz = (const double(*)[3])xyz,
+                               .elements = 2,
+                               .start = start,
+                               .item = item};
     tm_examination found = examine(&mesh);
     ASSERT_ONE(&found, TM_OVERLAPPING_FACE, 0, 1);
     /* Turned it is inverted, and still on that side. */
@@ -347,11 +347,11 @@ static void test_contacts(void **state)
     for (size_t v = 1; v < 8; v++)
         for (size_t j = 0; j < 3; j++)
             xyz[7 + v][j] = model[8][v][j] + 1;
-    const tm_mixed_arrays mesh = {.nodes = NODES,
-                                  .xyz = (const double(*)[3])xyz,
-                                  .elements = 2,
-                                  .start = two_start,
-                                  .item = item};
+    const tm_mesh_view mesh = {.nodes = NODES,
+                               .xyz = (const double(*)[3])xyz,
+                               .elements = 2,
+                               .start = two_start,
+                               .item = item};
     tm_examination found = examine(&mesh);
     ASSERT_ONE(&found, TM_NON_MANIFOLD_VERTEX, 6, 2);
     assert_int_equal(found.components, 2);
@@ -377,7 +377,7 @@ static void test_nodes(void **state)
     memcpy(item + 8, (const uint32_t[]){1, 5, 2, 7, 5, 8}, 6 * sizeof *item);
     memcpy(xyz, two, sizeof two);
     memcpy(xyz[12], two[3], sizeof xyz[12]);
-    tm_mixed_arrays mesh = {
+    tm_mesh_view mesh = {
         .nodes = 12, .xyz = two, .elements = 2, .start = start, .item = item};
     /* It has no part in anything else. */
     tm_examination found = examine(&mesh);
@@ -400,7 +400,7 @@ static tm_examination examine_facet(uint32_t e, uint32_t g, size_t k, const uint
 {
     const uint32_t side[1][2] = {{e, g}};
     const size_t start[2] = {0, k};
-    tm_mixed_arrays mesh = cubes();
+    tm_mesh_view mesh = cubes();
     mesh.facets = 1;
     mesh.side = side;
     mesh.facet_start = start;
@@ -453,19 +453,19 @@ static void test_rows(void **state)
     static const uint32_t side[2][2] = {{0, TM_NONE}, {0, TM_NONE}};
     static const size_t facet_start[3] = {0, 4, 8};
     static const uint32_t facet_node[8] = {0, 3, 4, 1, 1, 0, 3, 4};
-    tm_mixed_arrays mesh = {.nodes = 6,
-                            .xyz = model[6],
-                            .elements = 1,
-                            .start = start,
-                            .item = identity,
-                            .faces = 2,
-                            .face = (const uint32_t(*)[3])face,
-                            .edges = 2,
-                            .edge = (const uint32_t(*)[2])edge,
-                            .facets = 1,
-                            .side = side,
-                            .facet_start = facet_start,
-                            .facet_node = facet_node};
+    tm_mesh_view mesh = {.nodes = 6,
+                         .xyz = model[6],
+                         .elements = 1,
+                         .start = start,
+                         .item = identity,
+                         .faces = 2,
+                         .face = (const uint32_t(*)[3])face,
+                         .edges = 2,
+                         .edge = (const uint32_t(*)[2])edge,
+                         .facets = 1,
+                         .side = side,
+                         .facet_start = facet_start,
+                         .facet_node = facet_node};
     tm_examination found = examine(&mesh);
     assert_true(tm_examination_is_good(&found));
     mesh.faces = 3;
@@ -640,15 +640,15 @@ static void test_divisions(void **state)
     size_t seen[TM_ELEMENT_KINDS] = {0};
     for (int round = 0; round < ROUNDS; round++) {
         make(d);
-        const tm_mixed_arrays mesh = {.nodes = d->nodes,
-                                      .xyz = (const double(*)[3])d->xyz,
-                                      .elements = d->elements,
-                                      .start = d->start,
-                                      .item = d->item,
-                                      .facets = d->facets,
-                                      .side = (const uint32_t(*)[2])d->side,
-                                      .facet_start = d->facet_start,
-                                      .facet_node = d->facet_node};
+        const tm_mesh_view mesh = {.nodes = d->nodes,
+                                   .xyz = (const double(*)[3])d->xyz,
+                                   .elements = d->elements,
+                                   .start = d->start,
+                                   .item = d->item,
+                                   .facets = d->facets,
+                                   .side = (const uint32_t(*)[2])d->side,
+                                   .facet_start = d->facet_start,
+                                   .facet_node = d->facet_node};
         const tm_examination found = examine(&mesh);
         assert_true(tm_examination_is_good(&found));
         assert_int_equal(found.components, 1);
@@ -661,7 +661,7 @@ static void test_divisions(void **state)
             seen[k] += found.kind[k];
         tm_examination again;
         tm_error error;
-        assert_int_equal(tm_mixed_examine(&again, &mesh, 3, &error), TM_OK);
+        assert_int_equal(tm_element_examine(&again, &mesh, 3, &error), TM_OK);
         assert_memory_equal(again.defect, found.defect, sizeof found.defect);
         assert_true(again.volume == found.volume && again.area == found.area);
     }
@@ -673,7 +673,7 @@ static void test_divisions(void **state)
 static void test_nothing(void **state)
 {
     (void)state;
-    const tm_mixed_arrays mesh = {.nodes = 0};
+    const tm_mesh_view mesh = {.nodes = 0};
     const tm_examination found = examine(&mesh);
     assert_true(tm_examination_is_good(&found));
     assert_int_equal(found.euler, 0);

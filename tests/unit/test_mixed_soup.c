@@ -2,7 +2,7 @@
 /* Random mixed elements, triangles, facets and edges on few nodes, wrong in all ways at
  * once: every count agrees with one that is made plainly from the definition. */
 #include "../../lib/geom/predicates.h"
-#include "../../lib/examine/mixed_examine.h"
+#include "../../lib/examine/element_examine.h"
 #include "../../lib/element/shape.h"
 #include "random.h"
 
@@ -37,7 +37,7 @@ typedef struct polygon {
 } polygon;
 
 typedef struct soup {
-    tm_mixed_arrays mesh;
+    tm_mesh_view mesh;
     double xyz[NODES][3];
     size_t start[ELEMENTS + 1];
     uint32_t item[8 * ELEMENTS];
@@ -492,7 +492,7 @@ static void test_soup(void **state)
         expect_nodes(&s, &expected);
         expect_components(&s, &expected);
         expect_rows(&s, &expected);
-        assert_int_equal(tm_mixed_examine(&found, &s.mesh, 1, &error), TM_OK);
+        assert_int_equal(tm_element_examine(&found, &s.mesh, 1, &error), TM_OK);
         for (tm_defect d = 0; d < TM_DEFECTS; d++) {
             if (found.defect[d].count != expected.defect[d].count)
                 fail_msg("round %d, TM_SEED=%" PRIu64

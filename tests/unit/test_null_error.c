@@ -8,7 +8,7 @@
 #include "../../lib/surface/polygon_surface.h"
 #include "../../lib/format/tetgen.h"
 #include "../../lib/format/visf.h"
-#include "../../lib/examine/mixed_examine.h"
+#include "../../lib/examine/element_examine.h"
 #include "../../lib/examine/poly_examine.h"
 #include "../../lib/examine/poly_statistics.h"
 #include "../../lib/surface/surface.h"

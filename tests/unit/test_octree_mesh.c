@@ -2,7 +2,7 @@
 /* Whole meshes: what is sharp at turned boxes, and whether the elements of random solids
  * are valid, fit together, and end on the surface. */
 #include "../../lib/element/jens.h"
-#include "../../lib/examine/mixed_examine.h"
+#include "../../lib/examine/element_examine.h"
 #include "../../lib/octree/layer/adaptive_refinement.h"
 #include "../../lib/octree/repair/repair_stream.h"
 #include "octree_fixture.h"
@@ -34,12 +34,12 @@ static void check_elements(const tm_octree_mesh *mesh)
         assert_true(tm_jens(m->start[e + 1] - m->start[e], xyz, m->item + m->start[e]) >
                     0);
     assert_int_equal(mesh->report.invalid, 0);
-    const tm_mixed_arrays arrays = {.nodes = m->nodes,
+    const tm_mesh_view arrays = {.nodes = m->nodes,
                                     .xyz = xyz,
                                     .elements = m->elements,
                                     .start = m->start,
                                     .item = m->item};
-    assert_ok(tm_mixed_examine(&found, &arrays, 1, &error), &error);
+    assert_ok(tm_element_examine(&found, &arrays, 1, &error), &error);
     assert_true(tm_examination_is_good(&found));
     assert_int_equal(found.unused_nodes, 0);
     assert_true(found.components <= mesh->report.components);

@@ -1,23 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "mixed_examine.h"
+#include "element_examine.h"
 
 #include "../base/array.h"
 #include "../base/parallel.h"
 #include "../base/sum.h"
 #include "examination_boundary.h"
-#include "mixed_examine_faces.h"
-#include "../mesh/mixed_face_order.h"
-#include "../element/shape.h"
+#include "element_examine_faces.h"
 #include "mixed_volume.h"
 
 #include <stdlib.h>
 
 /* Elements that one thread measures at a time. */
 enum { CHUNK = 8192 };
-
-/* Half faces and rows share 32 bits in mixed_face_order.h. */
-static const size_t most_elements = TM_MIXED_ROW / 8;
-static const size_t most_rows = TM_MIXED_ROW;
 
 /* What a chunk of elements adds to the examination. */
 typedef struct measured {
@@ -28,14 +22,17 @@ typedef struct measured {
 } measured;
 
 typedef struct measuring {
-    const tm_mixed_arrays *mesh;
-    int8_t *sign;    /* [elements]: see mixed_face_order.h */
+    const tm_mesh_view *mesh;
+    int8_t *sign;    /* [elements]: see element_examine_faces.h */
     measured *chunk; /* one for each CHUNK of elements */
 } measuring;
 
-/* The first node that an element names twice, or TM_NONE. */
+/* The first node that an element names again, or TM_NONE; of a tetrahedron its first one
+ * before the others. */
 static uint32_t node_twice(const uint32_t *n, size_t k)
 {
+    if (k == TM_TET_NODES && n[0] == n[3])
+        return n[0];
     for (size_t i = 1; i < k; i++)
         for (size_t j = 0; j < i; j++)
             if (n[i] == n[j])
@@ -43,14 +40,14 @@ static uint32_t node_twice(const uint32_t *n, size_t k)
     return TM_NONE;
 }
 
-static int8_t measure(measured *m, const tm_mixed_arrays *mesh, uint32_t e)
+static int8_t measure(measured *m, const tm_mesh_view *mesh, uint32_t e)
 {
-    const size_t k = mesh->start[e + 1] - mesh->start[e];
-    const uint32_t *n = mesh->item + mesh->start[e], twice = node_twice(n, k);
+    size_t k;
+    const uint32_t *n = tm_mesh_view_nodes(mesh, e, &k), twice = node_twice(n, k);
     m->kind[tm_element_shapes[k].kind]++;
     if (twice != TM_NONE) {
         tm_defect_add(&m->degenerate, (uint32_t[TM_DEFECT_NUMBERS]){e, twice});
-        return TM_MIXED_NODE_TWICE;
+        return TM_NODE_TWICE;
     }
     tm_sum_add(&m->volume, tm_mixed_volume(mesh->xyz, n, k));
     const tm_mixed_corners corner = tm_mixed_corners_of(mesh->xyz, n, k);
@@ -74,7 +71,7 @@ static void measure_chunk(void *context, size_t chunk)
 }
 
 /* Kinds, volumes and corners. */
-static tm_status examine_elements(tm_examination *found, const tm_mixed_arrays *mesh,
+static tm_status examine_elements(tm_examination *found, const tm_mesh_view *mesh,
                                   int8_t *sign, unsigned threads, tm_error *error)
 {
     const size_t chunks = mesh->elements / CHUNK + (mesh->elements % CHUNK != 0);
@@ -96,76 +93,27 @@ static tm_status examine_elements(tm_examination *found, const tm_mixed_arrays *
     return TM_OK;
 }
 
-static tm_status check_size(const tm_mixed_arrays *mesh, tm_error *error)
+tm_status tm_element_examine(tm_examination *found, const tm_mesh_view *mesh,
+                             unsigned threads, tm_error *error)
 {
-    if (mesh->elements >= most_elements)
-        return tm_fail_at(error, TM_ERROR_SYSTEM, NULL, 0, ".mix",
-                          "more than %zu elements", most_elements - 1);
-    if (mesh->faces + mesh->facets >= most_rows)
-        return tm_fail_at(error, TM_ERROR_SYSTEM, NULL, 0, ".facet",
-                          "more than %zu rows, with those of .face", most_rows - 1);
-    return TM_OK;
-}
-
-tm_mixed_arrays tm_mixed_arrays_of(const tm_stream *stream)
-{
-    const tm_block *node = tm_stream_find(stream, ".node");
-    const tm_block *mix = tm_stream_find(stream, ".mix");
-    const tm_block *face = tm_stream_find(stream, ".face");
-    const tm_block *edge = tm_stream_find(stream, ".edge");
-    const tm_block *facet = tm_stream_find(stream, ".facet");
-    tm_mixed_arrays mesh = {0};
-    if (node) {
-        mesh.nodes = node->count;
-        mesh.xyz = (const double(*)[3])node->real;
-    }
-    if (mix) {
-        mesh.elements = mix->count;
-        mesh.start = mix->start;
-        mesh.item = mix->item;
-    }
-    if (face) {
-        mesh.faces = face->count;
-        mesh.face = (const uint32_t(*)[3])face->integer;
-    }
-    if (edge) {
-        mesh.edges = edge->count;
-        mesh.edge = (const uint32_t(*)[2])edge->integer;
-    }
-    if (facet) {
-        mesh.facets = facet->count;
-        mesh.side = (const uint32_t(*)[2])facet->integer;
-        mesh.facet_start = facet->start;
-        mesh.facet_node = facet->item;
-    }
-    return mesh;
-}
-
-tm_status tm_mixed_examine(tm_examination *found, const tm_mixed_arrays *mesh,
-                           unsigned threads, tm_error *error)
-{
-    *found = (tm_examination){.element = "element",
-                              .elements = "elements",
-                              .mixed = true,
+    *found = (tm_examination){.element = mesh->start ? "element" : "tetrahedron",
+                              .elements = mesh->start ? "elements" : "tetrahedra",
+                              .mixed = mesh->start,
                               .nodes = mesh->nodes,
                               .element_count = mesh->elements};
-    tm_status status = check_size(mesh, error);
-    if (status != TM_OK)
-        return status;
     int8_t *sign = tm_new(mesh->elements, sizeof *sign);
     if (!sign)
         return tm_fail_memory(error);
-    tm_mixed_boundary boundary = {0};
-    status = examine_elements(found, mesh, sign, threads, error);
+    tm_boundary_faces boundary = {0};
+    tm_status status = examine_elements(found, mesh, sign, threads, error);
     if (status == TM_OK)
-        status = tm_mixed_examine_faces(found, mesh, sign, &boundary, error);
+        status = tm_element_examine_faces(found, mesh, sign, &boundary, error);
     free(sign);
     if (status == TM_OK)
-        status = tm_mixed_examine_nonconforming(found, &boundary, error);
+        status = tm_element_examine_nonconforming(found, &boundary, error);
     if (status == TM_OK)
-        status = tm_examine_boundary(found, mesh->xyz, mesh->nodes,
-                                     (const uint32_t *)boundary.node, 4, boundary.count,
-                                     error);
+        status = tm_examine_boundary(found, mesh->xyz, mesh->nodes, boundary.node,
+                                     boundary.count, error);
     free(boundary.node);
     if (status == TM_OK)
         status = tm_examine_nodes(found, mesh->xyz, mesh->nodes, error);

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A triangle against a quadrilateral, by a hash table of the triangles of the boundary.
  */
-#include "mixed_examine_faces.h"
+#include "element_examine_faces.h"
 
 #include "../base/hash.h"
 
 #include <string.h>
 
 typedef struct triangles {
-    const tm_mixed_boundary *boundary;
+    const tm_boundary_faces *boundary;
     tm_hash_table table; /* of the boundary's triangles */
 } triangles;
 
@@ -58,9 +58,9 @@ static void look_up(tm_examination *found, const triangles *all,
     }
 }
 
-tm_status tm_mixed_examine_nonconforming(tm_examination *found,
-                                         const tm_mixed_boundary *boundary,
-                                         tm_error *error)
+tm_status tm_element_examine_nonconforming(tm_examination *found,
+                                           const tm_boundary_faces *boundary,
+                                           tm_error *error)
 {
     size_t count = 0;
     for (size_t f = 0; f < boundary->count; f++)

@@ -1,0 +1,424 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One walk over the nodes v, each with the faces and edges of which v is the smallest
+ * node. Of an element's edges most begin at the smallest node of one of its two faces
+ * there; the others, the far edges, are listed beforehand by their smaller node, as are
+ * the rows of .edge. */
+#include "element_examine_faces.h"
+
+#include "../base/array.h"
+#include "../base/disjoint_sets.h"
+#include "../mesh/face_table.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* What begins at the nodes: of v it is item[start[v]] … item[start[v + 1] - 1]. */
+typedef struct list {
+    size_t *start;
+    uint32_t *item;
+} list;
+
+typedef struct walk {
+    const tm_mesh_view *mesh;
+    const int8_t *sign;
+    tm_examination *found;
+    tm_boundary_faces *boundary;
+    tm_face_table table;
+    list far;         /* the larger nodes of far edges */
+    list listed;      /* rows of .edge; no arrays where there are none */
+    uint32_t *row_to; /* [nodes]: the last row of .edge from a smaller node; TM_NONE */
+    uint32_t *parent; /* [elements]: a forest with a tree for each component */
+    uint32_t *stamp;  /* [nodes]: the last v that has an edge to the node; TM_NONE */
+    size_t elements;  /* that do not name a node twice */
+    size_t joints;    /* of two components into one */
+    size_t used_nodes;
+    size_t edges;
+    size_t faces;
+} walk;
+
+/* The members of a face. */
+typedef struct members {
+    tm_face_member element[2]; /* the first two */
+    size_t elements;
+    uint32_t face_row, facet_row; /* the first of .face, of .facet; TM_NONE */
+} members;
+
+static bool is_whole(const walk *w, size_t e)
+{
+    return w->sign[e] != TM_NODE_TWICE;
+}
+
+static void add_defect(walk *w, tm_defect d, uint32_t first, uint32_t second,
+                       uint32_t third)
+{
+    tm_defect_add(&w->found->defect[d],
+                  (uint32_t[TM_DEFECT_NUMBERS]){first, second, third});
+}
+
+static uint32_t lesser(uint32_t a, uint32_t b)
+{
+    return a < b ? a : b;
+}
+
+/* Edges ---------------------------------------------------------------------------- */
+
+static void meet_edge(walk *w, uint32_t v, uint32_t end)
+{
+    w->edges += w->stamp[end] != v;
+    w->stamp[end] = v;
+}
+
+/* The two largest nodes of a tetrahedron, in ascending order. */
+static void top_edge(const uint32_t n[4], uint32_t top[2])
+{
+    const bool i = n[0] < n[1], j = n[2] < n[3];
+    const uint32_t large = n[i], small = n[!i];
+    const uint32_t other_large = n[2 + j], other_small = n[2 + !j];
+    const bool first = large > other_large;
+    const uint32_t rest = first ? small : other_small;
+    const uint32_t loser = first ? other_large : large;
+    top[1] = first ? large : other_large;
+    top[0] = rest > loser ? rest : loser;
+}
+
+/* The far edges of a mixed element as bits. */
+static uint16_t far_bits(const uint32_t *n, const tm_element_shape *shape)
+{
+    uint32_t least[TM_ELEMENT_FACES], far = 0;
+    tm_mixed_least(shape, n, least);
+    for (size_t i = 0; i < shape->edges; i++) {
+        const uint32_t small = lesser(n[shape->edge[i][0]], n[shape->edge[i][1]]);
+        const bool is_far = (small != least[shape->edge_face[i][0]]) &
+                            (small != least[shape->edge_face[i][1]]);
+        far |= (uint32_t)is_far << i;
+    }
+    return (uint16_t)far;
+}
+
+/* The far edges of element e, the smaller node first; how many. *bits are kept from the
+ * first call to the next. */
+static size_t far_edges(const walk *w, size_t e, uint16_t *bits, bool again,
+                        uint32_t far[TM_ELEMENT_EDGES][2])
+{
+    size_t k, count = 0;
+    const uint32_t *n = tm_mesh_view_nodes(w->mesh, e, &k);
+    if (!is_whole(w, e))
+        return 0;
+    if (k == TM_TET_NODES) {
+        top_edge(n, far[0]);
+        return 1;
+    }
+    const tm_element_shape *shape = &tm_element_shapes[k];
+    if (!again)
+        *bits = far_bits(n, shape);
+    for (uint32_t left = *bits; left != 0; left &= left - 1) {
+        const uint8_t *edge = shape->edge[__builtin_ctz(left)];
+        const uint32_t a = n[edge[0]], b = n[edge[1]];
+        far[count][0] = lesser(a, b);
+        far[count][1] = a ^ b ^ far[count][0];
+        count++;
+    }
+    return count;
+}
+
+/* far.start[v + 2] counts, then far.start[v + 1] is where the next edge of v goes. */
+static bool list_far_edges(walk *w)
+{
+    const tm_mesh_view *mesh = w->mesh;
+    uint32_t far[TM_ELEMENT_EDGES][2];
+    uint16_t *bits = tm_new(mesh->start ? mesh->elements : 1, sizeof *bits);
+    size_t *next = calloc(mesh->nodes + 2, sizeof *next), all = 0;
+    w->far.start = next++;
+    for (size_t e = 0; bits && w->far.start && e < mesh->elements; e++) {
+        const size_t count = far_edges(w, e, &bits[mesh->start ? e : 0], false, far);
+        for (size_t i = 0; i < count; i++)
+            next[far[i][0] + 1]++;
+        all += count;
+    }
+    w->far.item = tm_new(all, sizeof *w->far.item);
+    const bool enough = bits && w->far.start && w->far.item;
+    for (size_t v = 0; enough && v < mesh->nodes; v++)
+        next[v + 1] += next[v];
+    for (size_t e = 0; enough && e < mesh->elements; e++) {
+        const size_t count = far_edges(w, e, &bits[mesh->start ? e : 0], true, far);
+        for (size_t i = 0; i < count; i++)
+            w->far.item[next[far[i][0]]++] = far[i][1];
+    }
+    free(bits);
+    return enough;
+}
+
+static bool list_rows(walk *w)
+{
+    const tm_mesh_view *mesh = w->mesh;
+    if (mesh->edges == 0)
+        return true;
+    w->listed.start = calloc(mesh->nodes + 2, sizeof *w->listed.start);
+    w->listed.item = tm_new(mesh->edges, sizeof *w->listed.item);
+    w->row_to = tm_new(mesh->nodes, sizeof *w->row_to);
+    if (!w->listed.start || !w->listed.item || !w->row_to)
+        return false;
+    memset(w->row_to, UINT8_MAX, mesh->nodes * sizeof *w->row_to);
+    size_t *next = w->listed.start + 1;
+    for (size_t r = 0; r < mesh->edges; r++)
+        next[lesser(mesh->edge[r][0], mesh->edge[r][1]) + 1]++;
+    for (size_t v = 0; v < mesh->nodes; v++)
+        next[v + 1] += next[v];
+    for (size_t r = 0; r < mesh->edges; r++)
+        w->listed.item[next[lesser(mesh->edge[r][0], mesh->edge[r][1])]++] = (uint32_t)r;
+    return true;
+}
+
+/* The rows of .edge from v, where all edges to larger nodes were met. */
+static void take_rows(walk *w, uint32_t v)
+{
+    for (size_t i = w->listed.start[v]; i < w->listed.start[v + 1]; i++) {
+        const uint32_t row = w->listed.item[i], *n = w->mesh->edge[row];
+        const uint32_t end = n[0] == v ? n[1] : n[0];
+        const uint32_t earlier = w->row_to[end];
+        const bool repeats = earlier != TM_NONE && lesser(w->mesh->edge[earlier][0],
+                                                          w->mesh->edge[earlier][1]) == v;
+        if (repeats && end != v) {
+            add_defect(w, TM_REPEATED_EDGE, row, earlier, 0);
+            continue;
+        }
+        w->row_to[end] = row;
+        if (end == v || w->stamp[end] != v)
+            add_defect(w, TM_DANGLING_EDGE, row, 0, 0);
+    }
+}
+
+/* The edges that begin at v, whose faces were taken: it is used if it has an edge to a
+ * smaller one, met before, or to a larger one. */
+static void take_edges(walk *w, uint32_t v, size_t edges_before)
+{
+    for (size_t i = w->far.start[v]; i < w->far.start[v + 1]; i++)
+        meet_edge(w, v, w->far.item[i]);
+    if (w->listed.start)
+        take_rows(w, v);
+    w->used_nodes += w->stamp[v] != TM_NONE || w->edges > edges_before;
+}
+
+/* Faces ---------------------------------------------------------------------------- */
+
+static void join(walk *w, uint32_t e, uint32_t g)
+{
+    e = tm_set_root(w->parent, e);
+    g = tm_set_root(w->parent, g);
+    w->joints += e != g;
+    if (e < g)
+        w->parent[g] = e;
+    else
+        w->parent[e] = g;
+}
+
+static uint32_t element_of(const walk *w, uint32_t half)
+{
+    return half >> w->table.shift;
+}
+
+static void check_sides(walk *w, const members *at)
+{
+    const uint32_t e = element_of(w, at->element[0].id);
+    const uint32_t g = element_of(w, at->element[1].id);
+    const int product = w->sign[e] * w->sign[g];
+    const bool alike = at->element[0].turned == at->element[1].turned;
+    if (product != 0 && alike == (product > 0))
+        add_defect(w, TM_OVERLAPPING_FACE, lesser(e, g), e < g ? g : e, 0);
+}
+
+static bool add_boundary_face(walk *w, uint32_t half)
+{
+    tm_boundary_faces *b = w->boundary;
+    void *moved = tm_grow(b->node, &b->room, b->count + 1, sizeof *b->node);
+    if (!moved)
+        return false;
+    b->node = moved;
+    if (tm_half_face_nodes(w->mesh, half, b->node[b->count]) == 3)
+        b->node[b->count][3] = TM_NONE;
+    b->count++;
+    return true;
+}
+
+/* Whether row f of .facet says which elements are at its face, and turns as it should. */
+static bool is_right(const walk *w, const members *at, uint32_t f, bool turned)
+{
+    const uint32_t *side = w->mesh->side[f];
+    if (at->elements != (side[1] == TM_NONE ? 1 : 2))
+        return false;
+    const bool second = element_of(w, at->element[0].id) != side[0];
+    if (second && (at->elements == 1 || element_of(w, at->element[1].id) != side[0]))
+        return false;
+    if (at->elements == 2 && element_of(w, at->element[!second].id) != side[1])
+        return false;
+    const int8_t sign = w->sign[side[0]];
+    return sign == 0 || (turned == at->element[second].turned) == (sign > 0);
+}
+
+/* A row of .face or .facet, of which this face is; the elements at it were taken. */
+static void take_row(walk *w, members *at, const tm_face_member *member)
+{
+    const uint32_t faces = (uint32_t)w->mesh->faces;
+    uint32_t row = member->id - w->table.first_row;
+    const bool is_facet = row >= faces;
+    uint32_t *first = is_facet ? &at->facet_row : &at->face_row;
+    row -= is_facet ? faces : 0;
+    if (*first != TM_NONE) {
+        add_defect(w, TM_REPEATED_FACE, row, *first, is_facet);
+        return;
+    }
+    *first = row;
+    if (is_facet ? !is_right(w, at, row, member->turned) : at->elements == 0)
+        add_defect(w, TM_DANGLING_FACE, row, 0, is_facet);
+}
+
+static members take_members(walk *w, const tm_face *face)
+{
+    members at = {.face_row = TM_NONE, .facet_row = TM_NONE};
+    for (uint32_t m = face->first; m != TM_FACE_END; m = w->table.member[m].next) {
+        const tm_face_member *member = &w->table.member[m];
+        if (member->id >= w->table.first_row) {
+            take_row(w, &at, member);
+            continue;
+        }
+        if (at.elements < 2)
+            at.element[at.elements] = *member;
+        if (at.elements > 0)
+            join(w, element_of(w, at.element[0].id), element_of(w, member->id));
+        at.elements++;
+    }
+    return at;
+}
+
+static void add_unmatched(walk *w, uint32_t v, const tm_face *face, uint32_t how)
+{
+    uint32_t n[3];
+    tm_face_others(face, n);
+    tm_defect_add(&w->found->defect[TM_UNMATCHED_FACE],
+                  (uint32_t[TM_DEFECT_NUMBERS]){v, n[0], n[1], how});
+}
+
+/* Returns the number of elements at a face; v is its smallest node. *enough is false
+ * where memory is out. */
+static size_t take_face(walk *w, uint32_t v, const tm_face *face, bool *enough)
+{
+    const uint32_t p = (uint32_t)(face->beside >> 32), q = (uint32_t)face->beside;
+    if (v == p || p == q) /* a row that is no triangle */
+        return 0;
+    const members at = take_members(w, face);
+    if (at.elements == 0)
+        return 0;
+    w->faces++;
+    meet_edge(w, v, p);
+    meet_edge(w, v, q);
+    if (at.elements == 1)
+        *enough = add_boundary_face(w, at.element[0].id);
+    else if (at.elements == 2)
+        check_sides(w, &at);
+    else
+        add_unmatched(w, v, face, (uint32_t)at.elements);
+    return at.elements;
+}
+
+static bool have_same_nodes(const tm_face *f, const tm_face *g)
+{
+    uint32_t n[3], m[3];
+    tm_face_others(f, n);
+    tm_face_others(g, m);
+    return n[0] == m[0] && n[1] == m[1] && n[2] == m[2];
+}
+
+/* Faces of the same nodes follow each other, whatever their cyclic order. */
+static bool take_faces(walk *w, uint32_t v)
+{
+    const tm_face *before = NULL;
+    bool enough = true;
+    if (!w->table.plain)
+        tm_face_table_sort(&w->table);
+    for (size_t f = 0; f < w->table.faces && enough; f++) {
+        const tm_face *face = &w->table.face[f];
+        if (take_face(w, v, face, &enough) == 0)
+            continue;
+        if (before && have_same_nodes(before, face))
+            add_unmatched(w, v, face, TM_FACE_IN_ANOTHER_ORDER);
+        before = face;
+    }
+    return enough;
+}
+
+/* The walk ------------------------------------------------------------------------- */
+
+static tm_status walk_nodes(walk *w, tm_error *error)
+{
+    tm_status status = TM_OK;
+    for (uint32_t v = 0; v < w->mesh->nodes && status == TM_OK; v++) {
+        const size_t edges_before = w->edges;
+        status = tm_face_table_at(&w->table, v, error);
+        if (status == TM_OK && !take_faces(w, v))
+            status = tm_fail_memory(error);
+        if (status == TM_OK)
+            take_edges(w, v, edges_before);
+    }
+    return status;
+}
+
+/* Rows that cannot be a face of any element. */
+static void take_no_faces(walk *w)
+{
+    const uint32_t faces = (uint32_t)w->mesh->faces;
+    const uint32_t rows = faces + (uint32_t)w->mesh->facets;
+    for (uint32_t row = 0; row < rows; row++)
+        if (!tm_row_is_face(w->mesh, row))
+            add_defect(w, TM_DANGLING_FACE, row < faces ? row : row - faces, 0,
+                       row >= faces);
+}
+
+static bool allocate(walk *w)
+{
+    const tm_mesh_view *mesh = w->mesh;
+    w->parent = tm_new(mesh->elements, sizeof *w->parent);
+    w->stamp = tm_new(mesh->nodes, sizeof *w->stamp);
+    if (!w->parent || !w->stamp)
+        return false;
+    memset(w->stamp, UINT8_MAX, mesh->nodes * sizeof *w->stamp);
+    for (uint32_t e = 0; e < mesh->elements; e++) {
+        w->parent[e] = e;
+        w->elements += is_whole(w, e);
+    }
+    return true;
+}
+
+static void report(const walk *w)
+{
+    tm_examination *found = w->found;
+    found->boundary_faces = w->boundary->count;
+    found->components = w->elements - w->joints;
+    found->unused_nodes = w->mesh->nodes - w->used_nodes;
+    found->euler = (int64_t)w->used_nodes - (int64_t)w->edges + (int64_t)w->faces -
+                   (int64_t)w->elements;
+}
+
+tm_status tm_element_examine_faces(tm_examination *found, const tm_mesh_view *mesh,
+                                   const int8_t *sign, tm_boundary_faces *boundary,
+                                   tm_error *error)
+{
+    walk w = {.mesh = mesh, .sign = sign, .found = found, .boundary = boundary};
+    tm_status status = tm_face_table_make(&w.table, mesh, error);
+    if (status == TM_OK && (!list_far_edges(&w) || !list_rows(&w) || !allocate(&w)))
+        status = tm_fail_memory(error);
+    if (status == TM_OK) {
+        take_no_faces(&w);
+        status = walk_nodes(&w, error);
+    }
+    if (status == TM_OK)
+        report(&w);
+    tm_face_table_free(&w.table);
+    free(w.far.start);
+    free(w.far.item);
+    free(w.listed.start);
+    free(w.listed.item);
+    free(w.row_to);
+    free(w.parent);
+    free(w.stamp);
+    return status;
+}
