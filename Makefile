@@ -1,18 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # termesh. Needs GNU make.
 #
-#   make                 the filters in build/bin, the library build/libtermesh.a
-#   make check           all tests; SAN=1: under the address and undefined-behaviour
-#                        sanitizers, in build/san; TM_SEED repeats the random ones
+#   make                 the filters in build/bin, the library in build, static and shared
+#   make check           all tests; ONLY=NAME: one test program, or one file of tests/cli;
+#                        SAN=1: under the address and undefined-behaviour sanitizers,
+#                        in build/san; TM_SEED repeats the random ones
 #   make fuzz            damaged input for every filter; FUZZ_CASES of it, TM_SEED
 #   make bench           all of tests/bench
 #   make lint            what the compiler does not see; make format mends its part
+#   make warnings        compiles all with all compilers and levels of optimisation
 #   make install         into $(DESTDIR)$(PREFIX); make uninstall
 #   make clean
 #
 # Everything that is made is in BUILD, which may be any folder: make BUILD=/tmp/termesh
+# Warnings of the compiler are errors with WERROR=1.
 
-VERSION = 0.1.0
+# 0.1.0, and the number in the name of the shared library.
+VERSION := $(shell sed -n 's/^.define TM_VERSION "\(.*\)"/\1/p' lib/base/version.h)
+SOVERSION := $(basename $(VERSION))
+
 PREFIX = /usr/local
 BINDIR = $(PREFIX)/bin
 MANDIR = $(PREFIX)/share/man
@@ -24,14 +30,24 @@ CXX = c++
 AR = ar
 CFLAGS = -O2 -g
 CXXFLAGS = -O2 -g
-WARNINGS = -Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes -Werror
+werror = $(if $(filter-out 0,$(WERROR)),-Werror)
+WARNINGS = -Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes $(werror)
 LDLIBS = -lgmp -lz -lm -lpthread
 
-# MPI, which p4est needs; for another one than Open MPI set both. A program that does not
-# use p4est is not linked with it.
-MPI_CFLAGS := $(shell mpicc --showme:compile)
-MPI_LDLIBS := $(shell mpicc --showme:link)
+# p4est, and MPI, which it needs; for another one than Open MPI set both of its flags. A
+# program that does not use p4est is not linked with it. Where it is not installed, what
+# uses it is left out.
+MPICC = mpicc
+MPI_CFLAGS := $(shell $(MPICC) --showme:compile 2>/dev/null)
+MPI_LDLIBS := $(shell $(MPICC) --showme:link 2>/dev/null)
+has_p4est := $(shell $(CC) $(CPPFLAGS) $(MPI_CFLAGS) -E -x c -include p4est.h /dev/null \
+	>/dev/null 2>&1 && echo yes)
+ifdef has_p4est
 LDLIBS += -Wl,--as-needed -lp4est -lsc $(MPI_LDLIBS) -Wl,--no-as-needed
+else
+left_out := octree-mesh octree-repair test_octree test_octree_mesh test_interior_leaves \
+	$(shell grep -l '^.include <p[48]est' lib/*/*.c lib/*/*/*.c 2>/dev/null)
+endif
 
 FUZZ_CASES = 20000
 BUILD = build
@@ -45,20 +61,28 @@ export UBSAN_OPTIONS ?= exitcode=99:print_stacktrace=1
 export LSAN_OPTIONS ?= exitcode=99
 endif
 
-# -ffp-contract=off: the same bytes on every machine.
-TM_CFLAGS = -std=c17 -D_GNU_SOURCE -DTM_VERSION='"$(VERSION)"' -ffp-contract=off \
+# -ffp-contract=off: the same bytes on every machine. -fPIC: one set of objects for both
+# libraries; calls within are not to be intercepted, and so cost no more.
+TM_CFLAGS = -std=c17 -D_GNU_SOURCE -ffp-contract=off -fPIC -fno-semantic-interposition \
 	$(WARNINGS) $(SANITIZE) -I$(BUILD)/generated \
-	$(patsubst -I%,-isystem %,$(MPI_CFLAGS)) $(CFLAGS)
+	$(patsubst -I%,-isystem %,$(MPI_CFLAGS)) $(CPPFLAGS) $(CFLAGS)
 
-filters := $(basename $(notdir $(wildcard cmd/*.c)))
+# The files of lib/ whose names end with $(1); programs that are run by make are no part
+# of the library.
+in_library = $(foreach file,$(wildcard lib/*/*$(1) lib/*/*/*$(1)),\
+	$(if $(findstring /generate/,$(file)),,$(file)))
+
+filters := $(filter-out $(left_out),$(basename $(notdir $(wildcard cmd/*.c))))
 bin := $(filters:%=$(BUILD)/bin/%)
 library := $(BUILD)/libtermesh.a
-library_sources := $(filter-out lib/base/generate/% lib/octree/transition/generate/%, \
-	$(wildcard lib/*/*.c lib/*/*/*.c))
-library_objects := $(library_sources:%.c=$(BUILD)/%.o)
-common_objects := $(patsubst %.c,$(BUILD)/%.o,$(wildcard cmd/common/*/*.c))
-headers := $(wildcard lib/*/*.h lib/*/*/*.h)
-unit_tests := $(patsubst tests/unit/%.c,$(BUILD)/tests/%,$(wildcard tests/unit/test_*.c))
+shared := $(BUILD)/libtermesh.so.$(VERSION)
+library_objects := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(left_out),$(call in_library,.c)))
+common := $(BUILD)/libcommon.a
+common_objects := $(patsubst %.c,$(BUILD)/%.o,$(wildcard cmd/common/*.c cmd/common/*/*.c))
+headers := $(call in_library,.h)
+public_headers := lib/termesh.h $(shell sed -n 's|^.include "\(.*\)"|lib/\1|p' lib/termesh.h)
+unit_tests := $(addprefix $(BUILD)/tests/,$(filter-out $(left_out),\
+	$(basename $(notdir $(wildcard tests/unit/test_*.c)))))
 oracles := $(patsubst tests/oracle/%.cc,$(BUILD)/tests/%,$(wildcard tests/oracle/*.cc))
 fuzzer := $(BUILD)/fuzz/fuzz
 solver := $(BUILD)/vem/vem-poisson
@@ -66,13 +90,16 @@ benchers := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/*
 shapes := $(BUILD)/bench/shapes
 generated := $(BUILD)/generated/powers.h $(BUILD)/generated/transitions.h
 pages := $(wildcard man/*.[157])
-sources := $(wildcard lib/*/*.[ch] lib/*/*/*.[ch] lib/*/*/*/*.[ch] cmd/*.c cmd/common/*/*.[ch] tests/*/*.[ch] \
-	tests/*/*.cc examples/*.c)
+sources := $(wildcard lib/*.h lib/*/*.[ch] lib/*/*/*.[ch] lib/*/*/*/*.[ch] cmd/*.c \
+	cmd/common/*/*.[ch] tests/*/*.[ch] tests/*/*.cc examples/*.c examples/*.cc)
 
-.PHONY: all tests check benchers bench fuzz lint format install uninstall clean
+.PHONY: all tests check benchers bench fuzz lint warnings format install uninstall clean
 .SECONDARY:
 
-all: $(bin) $(library)
+all: $(bin) $(library) $(shared)
+ifdef left_out
+	@echo "There is no p4est, or no mpicc: octree-mesh and octree-repair are left out." >&2
+endif
 
 # Programs of the tree that write tables of the library.
 $(BUILD)/generated/%.h: $(BUILD)/generate/%
@@ -85,8 +112,8 @@ $(BUILD)/generate/powers: lib/base/generate/powers.c
 	$(CC) $(TM_CFLAGS) -o $@ $< $(LDFLAGS) $(LDLIBS)
 
 $(BUILD)/generate/transitions: $(wildcard lib/octree/transition/generate/*.[ch]) \
-		lib/octree/transition/face_pieces.c lib/octree/transition/leaf_place.c lib/octree/transition/transition.h \
-		lib/element/shape.c
+		lib/octree/transition/face_pieces.c lib/octree/transition/leaf_point.c \
+		lib/octree/transition/transition.h lib/element/shape.c
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $(filter %.c,$^) $(LDFLAGS) $(LDLIBS)
 
@@ -95,10 +122,16 @@ $(BUILD)/%.o: %.c Makefile | $(generated)
 	$(CC) $(TM_CFLAGS) -MMD -MP -c -o $@ $<
 
 $(library): $(library_objects)
+$(common): $(common_objects)
+$(library) $(common):
 	rm -f $@
 	$(AR) rcs $@ $^
 
-$(bin): $(BUILD)/bin/%: $(BUILD)/cmd/%.o $(common_objects) $(library)
+$(shared): $(library_objects) lib/termesh.map
+	$(CC) $(TM_CFLAGS) -shared -Wl,-soname,libtermesh.so.$(SOVERSION) \
+		-Wl,--version-script=lib/termesh.map -o $@ $(library_objects) $(LDFLAGS) $(LDLIBS)
+
+$(bin): $(BUILD)/bin/%: $(BUILD)/cmd/%.o $(common) $(library)
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) $(LDLIBS)
 
@@ -106,11 +139,23 @@ $(unit_tests): $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(library)
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lcmocka $(LDLIBS)
 
+# In this one allocations fail.
+$(BUILD)/tests/test_memory: private LDFLAGS += -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc
+
+# Calls all functions with NULL for their tm_error.
+$(BUILD)/generated/null_error.h: tests/null_error.py $(headers)
+	@mkdir -p $(@D)
+	python3 $< $(filter %.h,$^) >$@.new
+	mv $@.new $@
+
+$(BUILD)/tests/unit/test_null_error.o: $(BUILD)/generated/null_error.h
+$(BUILD)/tests/test_null_error: $(BUILD)/tests/fuzz/damage.o
+
 # C++ programs that compare with the C++ library.
 $(oracles): $(BUILD)/tests/%: tests/oracle/%.cc tests/unit/random.h $(library)
 	@mkdir -p $(@D)
-	$(CXX) -std=c++17 -Wall -Wextra -Werror $(SANITIZE) $(CXXFLAGS) -o $@ $< $(library) \
-		$(LDFLAGS) $(LDLIBS)
+	$(CXX) -std=c++17 -Wall -Wextra $(werror) $(SANITIZE) $(CPPFLAGS) $(CXXFLAGS) \
+		-o $@ $< $(library) $(LDFLAGS) $(LDLIBS)
 
 $(fuzzer): $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/fuzz/*.c)) $(library)
 	@mkdir -p $(@D)
@@ -133,7 +178,7 @@ $(solver): $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/vem/*.c)) $(library)
 tests: all $(unit_tests) $(oracles) $(fuzzer) $(solver) $(shapes)
 
 check: tests
-	sh tests/run.sh $(BUILD)
+	sh tests/run.sh $(BUILD) $(ONLY)
 
 # Always under the sanitizers.
 ifdef SANITIZE
@@ -150,8 +195,12 @@ benchers: all $(benchers) $(shapes)
 bench: benchers
 	for bench in tests/bench/*.sh; do sh "$$bench" || exit; done
 
-lint: $(generated)
+lint: WERROR = 1
+lint: $(generated) $(BUILD)/generated/null_error.h
 	sh tests/lint.sh $(BUILD)
+
+warnings:
+	sh tests/warnings.sh $(BUILD)
 
 format:
 	clang-format -i $(sources)
@@ -160,7 +209,11 @@ install: all
 	install -d $(DESTDIR)$(BINDIR) $(DESTDIR)$(LIBDIR)/pkgconfig
 	install -m 755 $(bin) $(DESTDIR)$(BINDIR)
 	install -m 644 $(library) $(DESTDIR)$(LIBDIR)
-	for header in $(headers); do \
+	install -m 755 $(shared) $(DESTDIR)$(LIBDIR)
+	for link in libtermesh.so.$(SOVERSION) libtermesh.so; do \
+		ln -sf $(notdir $(shared)) $(DESTDIR)$(LIBDIR)/$$link || exit; \
+	done
+	for header in $(public_headers); do \
 		install -D -m 644 $$header $(DESTDIR)$(INCLUDEDIR)/termesh/$${header#lib/} || exit; \
 	done
 	for page in $(pages); do \
@@ -172,7 +225,7 @@ install: all
 		>$(DESTDIR)$(LIBDIR)/pkgconfig/termesh.pc
 
 uninstall:
-	rm -f $(filters:%=$(DESTDIR)$(BINDIR)/%) $(DESTDIR)$(LIBDIR)/libtermesh.a \
+	rm -f $(filters:%=$(DESTDIR)$(BINDIR)/%) $(DESTDIR)$(LIBDIR)/libtermesh.* \
 		$(DESTDIR)$(LIBDIR)/pkgconfig/termesh.pc
 	rm -rf $(DESTDIR)$(INCLUDEDIR)/termesh
 	for page in $(pages); do \

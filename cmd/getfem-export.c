@@ -2,7 +2,7 @@
 /* getfem-export: a stream as a mesh file of the finite element library GetFEM. */
 #include "common/input/mesh_input.h"
 
-#include "../lib/format/getfem.h"
+#include "../lib/format/mesh_format.h"
 
 int main(int argc, char **argv)
 {

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* jens-stats: how good tetrahedra, pyramids, wedges and hexahedra are, by J_ENS and other
  * measures, and whether they are proved to be valid. */
-#include "common/app/filter.h"
-#include "common/plot/gnuplot.h"
-#include "common/app/jens_list.h"
-#include "common/plot/jens_plot.h"
+#include "common/input/mesh_input.h"
+#include "common/plot/plot.h"
 
-#include "../lib/format/tetgen_orient.h"
+#include "../lib/base/parallel.h"
+#include "../lib/element/aspect_ratio.h"
+#include "../lib/element/jens.h"
+#include "../lib/element/verdict.h"
 
-#include <string.h>
+#include <stdlib.h>
 
 enum { HISTO = FILTER_OWN, PLOT, FAIL_BELOW, CERTIFY, VERDICT };
 
@@ -112,12 +113,7 @@ static tm_elements read_elements(const filter *f, tm_stream *stream)
         elements.start = mix->start;
         elements.item = mix->item;
     } else if (has_tetrahedra) {
-        const tm_turned turned = tm_tetgen_orient(node, ele);
-        if (turned.turned > 0)
-            filter_note(f,
-                        "%s: %zu of %zu tetrahedra were left-handed and are counted "
-                        "turned",
-                        filter_input_name(f), turned.turned, ele->count);
+        mesh_input_turn(f, stream, ele, "are counted turned");
         elements.count = ele->count;
         elements.item = ele->integer;
     } else if (cell && cell->count > 0) {
@@ -125,6 +121,113 @@ static tm_elements read_elements(const filter *f, tm_stream *stream)
     }
     return elements;
 }
+
+/* Lists ---------------------------------------------------------------------------- */
+
+/* Appends the values of one element. */
+typedef void list_element(tm_text *text, size_t nodes, const double (*xyz)[3],
+                          const uint32_t *item);
+
+static void value(tm_text *text, double number)
+{
+    tm_text_append(text, " ", 1);
+    tm_text_double(text, number);
+}
+
+static void list_jens(tm_text *text, size_t nodes, const double (*xyz)[3],
+                      const uint32_t *item)
+{
+    value(text, tm_jens(nodes, xyz, item));
+    value(text, tm_least_scaled_jacobian(nodes, xyz, item));
+}
+
+static void list_aspect(tm_text *text, size_t nodes, const double (*xyz)[3],
+                        const uint32_t *item)
+{
+    value(text, tm_aspect_ratio(nodes, xyz, item));
+}
+
+static void list_verdict(tm_text *text, size_t nodes, const double (*xyz)[3],
+                         const uint32_t *item)
+{
+    value(text, tm_verdict_scaled_jacobian(nodes, xyz, item));
+    value(text, tm_verdict_shape(nodes, xyz, item));
+}
+
+/* J_ENS of each node. A node may be of several corners, as the apex of a pyramid: it has
+ * the least of them.
+ */
+static void list_nodes(tm_text *text, size_t nodes, const double (*xyz)[3],
+                       const uint32_t *item)
+{
+    const tm_element_shape *shape = &tm_element_shapes[nodes];
+    double jacobian[TM_ELEMENT_CORNERS], least[TM_ELEMENT_NODES];
+    tm_scaled_jacobians(shape, xyz, item, jacobian);
+    for (size_t v = 0; v < nodes; v++)
+        least[v] = 1;
+    for (size_t i = 0; i < shape->corners; i++) {
+        const double jens = tm_jens_of(jacobian[i], shape->k[i]);
+        double *node = &least[shape->corner[i][0]];
+        *node = jens < *node ? jens : *node;
+    }
+    for (size_t v = 0; v < nodes; v++)
+        value(text, least[v]);
+}
+
+/* By the options. */
+static const struct {
+    int output;
+    list_element *list;
+} lists[] = {
+    {'j', list_jens}, {'a', list_aspect}, {'l', list_nodes}, {VERDICT, list_verdict}};
+
+enum { CHUNK = 8192 }; /* elements that one thread lists at a time */
+
+typedef struct listing {
+    list_element *list;
+    const tm_elements *elements;
+    unsigned base;
+    tm_text *chunk;
+} listing;
+
+static void list_chunk(void *context, size_t chunk)
+{
+    const listing *l = context;
+    const tm_elements *elements = l->elements;
+    const size_t first = chunk * CHUNK;
+    const size_t end = elements->count - first < CHUNK ? elements->count : first + CHUNK;
+    tm_text *text = &l->chunk[chunk];
+    for (size_t e = first; e < end; e++) {
+        size_t nodes;
+        const uint32_t *item = tm_element_at(elements, e, &nodes);
+        tm_text_integer(text, (int64_t)(e + l->base));
+        l->list(text, nodes, elements->xyz, item);
+        tm_text_append(text, "\n", 1);
+    }
+}
+
+/* A line for each element: its number, from base, and its values, in the shortest form
+ * that reads back to the same double; the same for every number of threads. */
+static tm_status list_elements(tm_text *text, list_element *list,
+                               const tm_elements *elements, unsigned base,
+                               unsigned threads, tm_error *error)
+{
+    const size_t chunks = elements->count / CHUNK + (elements->count % CHUNK != 0);
+    tm_text *chunk = calloc(chunks + 1, sizeof *chunk);
+    if (!chunk)
+        return tm_fail_memory(error);
+    listing l = {list, elements, base, chunk};
+    tm_parallel(threads, chunks, list_chunk, &l);
+    for (size_t i = 0; i < chunks; i++) {
+        tm_text_append(text, chunk[i].byte, chunk[i].size);
+        text->failed |= chunk[i].failed;
+        tm_text_free(&chunk[i]);
+    }
+    free(chunk);
+    return text->failed ? tm_fail_memory(error) : TM_OK;
+}
+
+/* Output --------------------------------------------------------------------------- */
 
 static bool all_certified(const tm_jens_statistics *s)
 {
@@ -141,11 +244,7 @@ static const tm_jens_histogram *histogram(const options *o, const tm_jens_statis
 static void write_report(filter *f, const options *o, const tm_elements *elements,
                          const tm_jens_statistics *s, unsigned base)
 {
-    static const int letter[] = {[JENS_LIST_ELEMENTS] = 'j',
-                                 [JENS_LIST_ASPECT] = 'a',
-                                 [JENS_LIST_NODES] = 'l',
-                                 [JENS_LIST_VERDICT] = VERDICT};
-    if (!f->output && f->json && strcmp(f->json, "-") == 0)
+    if (!filter_has_report(f))
         return;
     tm_error error;
     tm_text text = {0};
@@ -154,9 +253,10 @@ static void write_report(filter *f, const options *o, const tm_elements *element
         if (o->request.certify)
             tm_jens_certified_table(&text, s, base);
     }
-    for (size_t i = 0; i < sizeof letter / sizeof *letter; i++)
-        if (letter[i] == o->output && jens_list(&text, (jens_list_kind)i, elements, base,
-                                                f->threads, &error) != TM_OK)
+    for (size_t i = 0; i < sizeof lists / sizeof *lists; i++)
+        if (lists[i].output == o->output &&
+            list_elements(&text, lists[i].list, elements, base, f->threads, &error) !=
+                TM_OK)
             filter_fail(f, &error);
     filter_write_text(f, &text);
     tm_text_free(&text);
@@ -174,23 +274,8 @@ static void write_files(const filter *f, const options *o, const tm_jens_statist
     }
     if (o->plot) {
         jens_plot_script(&text, s);
-        if (gnuplot_plot(&text, o->plot, &error) != TM_OK)
-            filter_fail(f, &error);
-        tm_text_free(&text);
+        plot_write(f, &text, o->plot);
     }
-}
-
-static void write_json(filter *f, const options *o, const tm_jens_statistics *s,
-                       unsigned base)
-{
-    tm_text text = {0};
-    tm_json json = {.text = &text};
-    tm_json_open(&json, NULL, '{');
-    tm_jens_statistics_json(&json, s, &o->request, base);
-    tm_json_close(&json, '}');
-    tm_text_string(&text, "\n");
-    filter_write_json(f, &text);
-    tm_text_free(&text);
 }
 
 /* Whether the elements are as good as was asked for; says what is not. */
@@ -230,14 +315,17 @@ int main(int argc, char **argv)
 
     tm_stream stream;
     tm_error error;
-    tm_jens_statistics statistics;
+    tm_jens_statistics statistics = {0};
     const tm_elements elements = read_elements(&f, &stream);
     if (tm_jens_statistics_measure(&statistics, &elements, &o.request, &error) != TM_OK)
         filter_fail(&f, &error);
     write_files(&f, &o, &statistics);
     write_report(&f, &o, &elements, &statistics, stream.base);
-    if (f.json)
-        write_json(&f, &o, &statistics, stream.base);
+    if (f.json) {
+        tm_jens_statistics_json(filter_json_begin(&f), &statistics, &o.request,
+                                stream.base);
+        filter_json_end(&f);
+    }
     const bool good = is_good(&f, &o, &statistics);
     tm_stream_free(&stream);
     return filter_finish(&f, good ? 0 : EXIT_GOAL);

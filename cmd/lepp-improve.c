@@ -3,7 +3,6 @@
 #include "common/app/filter.h"
 #include "common/input/tet_input.h"
 
-#include "../lib/base/json.h"
 #include "../lib/examine/tet_statistics.h"
 #include "../lib/tet/improve/improve.h"
 #include "../lib/tet/lepp/lepp.h"
@@ -206,24 +205,15 @@ typedef struct {
 
 static void write_json(filter *f, const settings *o, const result *r)
 {
-    tm_text text = {0};
-    tm_json json = {.text = &text};
-    tm_json_open(&json, NULL, '{');
-    tm_json_open(&json, "before", '{');
-    tm_tet_statistics_json(&json, &r->before);
-    tm_json_close(&json, '}');
-    tm_json_open(&json, "after", '{');
-    tm_tet_statistics_json(&json, &r->after);
-    tm_json_close(&json, '}');
-    tm_json_double(&json, "seconds", r->seconds);
+    tm_json *json = filter_json_begin(f);
+    tm_tet_statistics_object(json, "before", &r->before);
+    tm_tet_statistics_object(json, "after", &r->after);
+    tm_json_double(json, "seconds", r->seconds);
     if (o->is_improve)
-        tm_improve_report_json(&json, &r->improve);
+        tm_improve_report_json(json, &r->improve);
     else
-        tm_lepp_report_json(&json, &o->lepp, &r->lepp);
-    tm_json_close(&json, '}');
-    tm_text_string(&text, "\n");
-    filter_write_json(f, &text);
-    tm_text_free(&text);
+        tm_lepp_report_json(json, &o->lepp, &r->lepp);
+    filter_json_end(f);
 }
 
 static double cpu_seconds(void)
@@ -265,15 +255,13 @@ static void add(char *text, size_t size, const char *format, size_t count)
     snprintf(text + length, size - length, format, count);
 }
 
-static void add_operations(const tm_improve_report *r, char *text, size_t size)
+static void add_effects(const tm_improve_report *r, char *text, size_t size)
 {
-    const size_t *done = r->done.op;
-    add(text, size, "%zu edges and ",
-        done[TM_OP_EDGE_REMOVAL] + done[TM_OP_BOUNDARY_SWAP]);
-    add(text, size, "%zu faces removed, ", done[TM_OP_FACE_REMOVAL]);
-    add(text, size, "%zu times a node moved, ", done[TM_OP_SMOOTHING]);
-    add(text, size, "%zu points inserted, ", done[TM_OP_INSERTION]);
-    add(text, size, "%zu nodes removed", done[TM_OP_CONTRACTION] + r->done.swallowed);
+    static const char *const words[TM_IMPROVE_EFFECTS] = {
+        "%zu edges and ", "%zu faces removed, ", "%zu times a node moved, ",
+        "%zu points inserted, ", "%zu nodes removed"};
+    for (int k = 0; k < TM_IMPROVE_EFFECTS; k++)
+        add(text, size, words[k], tm_improve_effects(r, (tm_improve_effect)k));
 }
 
 static void add_star_operations(const settings *o, const tm_lepp_report *r, char *text,
@@ -304,7 +292,7 @@ static void summarise(const settings *o, const result *r, size_t tets, char *tex
     snprintf(text, size, "%zu -> %zu tetrahedra, %.2f%% -> %.2f%% bad; ", tets_before,
              tets, before, tm_percent(bad_after, tets));
     if (is_improve)
-        add_operations(&r->improve, text, size);
+        add_effects(&r->improve, text, size);
     else
         add_star_operations(o, &r->lepp, text, size);
 }

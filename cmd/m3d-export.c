@@ -2,13 +2,7 @@
 /* m3d-export: a stream as a mesh of the mixed-element octree mesher (.m3d). */
 #include "common/input/mesh_input.h"
 
-#include "../lib/format/m3d.h"
-
-static tm_status write_m3d(tm_text *text, const tm_stream *stream, unsigned threads,
-                           tm_error *error)
-{
-    return tm_m3d_write(text, stream, TM_M3D, threads, error);
-}
+#include "../lib/format/mesh_format.h"
 
 int main(int argc, char **argv)
 {
@@ -16,5 +10,5 @@ int main(int argc, char **argv)
         argc, argv, "m3d-export",
         "Writes mixed elements or tetrahedra as an .m3d mesh of the mixed-element\n"
         "octree mesher.",
-        write_m3d);
+        tm_m3d_write);
 }

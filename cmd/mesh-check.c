@@ -5,8 +5,6 @@
 #include "../lib/examine/element_examine.h"
 #include "../lib/examine/poly_examine.h"
 
-#include <string.h>
-
 static const struct option long_options[] = {FILTER_OPTIONS};
 
 /* The blocks of elements; the first that there is, is examined. */
@@ -50,24 +48,11 @@ static void examine(const filter *f, const tm_stream *stream, tm_examination *fo
 /* Nothing where standard output is for the JSON, or is to be quiet. */
 static void write_report(filter *f, const tm_examination *found, unsigned base)
 {
-    const bool json_instead = f->json && strcmp(f->json, "-") == 0;
-    if (!f->output && (json_instead || f->verbosity < 0))
+    if (!filter_has_report(f) || (!f->output && f->verbosity < 0))
         return;
     tm_text text = {0};
     tm_examination_text(&text, found, base);
     filter_write_text(f, &text);
-    tm_text_free(&text);
-}
-
-static void write_json(filter *f, const tm_examination *found)
-{
-    tm_text text = {0};
-    tm_json json = {.text = &text};
-    tm_json_open(&json, NULL, '{');
-    tm_examination_json(&json, found);
-    tm_json_close(&json, '}');
-    tm_text_string(&text, "\n");
-    filter_write_json(f, &text);
     tm_text_free(&text);
 }
 
@@ -96,8 +81,10 @@ int main(int argc, char **argv)
     tm_examination found;
     examine(&f, &stream, &found);
     write_report(&f, &found, stream.base);
-    if (f.json)
-        write_json(&f, &found);
+    if (f.json) {
+        tm_examination_json(filter_json_begin(&f), &found);
+        filter_json_end(&f);
+    }
     tm_stream_free(&stream);
     return filter_finish(&f, tm_examination_is_good(&found) ? 0 : EXIT_GOAL);
 }

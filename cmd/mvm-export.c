@@ -2,13 +2,7 @@
 /* mvm-export: a stream as a mixed volume mesh (.mvm). */
 #include "common/input/mesh_input.h"
 
-#include "../lib/format/m3d.h"
-
-static tm_status write_mvm(tm_text *text, const tm_stream *stream, unsigned threads,
-                           tm_error *error)
-{
-    return tm_m3d_write(text, stream, TM_MVM, threads, error);
-}
+#include "../lib/format/mesh_format.h"
 
 int main(int argc, char **argv)
 {
@@ -16,5 +10,5 @@ int main(int argc, char **argv)
         argc, argv, "mvm-export",
         "Writes mixed elements or tetrahedra as an .mvm mesh of the mixed-element\n"
         "octree mesher.",
-        write_mvm);
+        tm_mvm_write);
 }

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* oct-import: the octree of a restart file of the mixed-element octree mesher, with its
  * mesh and its surface, as a stream. */
-#include "common/input/import_file.h"
 #include "common/input/mesh_input.h"
 
-#include "../lib/format/m3d.h"
+#include "../lib/format/mesh_format.h"
 #include "../lib/format/oct.h"
 #include "../lib/format/surface_format.h"
-#include "../lib/surface/surface_stream.h"
+#include "../lib/surface/polygon_surface.h"
 
 static const struct option options[] = {
     {"mesh", required_argument, NULL, 'm'},
@@ -37,9 +36,8 @@ static void read_mesh(const char *file, tm_stream *stream)
 {
     tm_text bytes = {0};
     size_t materials;
-    succeed(import_file(file, &bytes, &error));
-    succeed(tm_m3d_read(stream, bytes.byte ? bytes.byte : "", bytes.size, file,
-                        &materials, &error));
+    filter_read_file(&f, file, &bytes);
+    succeed(tm_m3d_read(stream, bytes.byte, bytes.size, file, &materials, &error));
     tm_text_free(&bytes);
 }
 
@@ -47,8 +45,8 @@ static void read_surface(const char *file, tm_stream *stream)
 {
     tm_text bytes = {0};
     tm_polygon_surface surface;
-    succeed(import_file(file, &bytes, &error));
-    const char *text = bytes.byte ? bytes.byte : "";
+    filter_read_file(&f, file, &bytes);
+    const char *text = bytes.byte;
     tm_polygon_surface_init(&surface);
     succeed(tm_format_read(&surface, tm_format_of(text, bytes.size, file), text,
                            bytes.size, file, &error));
@@ -62,8 +60,8 @@ static void read_octants(tm_stream *stream)
     tm_text bytes = {0};
     tm_oct oct;
     const char *name = filter_input_name(&f);
-    import_input(&f, &bytes);
-    succeed(tm_oct_read(&oct, bytes.byte ? bytes.byte : "", bytes.size, name, &error));
+    filter_read_bytes(&f, &bytes);
+    succeed(tm_oct_read(&oct, bytes.byte, bytes.size, name, &error));
     succeed(tm_oct_to_stream(&oct, stream, name, &error));
     tm_oct_free(&oct);
     tm_text_free(&bytes);

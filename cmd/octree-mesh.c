@@ -3,13 +3,13 @@
 #include "common/app/filter.h"
 #include "common/input/octree_rules.h"
 #include "common/input/surface_input.h"
+#include "common/process/mpi_environment.h"
 
-#include "../lib/base/json.h"
 #include "../lib/octree/forest/octree_build.h"
 #include "../lib/octree/layer/octree_mesh_stream.h"
 #include "../lib/octree/layer/adaptive_refinement.h"
 #include "../lib/element/jens.h"
-#include "../lib/surface/thin_place.h"
+#include "../lib/surface/surface.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -93,7 +93,7 @@ static void note_topology(const filter *f, const tm_surface *s,
 {
     double at[3];
     char place[128] = "";
-    if (tm_surface_thin_place(s, 2 * leaf_side, at))
+    if (tm_surface_find_thin(s, 2 * leaf_side, at))
         snprintf(place, sizeof place, ", as near (%g, %g, %g)", at[0], at[1], at[2]);
     filter_note(f,
                 "the boundary has %zu components and Euler number %lld, the surface %zu "
@@ -139,36 +139,37 @@ static double smallest_side(const tm_octree *octree)
     return side;
 }
 
+typedef struct {
+    tm_octree_mesh_report mesh;
+    size_t octants, nodes, boundary_nodes;
+    size_t kind[TM_ELEMENT_NODES + 1]; /* elements by their nodes */
+} report;
+
 static void write_json(filter *f, const tm_octree *octree, const tm_octree_mesh *mesh)
 {
-    const tm_octree_mesh_report *r = &mesh->report;
+#define ROW(key, member) TM_REPORT_ROW(key, NULL, NULL, report, member)
+    static const tm_report_row rows[] = {ROW("octants", octants),
+                                         ROW("nodes", nodes),
+                                         TM_REPORT_OPEN_ROW("elements"),
+                                         ROW("tet", kind[4]),
+                                         ROW("pyramid", kind[5]),
+                                         ROW("wedge", kind[6]),
+                                         ROW("hex", kind[8]),
+                                         TM_REPORT_CLOSE_ROW,
+                                         ROW("boundary_nodes", boundary_nodes),
+                                         ROW("held_back", mesh.off_surface),
+                                         ROW("inverted", mesh.invalid),
+                                         ROW("lost_octants", mesh.lost),
+                                         ROW("lost_corners", mesh.corners_lost),
+                                         ROW("lost_edges", mesh.curves_lost),
+                                         ROW("components", mesh.components),
+                                         ROW("euler", mesh.euler),
+                                         {0}};
     const tm_mixed_mesh *m = &mesh->assembly.mesh;
-    size_t kind[TM_ELEMENT_NODES + 1] = {0};
-    tm_text text = {0};
-    tm_json json = {.text = &text};
+    report r = {mesh->report, octree->leaves, m->nodes, mesh->boundary.nodes, {0}};
     for (size_t e = 0; e < m->elements; e++)
-        kind[m->start[e + 1] - m->start[e]]++;
-    tm_json_open(&json, NULL, '{');
-    tm_json_integer(&json, "octants", (int64_t)octree->leaves);
-    tm_json_integer(&json, "nodes", (int64_t)m->nodes);
-    tm_json_open(&json, "elements", '{');
-    for (size_t i = 0; i < TM_ELEMENT_KINDS; i++) {
-        const size_t k = tm_element_kind_nodes[i];
-        tm_json_integer(&json, tm_element_shapes[k].name, (int64_t)kind[k]);
-    }
-    tm_json_close(&json, '}');
-    tm_json_integer(&json, "boundary_nodes", (int64_t)mesh->boundary.nodes);
-    tm_json_integer(&json, "held_back", (int64_t)r->off_surface);
-    tm_json_integer(&json, "inverted", (int64_t)r->invalid);
-    tm_json_integer(&json, "lost_octants", (int64_t)r->lost);
-    tm_json_integer(&json, "lost_corners", (int64_t)r->corners_lost);
-    tm_json_integer(&json, "lost_edges", (int64_t)r->curves_lost);
-    tm_json_integer(&json, "components", (int64_t)r->components);
-    tm_json_integer(&json, "euler", r->euler);
-    tm_json_close(&json, '}');
-    tm_text_string(&text, "\n");
-    filter_write_json(f, &text);
-    tm_text_free(&text);
+        r.kind[m->start[e + 1] - m->start[e]]++;
+    filter_write_json(f, rows, &r);
 }
 
 int main(int argc, char **argv)
@@ -190,6 +191,7 @@ int main(int argc, char **argv)
     tm_octree_mesh mesh;
     tm_error error;
     surface_input_build(&f, &o.surface, &surface, &stream);
+    mpi_environment_set(&f);
     if (tm_octree_build(&octree, &surface, o.rules.rules.rule, o.rules.rules.count,
                         &error) != TM_OK ||
         tm_octree_mesh_refine_lost(&mesh, &octree, &surface, o.resolve, &error) != TM_OK)

@@ -1,13 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* octree-repair: a mesh with its octants and its surface in, the same with valid elements
  * out. */
-#include "common/app/filter.h"
-#include "common/app/repair_files.h"
+#include "common/input/mesh_input.h"
 #include "common/input/surface_input.h"
+#include "common/process/mpi_environment.h"
 
-#include "../lib/base/json.h"
+#include "../lib/examine/jens_statistics.h"
+#include "../lib/format/mesh_format.h"
+#include "../lib/format/oct.h"
 #include "../lib/octree/repair/repair.h"
 #include "../lib/octree/repair/repair_stream.h"
+#include "../lib/octree/repair/repair_trace.h"
 
 #include <stdlib.h>
 #include <time.h>
@@ -110,6 +113,90 @@ static void build_surface(program *p, const tm_stream *stream)
     tm_polygon_surface_free(&polygons);
 }
 
+/* The files of --trace ------------------------------------------------------------- */
+
+typedef struct {
+    const char *base;
+    unsigned iteration, threads;
+    const tm_stream *stream;
+} writer;
+
+/* Writes the text as BASE_i.SUFFIX and frees it. */
+static tm_status put(const writer *w, const char *suffix, tm_text *text, tm_error *error)
+{
+    tm_text name = {0};
+    tm_text_format(&name, "%s_%u.%s", w->base, w->iteration, suffix);
+    tm_status status = name.failed || text->failed
+                           ? tm_fail_memory(error)
+                           : output_file_write(name.byte, text, error);
+    tm_text_free(&name);
+    tm_text_free(text);
+    return status;
+}
+
+static tm_status write_histogram(const writer *w, tm_error *error)
+{
+    const tm_block *node = tm_stream_find(w->stream, ".node");
+    const tm_block *mix = tm_stream_find(w->stream, ".mix");
+    const tm_elements elements = {(const double(*)[3])node->real, mix->count, mix->start,
+                                  mix->item};
+    const tm_jens_request request = {.threads = w->threads};
+    tm_jens_statistics statistics = {0};
+    tm_text text = {0};
+    const tm_status status =
+        tm_jens_statistics_measure(&statistics, &elements, &request, error);
+    if (status != TM_OK)
+        return status;
+    tm_jens_histogram_file(&text, &statistics.jens);
+    return put(w, "histo", &text, error);
+}
+
+static tm_status write_octants(const writer *w, const uint32_t *octant, size_t count,
+                               tm_error *error)
+{
+    tm_text text = {0};
+    for (size_t i = 0; i < count; i++)
+        tm_text_format(&text, "%u\n", octant[i]);
+    return put(w, "ref", &text, error);
+}
+
+static tm_status write_mesh(const writer *w, const char *suffix, mesh_writer *write,
+                            tm_error *error)
+{
+    tm_text text = {0};
+    const tm_status status = write(&text, w->stream, w->threads, error);
+    if (status == TM_OK)
+        return put(w, suffix, &text, error);
+    tm_text_free(&text);
+    return status;
+}
+
+/* Writes BASE_i.histo, .m3d, .vtk, and, where there are octants, .oct; BASE_i.ref, with
+ * the numbers of `count` octants from 0, a line each, where there are some. Each is whole
+ * or not there. */
+static tm_status write_trace(const program *p, unsigned iteration,
+                             const tm_repair_state *state, const uint32_t *octant,
+                             size_t count, tm_error *error)
+{
+    tm_stream stream;
+    tm_stream_init(&stream);
+    const writer w = {p->trace, iteration, p->f.threads, &stream};
+    tm_status status =
+        tm_repair_trace(state, p->has_surface ? &p->boundary : NULL, &stream, error);
+    if (status == TM_OK)
+        status = write_histogram(&w, error);
+    if (status == TM_OK && count > 0)
+        status = write_octants(&w, octant, count, error);
+    if (status == TM_OK)
+        status = write_mesh(&w, "m3d", tm_m3d_write, error);
+    if (status == TM_OK)
+        status = write_mesh(&w, "vtk", tm_vtk_write, error);
+    if (status == TM_OK && state->octree.leaves > 0)
+        status = write_mesh(&w, "oct", tm_oct_write, error);
+    tm_stream_free(&stream);
+    return status;
+}
+
 /* What --method refine says on standard error, and the files of --trace. */
 static tm_status visit(void *context, unsigned iteration, const tm_repair_state *state,
                        const uint32_t *bad, size_t count, tm_error *error)
@@ -125,11 +212,7 @@ static tm_status visit(void *context, unsigned iteration, const tm_repair_state 
         filter_verbose(&p->f, "octants to improve in iteration %u: %zu", iteration,
                        count);
     }
-    if (!p->trace)
-        return TM_OK;
-    return repair_files_write(p->trace, iteration, state,
-                              p->has_surface ? &p->boundary : NULL, bad, count,
-                              p->f.threads, error);
+    return p->trace ? write_trace(p, iteration, state, bad, count, error) : TM_OK;
 }
 
 /* What is left to do: a line for each octant, and one for all. */
@@ -152,47 +235,42 @@ static void note_left(const program *p, const tm_repair_state *state,
         left->bad, left->invalid, left->worst, left->held);
 }
 
-static void score_json(tm_json *json, const char *key, const tm_repair_score *score,
-                       size_t elements, size_t octants)
-{
-    tm_json_open(json, key, '{');
-    tm_json_integer(json, "bad", (int64_t)score->bad);
-    tm_json_integer(json, "invalid", (int64_t)score->invalid);
-    tm_json_integer(json, "held", (int64_t)score->held);
-    tm_json_double(json, "worst", score->worst);
-    tm_json_double(json, "average", score->average);
-    tm_json_integer(json, "elements", (int64_t)elements);
-    tm_json_integer(json, "octants", (int64_t)octants);
-    tm_json_close(json, '}');
-}
-
+/* Before the repair, or after it. */
 typedef struct {
+    tm_repair_score score;
     size_t elements, octants;
-} size;
+} mesh_state;
 
-static void write_json(program *p, const tm_repair_report *report, size before,
-                       size after, double seconds)
+static mesh_state state_of(const tm_repair_state *state, const tm_stream *stream)
 {
-    tm_text text = {0};
-    tm_json json = {.text = &text};
-    tm_json_open(&json, NULL, '{');
-    score_json(&json, "before", &report->before, before.elements, before.octants);
-    score_json(&json, "after", &report->after, after.elements, after.octants);
-    tm_json_integer(&json, "iterations", (int64_t)report->iterations);
-    tm_json_integer(&json, "tips", (int64_t)report->corners);
-    tm_json_integer(&json, "divided", (int64_t)report->divided);
-    tm_json_double(&json, "seconds", seconds);
-    tm_json_close(&json, '}');
-    tm_text_string(&text, "\n");
-    filter_write_json(&p->f, &text);
-    tm_text_free(&text);
+    const size_t octants =
+        state->remade ? state->octree.leaves : mesh_rows(stream, ".octant");
+    return (mesh_state){.elements = state->mesh.elements, .octants = octants};
 }
 
-static size size_of(const tm_repair_state *state, const tm_stream *stream)
+static void write_json(filter *f, const mesh_state *before, const mesh_state *after,
+                       const tm_repair_report *report, double seconds)
 {
-    const tm_block *octant = tm_stream_find(stream, ".octant");
-    const size_t octants = octant ? octant->count : 0;
-    return (size){state->mesh.elements, state->remade ? state->octree.leaves : octants};
+    static const tm_report_row rows[] = {
+        TM_REPORT_ROW("bad", NULL, NULL, mesh_state, score.bad),
+        TM_REPORT_ROW("invalid", NULL, NULL, mesh_state, score.invalid),
+        TM_REPORT_ROW("held", NULL, NULL, mesh_state, score.held),
+        TM_REPORT_ROW("worst", NULL, NULL, mesh_state, score.worst),
+        TM_REPORT_ROW("average", NULL, NULL, mesh_state, score.average),
+        TM_REPORT_ROW("elements", NULL, NULL, mesh_state, elements),
+        TM_REPORT_ROW("octants", NULL, NULL, mesh_state, octants),
+        {0}};
+    static const tm_report_row done[] = {
+        TM_REPORT_ROW("iterations", NULL, NULL, tm_repair_report, iterations),
+        TM_REPORT_ROW("tips", NULL, NULL, tm_repair_report, corners),
+        TM_REPORT_ROW("divided", NULL, NULL, tm_repair_report, divided),
+        {0}};
+    tm_json *json = filter_json_begin(f);
+    tm_report_object(json, "before", rows, before);
+    tm_report_object(json, "after", rows, after);
+    tm_report_json(json, done, report);
+    tm_json_double(json, "seconds", seconds);
+    filter_json_end(f);
 }
 
 /* Finds the surface, what nodes may do, and the octree. */
@@ -201,6 +279,7 @@ static void prepare(program *p, const tm_stream *stream, tm_repair_state *state,
 {
     tm_error error;
     build_surface(p, stream);
+    mpi_environment_set(&p->f);
     if (tm_repair_prepare(state, stream, p->has_surface ? &p->boundary : NULL, notes,
                           &error) != TM_OK)
         fail(p, &error);
@@ -225,12 +304,14 @@ static bool run(program *p, tm_stream *stream)
     if (tm_repair_is_needed(&state, stream, p->repair.threshold) || p->trace)
         prepare(p, stream, &state, &notes);
     tm_surface *surface = p->has_surface ? &p->boundary : NULL;
-    const size before = size_of(&state, stream);
+    mesh_state before = state_of(&state, stream);
     p->repair.visit = visit;
     p->repair.context = p;
     if (tm_repair(&state, surface, &p->repair, &report, &error) != TM_OK)
         fail(p, &error);
-    const size after = size_of(&state, stream);
+    mesh_state after = state_of(&state, stream);
+    before.score = report.before;
+    after.score = report.after;
     const bool done = report.after.bad == 0 && report.after.held == 0;
     if (!done)
         note_left(p, &state, &report.after, stream->base);
@@ -241,8 +322,8 @@ static bool run(program *p, tm_stream *stream)
                     notes.dropped);
     filter_write(&p->f, stream, "%zu elements of %zu, bad %zu of %zu", after.elements,
                  before.elements, report.after.bad, report.before.bad);
-    if (p->f.json)
-        write_json(p, &report, before, after, (double)(clock() - start) / CLOCKS_PER_SEC);
+    write_json(&p->f, &before, &after, &report,
+               (double)(clock() - start) / CLOCKS_PER_SEC);
     tm_repair_state_free(&state);
     return done;
 }

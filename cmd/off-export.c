@@ -2,12 +2,21 @@
 /* off-export: the boundary of a mesh, or all its faces, as an OFF file. */
 #include "common/input/mesh_input.h"
 
-#include "../lib/format/off.h"
+#include "../lib/format/mesh_format.h"
 
 enum { OPTION_ALL = FILTER_OWN };
 
 static const struct option long_options[] = {{"all", no_argument, NULL, OPTION_ALL},
                                              FILTER_OPTIONS};
+
+static bool all;
+
+static tm_status write_off(tm_text *text, const tm_stream *stream, unsigned threads,
+                           tm_error *error)
+{
+    (void)threads;
+    return tm_off_write(text, stream, all, error);
+}
 
 int main(int argc, char **argv)
 {
@@ -21,21 +30,9 @@ int main(int argc, char **argv)
         .options = long_options,
         .letters = FILTER_LETTERS,
     };
-    bool all = false;
     filter_start(&f, argc, argv);
     while (filter_option(&f) == OPTION_ALL)
         all = true;
     filter_operands(&f);
-
-    tm_stream stream;
-    tm_text text = {0};
-    tm_error error;
-    mesh_input_read(&f, &stream);
-    if (tm_off_write(&text, &stream, all, &error) != TM_OK)
-        mesh_input_fail(&f, &error);
-    filter_write_text(&f, &text);
-    mesh_input_report(&f, &stream);
-    tm_text_free(&text);
-    tm_stream_free(&stream);
-    return filter_finish(&f, 0);
+    return mesh_write(&f, write_off);
 }

@@ -4,8 +4,7 @@
 #include "common/app/output_files.h"
 
 #include "../lib/base/file.h"
-#include "../lib/base/json.h"
-#include "../lib/format/openfoam.h"
+#include "../lib/format/mesh_format.h"
 
 #include <dirent.h>
 #include <stdio.h>
@@ -86,17 +85,13 @@ static void write_folder(const filter *f, const char *folder, const tm_text *fil
 
 static void write_json(filter *f, const tm_openfoam_counts *counts)
 {
-    tm_text text = {0};
-    tm_json json = {.text = &text};
-    tm_json_open(&json, NULL, '{');
-    tm_json_integer(&json, "points", (int64_t)counts->points);
-    tm_json_integer(&json, "faces", (int64_t)counts->faces);
-    tm_json_integer(&json, "cells", (int64_t)counts->cells);
-    tm_json_integer(&json, "patches", (int64_t)counts->patches);
-    tm_json_close(&json, '}');
-    tm_text_string(&text, "\n");
-    filter_write_json(f, &text);
-    tm_text_free(&text);
+#define ROW(key, member) TM_REPORT_ROW(key, NULL, NULL, tm_openfoam_counts, member)
+    static const tm_report_row rows[] = {ROW("points", points),
+                                         ROW("faces", faces),
+                                         ROW("cells", cells),
+                                         ROW("patches", patches),
+                                         {0}};
+    filter_write_json(f, rows, counts);
 }
 
 int main(int argc, char **argv)
@@ -121,8 +116,7 @@ int main(int argc, char **argv)
     if (tm_openfoam_write(file, &stream, &counts, &error) != TM_OK)
         mesh_input_fail(&f, &error);
     write_folder(&f, folder, file);
-    if (f.json)
-        write_json(&f, &counts);
+    write_json(&f, &counts);
     for (int i = 0; i < TM_OPENFOAM_FILES; i++)
         tm_text_free(&file[i]);
     tm_stream_free(&stream);

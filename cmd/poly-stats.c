@@ -1,12 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* poly-stats: how many polyhedra are simple and star-shaped, and how good they are. */
 #include "common/app/filter.h"
-#include "common/plot/gnuplot.h"
-#include "common/plot/poly_plot.h"
-
-#include "../lib/examine/poly_statistics.h"
-
-#include <string.h>
+#include "common/plot/plot.h"
 
 enum { OPTION_PLOT = FILTER_OWN };
 
@@ -28,32 +23,17 @@ static void refuse_other_elements(const filter *f, const tm_stream *stream)
     }
 }
 
-static void write_json(filter *f, const tm_poly_statistics *s)
-{
-    tm_text text = {0};
-    tm_json json = {.text = &text};
-    tm_json_open(&json, NULL, '{');
-    tm_poly_statistics_json(&json, s);
-    tm_json_close(&json, '}');
-    tm_text_string(&text, "\n");
-    filter_write_json(f, &text);
-    tm_text_free(&text);
-}
-
 static void write_plot(const filter *f, const char *file, const tm_poly_statistics *s)
 {
-    tm_error error;
     tm_text script = {0};
     poly_plot_script(&script, s);
-    if (gnuplot_plot(&script, file, &error) != TM_OK)
-        filter_fail(f, &error);
-    tm_text_free(&script);
+    plot_write(f, &script, file);
 }
 
 /* What standard output or -o gets; nothing where standard output is for the JSON. */
 static void write_report(filter *f, const tm_poly_statistics *s)
 {
-    if (!f->output && f->json && strcmp(f->json, "-") == 0)
+    if (!filter_has_report(f))
         return;
     tm_text text = {0};
     tm_poly_statistics_table(&text, s);
@@ -102,8 +82,10 @@ int main(int argc, char **argv)
     if (plot)
         write_plot(&f, plot, &statistics);
     write_report(&f, &statistics);
-    if (f.json)
-        write_json(&f, &statistics);
+    if (f.json) {
+        tm_poly_statistics_json(filter_json_begin(&f), &statistics);
+        filter_json_end(&f);
+    }
     tm_stream_free(&stream);
     return filter_finish(&f, 0);
 }

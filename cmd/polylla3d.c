@@ -3,10 +3,8 @@
 #include "common/app/filter.h"
 #include "common/input/tet_input.h"
 
-#include "../lib/base/json.h"
 #include "../lib/poly/facets.h"
-#include "../lib/tet/facet.h"
-#include "../lib/tet/mesh_order.h"
+#include "../lib/tet/mesh_measure.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -62,14 +60,21 @@ typedef struct {
 
 static const double most_degrees = 30;
 
-static const char *const modes[] = {"terminal", "edge", "face", "cavity"};
 static const char *const metrics[] = {"area", "inradius"};
+
+static tm_poly_mode read_mode(const filter *f, const char *text)
+{
+    const char *name[TM_POLY_MODES];
+    for (int m = 0; m < TM_POLY_MODES; m++)
+        name[m] = tm_poly_modes[m].name;
+    return (tm_poly_mode)filter_word(f, "--mode", name, TM_POLY_MODES, text);
+}
 
 static void set_option(filter *f, settings *o, int c)
 {
     tm_poly_options *p = &o->poly;
     if (c == MODE)
-        p->mode = (tm_poly_mode)filter_word(f, "--mode", modes, 4, optarg);
+        p->mode = read_mode(f, optarg);
     else if (c == FACE_METRIC)
         p->face_metric =
             (tm_face_metric)filter_word(f, "--face-metric", metrics, 2, optarg);
@@ -213,22 +218,17 @@ static void convert(filter *f, tm_stream *stream, const settings *o, result *r)
 
 static void write_json(filter *f, const result *r)
 {
-    tm_text text = {0};
-    tm_json json = {.text = &text};
-    const tm_poly_report *p = &r->poly;
-    tm_json_open(&json, NULL, '{');
-    tm_json_integer(&json, "tets", (int64_t)p->tets);
-    tm_json_integer(&json, "regions", (int64_t)p->regions);
-    tm_json_integer(&json, "regions_taken_apart", (int64_t)p->taken_apart);
-    tm_json_integer(&json, "absorbed", (int64_t)p->absorbed);
-    tm_json_integer(&json, "not_star_shaped", (int64_t)p->not_star);
-    tm_json_integer(&json, "polyhedra", (int64_t)p->cells);
-    tm_json_integer(&json, "facets", (int64_t)r->facets);
-    tm_json_integer(&json, "facets_joined", (int64_t)r->joined);
-    tm_json_close(&json, '}');
-    tm_text_string(&text, "\n");
-    filter_write_json(f, &text);
-    tm_text_free(&text);
+#define ROW(key, member) TM_REPORT_ROW(key, NULL, NULL, result, member)
+    static const tm_report_row rows[] = {ROW("tets", poly.tets),
+                                         ROW("regions", poly.regions),
+                                         ROW("regions_taken_apart", poly.taken_apart),
+                                         ROW("absorbed", poly.absorbed),
+                                         ROW("not_star_shaped", poly.not_star),
+                                         ROW("polyhedra", poly.cells),
+                                         ROW("facets", facets),
+                                         ROW("facets_joined", joined),
+                                         {0}};
+    filter_write_json(f, rows, r);
 }
 
 int main(int argc, char **argv)
@@ -262,8 +262,7 @@ int main(int argc, char **argv)
     snprintf(summary, sizeof summary, "%zu tetrahedra -> %zu polyhedra, %.2f each",
              r.poly.tets, r.poly.cells, cells > 0 ? (double)r.poly.tets / cells : 0);
     filter_note(&f, "%s", summary);
-    if (f.json)
-        write_json(&f, &r);
+    write_json(&f, &r);
     filter_write(&f, &stream, "%s", summary);
     tm_stream_free(&stream);
     return filter_finish(&f, is_missed ? EXIT_GOAL : EXIT_SUCCESS);

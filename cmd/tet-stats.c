@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* tet-stats: how good the tetrahedra of a mesh are, or of two meshes side by side. */
-#include "common/app/filter.h"
-#include "common/plot/gnuplot.h"
-#include "common/plot/tet_plot.h"
+#include "common/input/mesh_input.h"
+#include "common/plot/plot.h"
 
-#include "../lib/geom/predicates.h"
 #include "../lib/element/tet_quality.h"
-#include "../lib/examine/tet_statistics.h"
 
 #include <math.h>
 #include <string.h>
@@ -36,41 +33,17 @@ typedef struct mesh {
     size_t tets;
 } mesh;
 
-static void turn(uint32_t tet[4])
-{
-    const uint32_t third = tet[2];
-    tet[2] = tet[3];
-    tet[3] = third;
-}
-
-/* Turns the tetrahedra that are left-handed; says how many. */
-static size_t orient(mesh *m)
-{
-    size_t turned = 0;
-    for (size_t t = 0; t < m->tets; t++) {
-        const uint32_t *v = m->tet[t];
-        if (tm_orient3d(m->xyz[v[0]], m->xyz[v[1]], m->xyz[v[2]], m->xyz[v[3]]) < 0) {
-            turn(m->tet[t]);
-            turned++;
-        }
-    }
-    return turned;
-}
-
 static void read_mesh(const filter *f, mesh *m)
 {
     filter_read(f, &m->stream);
     const tm_block *node = tm_stream_find(&m->stream, ".node");
-    const tm_block *ele = tm_stream_find(&m->stream, ".ele");
+    tm_block *ele = tm_stream_find(&m->stream, ".ele");
     m->xyz = node ? (const double(*)[3])node->real : NULL;
     m->nodes = node ? node->count : 0;
     m->tet = ele ? (uint32_t(*)[4])ele->integer : NULL;
     m->tets = ele ? ele->count : 0;
-    const size_t turned = orient(m);
-    if (turned > 0)
-        filter_note(f,
-                    "%s: %zu of %zu tetrahedra were left-handed and are counted turned",
-                    filter_input_name(f), turned, m->tets);
+    if (node && ele)
+        mesh_input_turn(f, &m->stream, ele, "are counted turned");
 }
 
 static void measure(const filter *f, const mesh *m, const options *o,
@@ -106,40 +79,29 @@ static void list(const mesh *m, tm_text *text)
 static void write_json(filter *f, const tm_tet_statistics *before,
                        const tm_tet_statistics *s)
 {
-    tm_text text = {0};
-    tm_json json = {.text = &text};
-    tm_json_open(&json, NULL, '{');
+    tm_json *json = filter_json_begin(f);
     if (before) {
-        tm_json_open(&json, "before", '{');
-        tm_tet_statistics_json(&json, before);
-        tm_json_close(&json, '}');
-        tm_json_open(&json, "after", '{');
+        tm_tet_statistics_object(json, "before", before);
+        tm_tet_statistics_object(json, "after", s);
+    } else {
+        tm_tet_statistics_json(json, s);
     }
-    tm_tet_statistics_json(&json, s);
-    if (before)
-        tm_json_close(&json, '}');
-    tm_json_close(&json, '}');
-    tm_text_string(&text, "\n");
-    filter_write_json(f, &text);
-    tm_text_free(&text);
+    filter_json_end(f);
 }
 
 static void write_plot(const filter *f, const options *o, const tm_tet_statistics *before,
                        const tm_tet_statistics *s)
 {
-    tm_error error;
     tm_text script = {0};
     tet_plot_script(&script, before, s);
-    if (gnuplot_plot(&script, o->plot, &error) != TM_OK)
-        filter_fail(f, &error);
-    tm_text_free(&script);
+    plot_write(f, &script, o->plot);
 }
 
 /* What standard output or -o gets; nothing where standard output is for the JSON. */
 static void write_report(filter *f, const options *o, const mesh *m,
                          const tm_tet_statistics *before, const tm_tet_statistics *s)
 {
-    if (!f->output && f->json && strcmp(f->json, "-") == 0)
+    if (!filter_has_report(f))
         return;
     tm_text text = {0};
     if (o->list)

@@ -3,8 +3,6 @@
 #include "common/app/filter.h"
 #include "common/app/output_files.h"
 
-#include "../lib/base/json.h"
-
 #include <stdlib.h>
 #include <string.h>
 
@@ -88,17 +86,11 @@ int main(int argc, char **argv)
     const char *base = read_operands();
     tm_stream stream;
     filter_read(&f, &stream);
-    tm_text report = {0};
-    tm_json json = {.text = &report};
-    tm_json_open(&json, NULL, '{');
-    tm_json_open(&json, "files", '[');
-    write_files(&stream, base, &json);
-    tm_json_close(&json, ']');
-    tm_json_close(&json, '}');
-    tm_text_string(&report, "\n");
-    if (f.json)
-        filter_write_json(&f, &report);
-    tm_text_free(&report);
+    tm_json *json = filter_json_begin(&f);
+    tm_json_open(json, "files", '[');
+    write_files(&stream, base, json);
+    tm_json_close(json, ']');
+    filter_json_end(&f);
     tm_stream_free(&stream);
     return filter_finish(&f, EXIT_SUCCESS);
 }

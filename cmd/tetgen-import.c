@@ -1,14 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* tetgen-import: TetGen's files as a stream. */
-#include "common/app/filter.h"
+#include "common/input/mesh_input.h"
 
-#include "../lib/base/file.h"
-#include "../lib/base/json.h"
-#include "../lib/format/tetgen_orient.h"
-#include "../lib/format/tetgen_rows.h"
+#include "../lib/format/tetgen.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -131,17 +126,9 @@ static void read_block(const char *file, tm_block *block, const tm_block *node,
                        unsigned *base)
 {
     tm_text bytes = {0};
-    int fd = open(file, O_RDONLY | O_CLOEXEC);
-    if (fd < 0)
-        succeed(tm_fail_at(&error, TM_ERROR_SYSTEM, file, 0, NULL, "cannot open: %s",
-                           strerror(errno)));
-    succeed(tm_read_all(fd, file, &bytes, &error));
-    close(fd);
-    tm_scan scan;
-    tm_tetgen_begin(&scan, bytes.byte, bytes.size, file);
-    succeed(tm_tetgen_read_rows(block, &scan, base, node ? node->count : 0, &error));
-    if (tm_scan_seek(&scan))
-        succeed(tm_scan_no_more(&scan, "the last row", &error));
+    filter_read_file(&f, file, &bytes);
+    succeed(tm_tetgen_read(block, bytes.byte, bytes.size, file, base,
+                           node ? node->count : 0, &error));
     tm_text_free(&bytes);
 }
 
@@ -195,12 +182,6 @@ static void read_files(tm_stream *stream, operands *named)
                                "its .node file is not among the files"));
 }
 
-static size_t rows(const tm_stream *stream, const char *name)
-{
-    const tm_block *block = tm_stream_find(stream, name);
-    return block ? block->count : 0;
-}
-
 static void orient(const tm_stream *stream, const char *node, const char *ele,
                    tm_turned *sum)
 {
@@ -233,23 +214,6 @@ static tm_turned orient_all(const tm_stream *stream)
     return sum;
 }
 
-static void write_json(const tm_stream *stream, const tm_turned *turned)
-{
-    tm_text text = {0};
-    tm_json json = {.text = &text};
-    tm_json_open(&json, NULL, '{');
-    tm_json_integer(&json, "nodes", (int64_t)rows(stream, ".node"));
-    tm_json_integer(&json, "tets", (int64_t)rows(stream, ".ele"));
-    tm_json_integer(&json, "faces", (int64_t)rows(stream, ".face"));
-    tm_json_integer(&json, "edges", (int64_t)rows(stream, ".edge"));
-    tm_json_integer(&json, "turned", (int64_t)turned->turned);
-    tm_json_integer(&json, "flat", (int64_t)turned->flat);
-    tm_json_close(&json, '}');
-    tm_text_string(&text, "\n");
-    filter_write_json(&f, &text);
-    tm_text_free(&text);
-}
-
 int main(int argc, char **argv)
 {
     operands named = {0};
@@ -259,10 +223,15 @@ int main(int argc, char **argv)
     tm_stream_init(&stream);
     read_files(&stream, &named);
     tm_turned turned = orient_all(&stream);
-    filter_write(&f, &stream, "%zu nodes, %zu tetrahedra", rows(&stream, ".node"),
-                 rows(&stream, ".ele"));
-    if (f.json)
-        write_json(&stream, &turned);
+    filter_write(&f, &stream, "%zu nodes, %zu tetrahedra", mesh_rows(&stream, ".node"),
+                 mesh_rows(&stream, ".ele"));
+    if (f.json) {
+        tm_json *json = filter_json_begin(&f);
+        mesh_rows_json(json, &stream);
+        tm_json_integer(json, "turned", (int64_t)turned.turned);
+        tm_json_integer(json, "flat", (int64_t)turned.flat);
+        filter_json_end(&f);
+    }
     tm_stream_free(&stream);
     free(named.file);
     free(named.stem);

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* tetgen-mesh: tetrahedra of a surface or of points, made by TetGen. */
-#include "common/app/filter.h"
+#include "common/input/mesh_input.h"
 #include "common/input/surface_input.h"
-#include "common/process/tetgen_run.h"
+#include "common/process/tetgen.h"
 
-#include "../lib/base/json.h"
 #include "../lib/surface/surface_defects.h"
-#include "../lib/format/tetgen_orient.h"
+#include "../lib/format/tetgen.h"
 
 #include <float.h>
 #include <stdarg.h>
@@ -205,27 +204,6 @@ static tm_status keep_parts(tm_stream *from, tm_stream *mesh, tm_error *error)
     return TM_OK;
 }
 
-static size_t rows(const tm_stream *stream, const char *name)
-{
-    const tm_block *block = tm_stream_find(stream, name);
-    return block ? block->count : 0;
-}
-
-static void write_json(const tm_stream *mesh)
-{
-    tm_text text = {0};
-    tm_json json = {.text = &text};
-    tm_json_open(&json, NULL, '{');
-    tm_json_integer(&json, "nodes", (int64_t)rows(mesh, ".node"));
-    tm_json_integer(&json, "tets", (int64_t)rows(mesh, ".ele"));
-    tm_json_integer(&json, "faces", (int64_t)rows(mesh, ".face"));
-    tm_json_integer(&json, "edges", (int64_t)rows(mesh, ".edge"));
-    tm_json_close(&json, '}');
-    tm_text_string(&text, "\n");
-    filter_write_json(&f, &text);
-    tm_text_free(&text);
-}
-
 int main(int argc, char **argv)
 {
     tetgen_request request = {.program = "tetgen"};
@@ -244,7 +222,7 @@ int main(int argc, char **argv)
     mesh.base = surface.base;
     if (tetgen_run(&f, &request, &surface, &mesh, &error) != TM_OK)
         filter_fail(&f, &error);
-    if (rows(&mesh, ".ele") == 0)
+    if (mesh_rows(&mesh, ".ele") == 0)
         fail_empty(&surface, &defects);
     tm_turned turned =
         tm_tetgen_orient(tm_stream_find(&mesh, ".node"), tm_stream_find(&mesh, ".ele"));
@@ -252,10 +230,12 @@ int main(int argc, char **argv)
         filter_note(&f, "%zu tetrahedra that TetGen made are flat", turned.flat);
     if (keep_parts(&input, &mesh, &error) != TM_OK)
         filter_fail(&f, &error);
-    filter_write(&f, &mesh, "%zu nodes, %zu tetrahedra", rows(&mesh, ".node"),
-                 rows(&mesh, ".ele"));
-    if (f.json)
-        write_json(&mesh);
+    filter_write(&f, &mesh, "%zu nodes, %zu tetrahedra", mesh_rows(&mesh, ".node"),
+                 mesh_rows(&mesh, ".ele"));
+    if (f.json) {
+        mesh_rows_json(filter_json_begin(&f), &mesh);
+        filter_json_end(&f);
+    }
     tm_stream_free(&mesh);
     tm_stream_free(&input);
     tm_polygon_surface_free(&surface);

@@ -23,22 +23,31 @@ static tm_visf_order read_order(const filter *f, const char *text)
     filter_usage_error(f, "--binary: '%s' is no byte order (little, big)", text);
 }
 
-static void read_options(filter *f, tm_visf_options *o)
+static tm_visf_options visf = {.order = TM_VISF_TEXT};
+
+static void read_options(filter *f)
 {
     int c;
     while ((c = filter_option(f)) != -1) {
         switch (c) {
         case OPTION_BINARY:
-            o->order = read_order(f, optarg);
+            visf.order = read_order(f, optarg);
             break;
         case OPTION_NEIGHBOURS:
-            o->neighbours = true;
+            visf.neighbours = true;
             break;
         default: /* OPTION_PER_CELL */
-            o->per_cell = true;
+            visf.per_cell = true;
         }
     }
     filter_operands(f);
+}
+
+static tm_status write_visf(tm_text *text, const tm_stream *stream, unsigned threads,
+                            tm_error *error)
+{
+    (void)threads;
+    return tm_visf_write(text, stream, &visf, error);
 }
 
 int main(int argc, char **argv)
@@ -55,19 +64,7 @@ int main(int argc, char **argv)
         .options = long_options,
         .letters = FILTER_LETTERS,
     };
-    tm_visf_options o = {.order = TM_VISF_TEXT};
     filter_start(&f, argc, argv);
-    read_options(&f, &o);
-
-    tm_stream stream;
-    tm_text text = {0};
-    tm_error error;
-    mesh_input_read(&f, &stream);
-    if (tm_visf_write(&text, &stream, &o, &error) != TM_OK)
-        mesh_input_fail(&f, &error);
-    filter_write_text(&f, &text);
-    mesh_input_report(&f, &stream);
-    tm_text_free(&text);
-    tm_stream_free(&stream);
-    return filter_finish(&f, 0);
+    read_options(&f);
+    return mesh_write(&f, write_visf);
 }

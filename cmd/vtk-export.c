@@ -2,7 +2,7 @@
 /* vtk-export: a stream as an unstructured grid in a legacy text file of VTK. */
 #include "common/input/mesh_input.h"
 
-#include "../lib/format/vtk_legacy.h"
+#include "../lib/format/mesh_format.h"
 
 int main(int argc, char **argv)
 {

@@ -2,7 +2,7 @@
 /* vtu-export: a stream as an unstructured grid of VTK. */
 #include "common/input/mesh_input.h"
 
-#include "../lib/format/vtu.h"
+#include "../lib/format/mesh_format.h"
 
 int main(int argc, char **argv)
 {

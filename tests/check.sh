@@ -12,5 +12,5 @@ install_packages $build_packages $run_packages $test_packages
 
 build=build
 [ "${SAN:-0}" = 0 ] || build=build/san
-make -s -j "$(nproc)" tests
+make -s -j "$(nproc)" WERROR=1 tests
 exec sh tests/run.sh "$build"

@@ -3,7 +3,9 @@
 #ifndef TM_BASE_ARRAY_H
 #define TM_BASE_ARRAY_H
 
+#include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 /* Makes room for `needed` items of `size` bytes in `array`, which has room for
  * *capacity. Returns the array, moved if it had to grow (by half at least, so that
@@ -11,6 +13,17 @@
  * out or the size overflows: array and *capacity are then as before.
  * The new room is not initialised. */
 void *tm_grow(void *array, size_t *capacity, size_t needed, size_t size);
+
+/* Appends a number to a list; false where memory is out. */
+static inline bool tm_append(uint32_t **list, size_t *count, size_t *room, uint32_t item)
+{
+    uint32_t *moved = (uint32_t *)tm_grow(*list, room, *count + 1, sizeof **list);
+    if (!moved)
+        return false;
+    *list = moved;
+    moved[(*count)++] = item;
+    return true;
+}
 
 /* malloc(count * size) with the product checked; never NULL for count 0. */
 void *tm_new(size_t count, size_t size);

@@ -39,6 +39,13 @@ tm_status tm_fail_at(tm_error *error, tm_status status, const char *file, size_t
     return status;
 }
 
+tm_status tm_fail_as(tm_error *error, const tm_error *cause)
+{
+    if (error)
+        *error = *cause;
+    return cause->status;
+}
+
 tm_status tm_fail_memory(tm_error *error)
 {
     return tm_fail(error, TM_ERROR_SYSTEM, "out of memory");

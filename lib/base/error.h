@@ -32,6 +32,9 @@ tm_status tm_fail_at(tm_error *error, tm_status status, const char *file, size_t
                      const char *block, const char *format, ...)
     __attribute__((format(printf, 6, 7)));
 
+/* The same as *cause, which was got of another function. Returns its status. */
+tm_status tm_fail_as(tm_error *error, const tm_error *cause);
+
 /* "out of memory", as TM_ERROR_SYSTEM. */
 tm_status tm_fail_memory(tm_error *error);
 

@@ -66,6 +66,17 @@ void tm_text_integer(tm_text *text, int64_t value)
     tm_text_append(text, digits, (size_t)(end - digits));
 }
 
+bool tm_text_room(tm_text *text, size_t size)
+{
+    if (text->capacity >= size)
+        return true;
+    free(text->byte);
+    text->byte = malloc(size);
+    text->capacity = text->byte ? size : 0;
+    text->failed = !text->byte;
+    return !text->failed;
+}
+
 void tm_text_free(tm_text *text)
 {
     free(text->byte);

@@ -21,6 +21,11 @@ void tm_text_format(tm_text *text, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 void tm_text_double(tm_text *text, double value); /* shortest form; see number.h */
 void tm_text_integer(tm_text *text, int64_t value);
+
+/* Room for `size` bytes in the place of what the text holds: false where there is none,
+ * and the text has failed. Its size is then set by whoever fills it. */
+bool tm_text_room(tm_text *text, size_t size);
+
 void tm_text_free(tm_text *text);
 
 #endif

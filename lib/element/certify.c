@@ -147,8 +147,8 @@ static tm_certificate certify_wedge(const double (*xyz)[3], const uint32_t *item
 }
 
 /* The normals y × z of the edges in η and in ζ by their order in ξ, 0, 1 or 2, and by the
- * place of the first in ζ and of the second in η: sums of the products whose places in ξ
- * add up to the order, times their weight. */
+ * position of the first in ζ and of the second in η: sums of the products whose positions
+ * in ξ add up to the order, times their weight. */
 static void hexahedron_normals(vectors edge[3], double normal[3][2][2][3])
 {
     const double half = 0.5;

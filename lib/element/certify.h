@@ -32,7 +32,7 @@ typedef enum tm_certificate {
     TM_UNDECIDED     /* as near to zero as rounding, or as the last halving, can tell */
 } tm_certificate;
 
-/* Of an element of so many nodes, 4, 5, 6 or 8, in the order of ../mixed/mixed_mesh.h.
+/* Of an element of so many nodes, 4, 5, 6 or 8, in the order of shape.h.
  * Coordinates must be finite. Nearly always O(1): 20 ns for a tetrahedron, 0.2 µs for a
  * hexahedron; a hexahedron is halved TM_CERTIFY_BOXES times at most. */
 tm_certificate tm_certify(size_t nodes, const double (*xyz)[3], const uint32_t *item);

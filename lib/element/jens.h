@@ -55,10 +55,4 @@ double tm_scaled_jacobian(const double p[3], const double a[3], const double b[3
 double tm_scaled_jacobian_slope(const double p[3], const double a[3], const double b[3],
                                 const double c[3], double slope[4][3]);
 
-/* The derivative of tm_jens_of() with respect to J_S; at ±K that from the middle. */
-static inline double tm_jens_slope_of(double jacobian, double k)
-{
-    return fabs(jacobian) <= k ? 1 / k : -1;
-}
-
 #endif

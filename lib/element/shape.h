@@ -102,6 +102,14 @@ extern const uint8_t tm_face_corner[4][3];
  * two corners, such that the four are an even permutation of 0 1 2 3. */
 extern const uint8_t tm_edge_corner[TM_TET_EDGES][4];
 
+/* VTK's number for a vertex, a triangle or an element, by how many nodes it has. */
+static inline uint8_t tm_vtk_cell_type(size_t nodes)
+{
+    return nodes == 1   ? TM_VTK_VERTEX
+           : nodes == 3 ? TM_VTK_TRIANGLE
+                        : tm_element_shapes[nodes].vtk_type;
+}
+
 /* 3 or 4. */
 static inline size_t tm_mixed_face_nodes(const uint8_t face[4])
 {

@@ -53,12 +53,12 @@ double tm_gain_least(const tm_gain *gain, double value);
 static inline double tm_gain_bound(const tm_gain *gain, double value)
 {
     const double rounding = 1 - 1e-9;
-    double place = value * gain->cells_per_value;
-    if (!(place >= 0 && place < TM_GAIN_CELLS - 1))
+    double at = value * gain->cells_per_value;
+    if (!(at >= 0 && at < TM_GAIN_CELLS - 1))
         return tm_gain_least(gain, value);
-    int cell = (int)place;
+    int cell = (int)at;
     double from = gain->at[cell], to = gain->at[cell + 1];
-    double bound = (from + (to - from) * (place - cell)) * rounding;
+    double bound = (from + (to - from) * (at - cell)) * rounding;
     return bound > DBL_MIN ? bound : DBL_MIN;
 }
 

@@ -26,11 +26,6 @@ double tm_sine2_to_degrees(double sine2);
  * degrees. */
 double tm_bad_sine2(double degrees);
 
-static inline bool tm_angle_below(double angle, double limit)
-{
-    return angle < limit - TM_ANGLE_TOLERANCE;
-}
-
 static inline bool tm_angle_above(double angle, double limit)
 {
     return angle > limit + TM_ANGLE_TOLERANCE;

@@ -7,7 +7,7 @@
 
 #include <stddef.h>
 
-/* A smooth function of the place of the corner, and its gradient. */
+/* A smooth function of the position of the corner, and its gradient. */
 typedef struct tm_slope {
     double value;
     double gradient[3];

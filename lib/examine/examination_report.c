@@ -1,95 +1,92 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* examination.h as JSON and as text. */
+#include "../base/report.h"
 #include "examination.h"
 
-#include <inttypes.h>
+enum { LABEL_WIDTH = 24 };
 
-enum { LABEL_WIDTH = 24, NUMBER_WIDTH = 14 };
+#define ROW(key, label, format, member)                                                  \
+    TM_REPORT_ROW(key, label, format, tm_examination, member)
+#define DEFECT(d, key, label) [d] = ROW(key, label, NULL, defect[d].count)
 
-typedef struct defect_name {
-    const char *key; /* in JSON */
-    const char *label;
-} defect_name;
-
-static const defect_name name[TM_DEFECTS] = {
-    [TM_INVERTED] = {"inverted", "inverted"},
-    [TM_DEGENERATE] = {"degenerate", "degenerate"},
-    [TM_UNMATCHED_FACE] = {"unmatched_faces", "unmatched faces"},
-    [TM_OVERLAPPING_FACE] = {"overlapping_faces", "overlapping faces"},
-    [TM_OPEN_EDGE] = {"open_edges", "open edges"},
-    [TM_NON_MANIFOLD_EDGE] = {"non_manifold_edges", "non-manifold edges"},
-    [TM_NON_MANIFOLD_VERTEX] = {"non_manifold_vertices", "non-manifold vertices"},
-    [TM_DUPLICATE_NODE] = {"duplicate_nodes", "duplicate nodes"},
-    [TM_DANGLING_FACE] = {"dangling_faces", "dangling faces"},
-    [TM_REPEATED_FACE] = {"repeated_faces", "repeated faces"},
-    [TM_DANGLING_EDGE] = {"dangling_edges", "dangling edges"},
-    [TM_REPEATED_EDGE] = {"repeated_edges", "repeated edges"},
-    [TM_UNCLOSED_EDGE] = {"unclosed_edges", "unclosed edges"},
-    [TM_UNORIENTED_EDGE] = {"unoriented_edges", "unoriented edges"},
+static const tm_report_row defect_row[TM_DEFECTS] = {
+    DEFECT(TM_INVERTED, "inverted", "inverted"),
+    DEFECT(TM_DEGENERATE, "degenerate", "degenerate"),
+    DEFECT(TM_UNMATCHED_FACE, "unmatched_faces", "unmatched faces"),
+    DEFECT(TM_OVERLAPPING_FACE, "overlapping_faces", "overlapping faces"),
+    DEFECT(TM_OPEN_EDGE, "open_edges", "open edges"),
+    DEFECT(TM_NON_MANIFOLD_EDGE, "non_manifold_edges", "non-manifold edges"),
+    DEFECT(TM_NON_MANIFOLD_VERTEX, "non_manifold_vertices", "non-manifold vertices"),
+    DEFECT(TM_DUPLICATE_NODE, "duplicate_nodes", "duplicate nodes"),
+    DEFECT(TM_DANGLING_FACE, "dangling_faces", "dangling faces"),
+    DEFECT(TM_REPEATED_FACE, "repeated_faces", "repeated faces"),
+    DEFECT(TM_DANGLING_EDGE, "dangling_edges", "dangling edges"),
+    DEFECT(TM_REPEATED_EDGE, "repeated_edges", "repeated edges"),
+    DEFECT(TM_UNCLOSED_EDGE, "unclosed_edges", "unclosed edges"),
+    DEFECT(TM_UNORIENTED_EDGE, "unoriented_edges", "unoriented edges"),
 };
 
-static const char *kind_name(size_t kind)
-{
-    return tm_element_shapes[tm_element_kind_nodes[kind]].plural;
-}
-
-static void defect_json(tm_json *json, const tm_examination *found, tm_defect d)
-{
-    tm_json_integer(json, name[d].key, (int64_t)found->defect[d].count);
-}
+static const tm_report_row kinds[] = {
+    ROW("tetrahedra", "tetrahedra", NULL, kind[TM_TETRAHEDRON]),
+    ROW("pyramids", "pyramids", NULL, kind[TM_PYRAMID]),
+    ROW("wedges", "wedges", NULL, kind[TM_WEDGE]),
+    ROW("hexahedra", "hexahedra", NULL, kind[TM_HEXAHEDRON]),
+    {0}};
 
 void tm_examination_json(tm_json *json, const tm_examination *found)
 {
-    tm_json_integer(json, "nodes", (int64_t)found->nodes);
-    tm_json_integer(json, "elements", (int64_t)found->element_count);
-    defect_json(json, found, TM_INVERTED);
-    defect_json(json, found, TM_DEGENERATE);
-    defect_json(json, found, TM_UNMATCHED_FACE);
-    tm_json_integer(json, "boundary_faces", (int64_t)found->boundary_faces);
-    defect_json(json, found, TM_OPEN_EDGE);
-    defect_json(json, found, TM_NON_MANIFOLD_EDGE);
-    defect_json(json, found, TM_NON_MANIFOLD_VERTEX);
-    tm_json_integer(json, "components", (int64_t)found->components);
-    tm_json_integer(json, "euler", found->euler);
-    tm_json_double(json, "volume", found->volume);
-    tm_json_double(json, "area", found->area);
-    tm_json_integer(json, "unused_nodes", (int64_t)found->unused_nodes);
-    defect_json(json, found, TM_DUPLICATE_NODE);
-    defect_json(json, found, TM_OVERLAPPING_FACE);
-    defect_json(json, found, TM_DANGLING_FACE);
-    defect_json(json, found, TM_REPEATED_FACE);
-    defect_json(json, found, TM_DANGLING_EDGE);
-    defect_json(json, found, TM_REPEATED_EDGE);
-    if (found->polyhedra) {
-        defect_json(json, found, TM_UNCLOSED_EDGE);
-        defect_json(json, found, TM_UNORIENTED_EDGE);
-    }
-    for (size_t k = 0; found->mixed && k < TM_ELEMENT_KINDS; k++)
-        tm_json_integer(json, kind_name(k), (int64_t)found->kind[k]);
+    const tm_report_row rows[] = {ROW("nodes", NULL, NULL, nodes),
+                                  ROW("elements", NULL, NULL, element_count),
+                                  defect_row[TM_INVERTED],
+                                  defect_row[TM_DEGENERATE],
+                                  defect_row[TM_UNMATCHED_FACE],
+                                  ROW("boundary_faces", NULL, NULL, boundary_faces),
+                                  defect_row[TM_OPEN_EDGE],
+                                  defect_row[TM_NON_MANIFOLD_EDGE],
+                                  defect_row[TM_NON_MANIFOLD_VERTEX],
+                                  ROW("components", NULL, NULL, components),
+                                  ROW("euler", NULL, NULL, euler),
+                                  ROW("volume", NULL, NULL, volume),
+                                  ROW("area", NULL, NULL, area),
+                                  ROW("unused_nodes", NULL, NULL, unused_nodes),
+                                  defect_row[TM_DUPLICATE_NODE],
+                                  defect_row[TM_OVERLAPPING_FACE],
+                                  defect_row[TM_DANGLING_FACE],
+                                  defect_row[TM_REPEATED_FACE],
+                                  defect_row[TM_DANGLING_EDGE],
+                                  defect_row[TM_REPEATED_EDGE],
+                                  {0}};
+    const tm_report_row of_polyhedra[] = {
+        defect_row[TM_UNCLOSED_EDGE], defect_row[TM_UNORIENTED_EDGE], {0}};
+    tm_report_json(json, rows, found);
+    if (found->polyhedra)
+        tm_report_json(json, of_polyhedra, found);
+    if (found->mixed)
+        tm_report_json(json, kinds, found);
 }
 
-static void integer_row(tm_text *text, const char *label, int64_t value)
+static void table(tm_text *text, const tm_report_row *rows, const tm_examination *found)
 {
-    tm_text_format(text, "%-*s%*" PRId64 "\n", LABEL_WIDTH, label, NUMBER_WIDTH, value);
-}
-
-static void real_row(tm_text *text, const char *label, double value)
-{
-    tm_text_format(text, "%-*s%*.9g\n", LABEL_WIDTH, label, NUMBER_WIDTH, value);
+    tm_report_table(text, rows, (const void *[]){found}, 1, LABEL_WIDTH);
 }
 
 static void sizes(tm_text *text, const tm_examination *found)
 {
-    integer_row(text, "nodes", (int64_t)found->nodes);
-    integer_row(text, found->elements, (int64_t)found->element_count);
-    for (size_t k = 0; found->mixed && k < TM_ELEMENT_KINDS; k++)
-        integer_row(text, kind_name(k), (int64_t)found->kind[k]);
-    integer_row(text, "components", (int64_t)found->components);
-    integer_row(text, "Euler number", found->euler);
-    real_row(text, "volume", found->volume);
-    integer_row(text, "boundary faces", (int64_t)found->boundary_faces);
-    real_row(text, "boundary area", found->area);
-    integer_row(text, "unused nodes", (int64_t)found->unused_nodes);
+    const tm_report_row first[] = {ROW(NULL, "nodes", NULL, nodes),
+                                   ROW(NULL, found->elements, NULL, element_count),
+                                   {0}};
+    static const tm_report_row rest[] = {
+        ROW(NULL, "components", NULL, components),
+        ROW(NULL, "Euler number", NULL, euler),
+        ROW(NULL, "volume", "%.9g", volume),
+        ROW(NULL, "boundary faces", NULL, boundary_faces),
+        ROW(NULL, "boundary area", "%.9g", area),
+        ROW(NULL, "unused nodes", NULL, unused_nodes),
+        {0}};
+    table(text, first, found);
+    if (found->mixed)
+        table(text, kinds, found);
+    table(text, rest, found);
 }
 
 static void unmatched_text(tm_text *text, const tm_examination *found,
@@ -190,7 +187,7 @@ static void defect_text(tm_text *text, const tm_examination *found, tm_defect d,
     const tm_defect_list *list = &found->defect[d];
     if (list->count == 0)
         return;
-    integer_row(text, name[d].label, (int64_t)list->count);
+    table(text, (const tm_report_row[]){defect_row[d], {0}}, found);
     for (size_t i = 0; i < list->count && i < TM_DEFECTS_LISTED; i++) {
         tm_text_string(text, "  ");
         place_text(text, found, d, list->place[i], base);

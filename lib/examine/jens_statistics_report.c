@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* jens_statistics.h as JSON, as tables and as a file .histo. */
+#include "../base/report.h"
 #include "jens_statistics.h"
 
 static const char *const answer[TM_CERTIFICATES] = {"certified", "not positive",
@@ -40,42 +41,34 @@ void tm_jens_certified_table(tm_text *text, const tm_jens_statistics *statistics
     }
 }
 
-static void spread_json(tm_json *json, const tm_spread *spread)
+#define ROW(key, type, member) TM_REPORT_ROW(key, NULL, NULL, type, member)
+
+static double edge(size_t bucket)
 {
-    tm_json_double(json, "worst", spread->worst);
-    tm_json_double(json, "average", spread->average);
+    return tm_jens_edge[bucket];
 }
 
-static void spread_object(tm_json *json, const char *key, const tm_spread *spread)
-{
-    tm_json_open(json, key, '{');
-    spread_json(json, spread);
-    tm_json_close(json, '}');
-}
+static const tm_report_row spread[] = {
+    ROW("worst", tm_spread, worst), ROW("average", tm_spread, average), {0}};
 
 static void histogram_json(tm_json *json, const tm_jens_histogram *histogram)
 {
     tm_json_integer(json, "negative", (int64_t)histogram->negative);
-    spread_json(json, &histogram->all);
-    tm_json_open(json, "histogram", '[');
-    for (size_t i = 0; i < TM_JENS_BUCKETS; i++) {
-        tm_json_open(json, NULL, '[');
-        tm_json_double(json, NULL, tm_jens_edge[i]);
-        tm_json_integer(json, NULL, (int64_t)histogram->bucket[i]);
-        tm_json_close(json, ']');
-    }
-    tm_json_close(json, ']');
+    tm_report_json(json, spread, &histogram->all);
+    tm_report_histogram(json, "histogram", histogram->bucket, TM_JENS_BUCKETS, edge);
 }
 
 /* With the first elements that are not certified, not positive ones before the others. */
 static void certified_json(tm_json *json, const tm_jens_statistics *statistics,
                            unsigned base)
 {
-    static const char *const key[TM_CERTIFICATES] = {"positive", "not_positive",
-                                                     "undecided"};
+    static const tm_report_row rows[] = {
+        ROW("positive", tm_jens_statistics, certified[TM_POSITIVE].count),
+        ROW("not_positive", tm_jens_statistics, certified[TM_NOT_POSITIVE].count),
+        ROW("undecided", tm_jens_statistics, certified[TM_UNDECIDED].count),
+        {0}};
     tm_json_open(json, "certified", '{');
-    for (size_t i = 0; i < TM_CERTIFICATES; i++)
-        tm_json_integer(json, key[i], (int64_t)statistics->certified[i].count);
+    tm_report_json(json, rows, statistics);
     tm_json_open(json, "first", '[');
     for (size_t i = TM_NOT_POSITIVE; i < TM_CERTIFICATES; i++) {
         const tm_certified *c = &statistics->certified[i];
@@ -89,11 +82,12 @@ static void certified_json(tm_json *json, const tm_jens_statistics *statistics,
 void tm_jens_statistics_json(tm_json *json, const tm_jens_statistics *statistics,
                              const tm_jens_request *request, unsigned base)
 {
-    tm_json_open(json, "elements", '{');
-    for (size_t i = 0; i < TM_ELEMENT_KINDS; i++)
-        tm_json_integer(json, tm_element_shapes[tm_element_kind_nodes[i]].name,
-                        (int64_t)statistics->kind[i]);
-    tm_json_close(json, '}');
+    static const tm_report_row elements[] = {ROW("tet", tm_jens_statistics, kind[0]),
+                                             ROW("pyramid", tm_jens_statistics, kind[1]),
+                                             ROW("wedge", tm_jens_statistics, kind[2]),
+                                             ROW("hex", tm_jens_statistics, kind[3]),
+                                             {0}};
+    tm_report_object(json, "elements", elements, statistics);
     histogram_json(json, &statistics->jens);
     if (request->scaled_jacobian) {
         tm_json_open(json, "scaled_jacobian", '{');
@@ -101,10 +95,11 @@ void tm_jens_statistics_json(tm_json *json, const tm_jens_statistics *statistics
         tm_json_close(json, '}');
     }
     if (request->others) {
-        spread_object(json, "aspect_ratio", &statistics->aspect_ratio);
+        tm_report_object(json, "aspect_ratio", spread, &statistics->aspect_ratio);
         tm_json_open(json, "verdict", '{');
-        spread_object(json, "scaled_jacobian", &statistics->verdict_scaled_jacobian);
-        spread_object(json, "shape", &statistics->verdict_shape);
+        tm_report_object(json, "scaled_jacobian", spread,
+                         &statistics->verdict_scaled_jacobian);
+        tm_report_object(json, "shape", spread, &statistics->verdict_shape);
         tm_json_close(json, '}');
     }
     if (request->certify)

@@ -3,7 +3,6 @@
 
 #include "../base/array.h"
 #include "../geom/vector.h"
-#include "../geom/kernel.h"
 #include "poly_measure.h"
 
 #include <math.h>

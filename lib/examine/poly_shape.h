@@ -5,7 +5,7 @@
 #ifndef TM_EXAMINE_POLY_SHAPE_H
 #define TM_EXAMINE_POLY_SHAPE_H
 
-#include "../geom/kernel_volume.h"
+#include "../geom/kernel.h"
 #include "poly_boundary.h"
 
 #include <stdbool.h>

@@ -142,7 +142,7 @@ static void measure_cell(chunk_sums *sums, const measuring *m, workspace *w, siz
 {
     const tm_poly_arrays *mesh = m->mesh;
     const size_t start = mesh->cell_start[c], faces = mesh->cell_start[c + 1] - start;
-    tm_poly_shape shape;
+    tm_poly_shape shape = {0};
     sums->status = tm_poly_boundary_find(&w->boundary, mesh, mesh->cell_facet + start,
                                          faces, (uint32_t)c, NULL);
     if (sums->status == TM_OK)

@@ -1,84 +1,84 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* poly_statistics.h as JSON and as tables. */
-#include "tet_statistics.h"
-#include "poly_shape.h"
+#include "../base/report.h"
 #include "poly_statistics.h"
 
 #include <math.h>
 #include <stdio.h>
 
-enum { LABEL_WIDTH = 40, COLUMN_WIDTH = 14, LONGEST_BAR = 30, CELL_CHARS = 64 };
+enum { LABEL_CHARS = 64 };
 
-static const char *const cause_key[TM_POLY_CAUSES] = {"edges", "vertices", "pieces",
-                                                      "euler"};
-static const char *const cause_label[TM_POLY_CAUSES] = {
-    "an edge without two facets", "a vertex with more than one fan",
-    "boundary not connected", "Euler's formula fails"};
+#define ROW(key, label, format, member)                                                  \
+    TM_REPORT_ROW(key, label, format, tm_poly_statistics, member)
+#define KNOWN(key, member) TM_REPORT_KNOWN_ROW(key, tm_poly_statistics, member)
 
-static void size_json(tm_json *json, const char *key, size_t size)
-{
-    tm_json_integer(json, key, (int64_t)size);
-}
+static const tm_report_row sizes[] = {ROW("polyhedra", "polyhedra", NULL, size.elements),
+                                      ROW("facets", "facets", NULL, size.faces),
+                                      ROW("edges", "edges", NULL, size.edges),
+                                      ROW("nodes", "nodes", NULL, size.nodes),
+                                      {0}};
+static const tm_report_row simple[] = {
+    TM_REPORT_HEADING_ROW(""),
+    ROW("non_simple", "not simple", NULL, non_simple),
+    TM_REPORT_OPEN_ROW("non_simple_by"),
+    ROW("edges", "  an edge without two facets", NULL, cause[TM_CAUSE_EDGE]),
+    ROW("vertices", "  a vertex with more than one fan", NULL, cause[TM_CAUSE_VERTEX]),
+    ROW("pieces", "  boundary not connected", NULL, cause[TM_CAUSE_PIECES]),
+    ROW("euler", "  Euler's formula fails", NULL, cause[TM_CAUSE_EULER]),
+    TM_REPORT_CLOSE_ROW,
+    ROW("euler_failures", NULL, NULL, cause[TM_CAUSE_EULER]),
+    ROW("not_star_shaped", "not star-shaped", NULL, not_star_shaped),
+    {0}};
+static const tm_report_row swallowed[] = {
+    ROW("swallowed_vertices", "swallowed vertices", NULL, swallowed), {0}};
+static const tm_report_row faces[] = {
+    ROW("faces_per_polyhedron", NULL, NULL, faces_per_polyhedron),
+    ROW("largest_faces", NULL, NULL, largest_faces),
+    {0}};
+static const tm_report_row input[] = {KNOWN("largest_tets", largest_tets),
+                                      TM_REPORT_OPEN_ROW("input"),
+                                      KNOWN("elements", input.elements),
+                                      KNOWN("faces", input.faces),
+                                      KNOWN("edges", input.edges),
+                                      KNOWN("nodes", input.nodes),
+                                      TM_REPORT_CLOSE_ROW,
+                                      {0}};
+static const tm_report_row volume[] = {ROW("volume", "volume", "%.7g", volume), {0}};
+static const tm_report_row shape[] = {
+    TM_REPORT_HEADING_ROW(""),
+    ROW("min_volume", "smallest volume", "%.4g", min_volume),
+    ROW(NULL, "smallest facet", "%.4g", min_face_area),
+    ROW("min_edge", "shortest edge", "%.4g", min_edge),
+    ROW("min_face_area", NULL, NULL, min_face_area),
+    ROW("min_dihedral", "smallest dihedral angle", "%.4f", min_dihedral),
+    ROW("max_dihedral", "largest dihedral angle", "%.4f", max_dihedral),
+    {0}};
 
-/* What is not known is null. */
-static void known_json(tm_json *json, const char *key, size_t size)
-{
-    if (size > 0)
-        size_json(json, key, size);
-    else
-        tm_json_double(json, key, NAN);
-}
+static const tm_report_row min_mean[] = {
+    TM_REPORT_ROW("min", NULL, NULL, tm_poly_range, min),
+    TM_REPORT_ROW("mean", NULL, NULL, tm_poly_range, mean),
+    {0}};
 
-static void range_json(tm_json *json, const char *key, const tm_poly_range *range)
-{
-    tm_json_open(json, key, '{');
-    tm_json_double(json, "min", range->min);
-    tm_json_double(json, "mean", range->mean);
-    tm_json_close(json, '}');
-}
-
-static void causes_json(tm_json *json, const tm_poly_statistics *s)
-{
-    tm_json_open(json, "non_simple_by", '{');
-    for (size_t i = 0; i < TM_POLY_CAUSES; i++)
-        size_json(json, cause_key[i], s->cause[i]);
-    tm_json_close(json, '}');
-}
-
-static double reduction(size_t size, size_t input)
+static double reduction(size_t size, size_t before)
 {
     const double hundred = 100;
-    return input == 0 ? NAN : hundred * (1 - (double)size / (double)input);
+    return before == 0 ? NAN : hundred * (1 - (double)size / (double)before);
 }
 
-static void input_json(tm_json *json, const tm_poly_sizes *size,
-                       const tm_poly_sizes *input)
+static void reduction_json(tm_json *json, const tm_poly_sizes *size,
+                           const tm_poly_sizes *before)
 {
-    tm_json_open(json, "input", '{');
-    known_json(json, "elements", input->elements);
-    known_json(json, "faces", input->faces);
-    known_json(json, "edges", input->edges);
-    known_json(json, "nodes", input->nodes);
-    tm_json_close(json, '}');
     tm_json_open(json, "reduction_percent", '{');
-    tm_json_double(json, "elements", reduction(size->elements, input->elements));
-    tm_json_double(json, "faces", reduction(size->faces, input->faces));
-    tm_json_double(json, "edges", reduction(size->edges, input->edges));
-    tm_json_double(json, "nodes", reduction(size->nodes, input->nodes));
+    tm_json_double(json, "elements", reduction(size->elements, before->elements));
+    tm_json_double(json, "faces", reduction(size->faces, before->faces));
+    tm_json_double(json, "edges", reduction(size->edges, before->edges));
+    tm_json_double(json, "nodes", reduction(size->nodes, before->nodes));
     tm_json_close(json, '}');
 }
 
-static void counts_json(tm_json *json, const char *key, const size_t *histogram)
+static double count_end(size_t bin)
 {
-    const size_t bins = tm_count_bins(histogram);
-    tm_json_open(json, key, '[');
-    for (size_t i = 0; i < bins; i++) {
-        tm_json_open(json, NULL, '[');
-        size_json(json, NULL, tm_count_bin_begin(i + 1));
-        size_json(json, NULL, histogram[i]);
-        tm_json_close(json, ']');
-    }
-    tm_json_close(json, ']');
+    return (double)tm_count_bin_begin(bin + 1);
 }
 
 /* The upper end of a bin, as the double nearest to its decimals. */
@@ -87,121 +87,74 @@ static double ratio_end(size_t bin)
     return (double)(bin + 1) / TM_KERNEL_RATIO_BINS;
 }
 
-static void ratios_json(tm_json *json, const tm_poly_statistics *s)
-{
-    tm_json_open(json, "kernel_ratio_histogram", '[');
-    for (size_t i = 0; i < TM_KERNEL_RATIO_BINS; i++) {
-        tm_json_open(json, NULL, '[');
-        tm_json_double(json, NULL, ratio_end(i));
-        size_json(json, NULL, s->kernel_ratios[i]);
-        tm_json_close(json, ']');
-    }
-    tm_json_close(json, ']');
-}
-
 void tm_poly_statistics_json(tm_json *json, const tm_poly_statistics *s)
 {
-    size_json(json, "polyhedra", s->size.elements);
-    size_json(json, "facets", s->size.faces);
-    size_json(json, "edges", s->size.edges);
-    size_json(json, "nodes", s->size.nodes);
-    size_json(json, "non_simple", s->non_simple);
-    causes_json(json, s);
-    size_json(json, "euler_failures", s->cause[TM_CAUSE_EULER]);
-    size_json(json, "not_star_shaped", s->not_star_shaped);
-    size_json(json, "swallowed_vertices", s->swallowed);
-    tm_json_double(json, "faces_per_polyhedron", s->faces_per_polyhedron);
-    size_json(json, "largest_faces", s->largest_faces);
-    const bool with_tets = s->input.elements > 0;
-    tm_json_double(json, "tets_per_polyhedron", with_tets ? s->tets_per_polyhedron : NAN);
-    known_json(json, "largest_tets", s->largest_tets);
-    input_json(json, &s->size, &s->input);
-    tm_json_double(json, "volume", s->volume);
-    tm_json_double(json, "min_volume", s->min_volume);
-    tm_json_double(json, "min_edge", s->min_edge);
-    tm_json_double(json, "min_face_area", s->min_face_area);
-    tm_json_double(json, "min_dihedral", s->min_dihedral);
-    tm_json_double(json, "max_dihedral", s->max_dihedral);
-    range_json(json, "edge_ratio", &s->edge_ratio);
-    range_json(json, "kernel_radius", &s->kernel_radius);
-    range_json(json, "kernel_ratio", &s->kernel_ratio);
-    counts_json(json, "faces_histogram", s->faces);
-    counts_json(json, "tets_histogram", s->tets);
-    ratios_json(json, s);
+    tm_report_json(json, sizes, s);
+    tm_report_json(json, simple, s);
+    tm_report_json(json, swallowed, s);
+    tm_report_json(json, faces, s);
+    tm_json_double(json, "tets_per_polyhedron",
+                   s->input.elements > 0 ? s->tets_per_polyhedron : NAN);
+    tm_report_json(json, input, s);
+    reduction_json(json, &s->size, &s->input);
+    tm_report_json(json, volume, s);
+    tm_report_json(json, shape, s);
+    tm_report_object(json, "edge_ratio", min_mean, &s->edge_ratio);
+    tm_report_object(json, "kernel_radius", min_mean, &s->kernel_radius);
+    tm_report_object(json, "kernel_ratio", min_mean, &s->kernel_ratio);
+    tm_report_histogram(json, "faces_histogram", s->faces, tm_count_bins(s->faces),
+                        count_end);
+    tm_report_histogram(json, "tets_histogram", s->tets, tm_count_bins(s->tets),
+                        count_end);
+    tm_report_histogram(json, "kernel_ratio_histogram", s->kernel_ratios,
+                        TM_KERNEL_RATIO_BINS, ratio_end);
 }
 
-static void heading(tm_text *text, const char *what)
+static void table(tm_text *text, const tm_report_row *rows, const tm_poly_statistics *s)
 {
-    tm_text_format(text, "\n%s\n", what);
+    tm_report_table(text, rows, (const void *[]){s}, 1, TM_LABEL_WIDTH);
 }
 
-static void count_row(tm_text *text, const char *what, size_t count)
+static void heading(tm_text *text, const char *what, const char *const *column,
+                    size_t columns)
 {
-    tm_text_format(text, "%-*s%*zu\n", LABEL_WIDTH, what, COLUMN_WIDTH, count);
+    tm_text_format(text, "\n%-*s", columns ? TM_LABEL_WIDTH : 0, what);
+    for (size_t c = 0; c < columns; c++)
+        tm_text_format(text, "%*s", TM_COLUMN_WIDTH, column[c]);
+    tm_text_string(text, "\n");
 }
 
-static void number_row(tm_text *text, const char *what, const char *format, double value)
+static void reduction_row(tm_text *text, const char *what, size_t size, size_t before)
 {
-    char cell[CELL_CHARS];
-    snprintf(cell, sizeof cell, format, value);
-    tm_text_format(text, "%-*s%*s\n", LABEL_WIDTH, what, COLUMN_WIDTH, cell);
+    if (before == 0)
+        return;
+    tm_report_cells(text, what, "%.0f", (double[]){(double)before, (double)size}, 2);
+    tm_text_format(text, "%*.2f\n", TM_COLUMN_WIDTH, reduction(size, before));
+}
+
+static void reduction_rows(tm_text *text, const tm_poly_sizes *size,
+                           const tm_poly_sizes *before)
+{
+    static const char *const column[] = {"before", "now", "less, %"};
+    if (before->elements == 0)
+        return;
+    heading(text, "of the tetrahedra", column, 3);
+    reduction_row(text, "  elements", size->elements, before->elements);
+    reduction_row(text, "  faces", size->faces, before->faces);
+    reduction_row(text, "  edges", size->edges, before->edges);
+    reduction_row(text, "  nodes", size->nodes, before->nodes);
 }
 
 static void range_row(tm_text *text, const char *what, const tm_poly_range *range)
 {
-    tm_text_format(text, "%-*s%*.4g%*.4g\n", LABEL_WIDTH, what, COLUMN_WIDTH, range->min,
-                   COLUMN_WIDTH, range->mean);
-}
-
-static void size_rows(tm_text *text, const tm_poly_statistics *s)
-{
-    count_row(text, "polyhedra", s->size.elements);
-    count_row(text, "facets", s->size.faces);
-    count_row(text, "edges", s->size.edges);
-    count_row(text, "nodes", s->size.nodes);
-    count_row(text, "swallowed vertices", s->swallowed);
-    number_row(text, "volume", "%.7g", s->volume);
-}
-
-static void reduction_row(tm_text *text, const char *what, size_t size, size_t input)
-{
-    if (input > 0)
-        tm_text_format(text, "%-*s%*zu%*zu%*.2f\n", LABEL_WIDTH, what, COLUMN_WIDTH,
-                       input, COLUMN_WIDTH, size, COLUMN_WIDTH, reduction(size, input));
-}
-
-static void reduction_rows(tm_text *text, const tm_poly_statistics *s)
-{
-    if (s->input.elements == 0)
-        return;
-    tm_text_format(text, "\n%-*s%*s%*s%*s\n", LABEL_WIDTH, "of the tetrahedra",
-                   COLUMN_WIDTH, "before", COLUMN_WIDTH, "now", COLUMN_WIDTH, "less, %");
-    reduction_row(text, "  elements", s->size.elements, s->input.elements);
-    reduction_row(text, "  faces", s->size.faces, s->input.faces);
-    reduction_row(text, "  edges", s->size.edges, s->input.edges);
-    reduction_row(text, "  nodes", s->size.nodes, s->input.nodes);
-}
-
-static void simple_rows(tm_text *text, const tm_poly_statistics *s)
-{
+    tm_report_cells(text, what, "%.4g", (double[]){range->min, range->mean}, 2);
     tm_text_string(text, "\n");
-    count_row(text, "not simple", s->non_simple);
-    for (size_t i = 0; i < TM_POLY_CAUSES; i++)
-        tm_text_format(text, "  %-*s%*zu\n", LABEL_WIDTH - 2, cause_label[i],
-                       COLUMN_WIDTH, s->cause[i]);
-    count_row(text, "not star-shaped", s->not_star_shaped);
 }
 
-static void shape_rows(tm_text *text, const tm_poly_statistics *s)
+static void range_rows(tm_text *text, const tm_poly_statistics *s)
 {
-    tm_text_string(text, "\n");
-    number_row(text, "smallest volume", "%.4g", s->min_volume);
-    number_row(text, "smallest facet", "%.4g", s->min_face_area);
-    number_row(text, "shortest edge", "%.4g", s->min_edge);
-    number_row(text, "smallest dihedral angle", "%.4f", s->min_dihedral);
-    number_row(text, "largest dihedral angle", "%.4f", s->max_dihedral);
-    tm_text_format(text, "\n%-*s%*s%*s\n", LABEL_WIDTH, "of each polyhedron",
-                   COLUMN_WIDTH, "smallest", COLUMN_WIDTH, "mean");
+    static const char *const column[] = {"smallest", "mean"};
+    heading(text, "of each polyhedron", column, 2);
     range_row(text, "  shortest edge / diameter", &s->edge_ratio);
     range_row(text, "  radius of the kernel's ball / diameter", &s->kernel_radius);
     range_row(text, "  volume of the kernel / volume", &s->kernel_ratio);
@@ -209,14 +162,14 @@ static void shape_rows(tm_text *text, const tm_poly_statistics *s)
 
 static void mean_row(tm_text *text, const char *what, double mean, size_t largest)
 {
-    tm_text_format(text, "%-*s%*.2f%*zu\n", LABEL_WIDTH, what, COLUMN_WIDTH, mean,
-                   COLUMN_WIDTH, largest);
+    tm_report_cells(text, what, "%.2f", &mean, 1);
+    tm_text_format(text, "%*zu\n", TM_COLUMN_WIDTH, largest);
 }
 
-static void count_rows(tm_text *text, const tm_poly_statistics *s)
+static void mean_rows(tm_text *text, const tm_poly_statistics *s)
 {
-    tm_text_format(text, "\n%-*s%*s%*s\n", LABEL_WIDTH, "per polyhedron", COLUMN_WIDTH,
-                   "mean", COLUMN_WIDTH, "largest");
+    static const char *const column[] = {"mean", "largest"};
+    heading(text, "per polyhedron", column, 2);
     mean_row(text, "  facets", s->faces_per_polyhedron, s->largest_faces);
     if (s->input.elements > 0)
         mean_row(text, "  tetrahedra", s->tets_per_polyhedron, s->largest_tets);
@@ -226,14 +179,10 @@ static void count_rows(tm_text *text, const tm_poly_statistics *s)
 static void bar_row(tm_text *text, const char *what, size_t count, size_t whole,
                     size_t longest)
 {
-    tm_text_format(text, "  %-*s%*.2f", LABEL_WIDTH - 2, what, COLUMN_WIDTH,
-                   tm_percent(count, whole));
-    const int stars =
-        longest > 0 ? (int)lround(LONGEST_BAR * (double)count / (double)longest) : 0;
-    tm_text_string(text, stars > 0 ? "   " : "");
-    for (int i = 0; i < stars; i++)
-        tm_text_string(text, "*");
-    tm_text_string(text, "\n");
+    const double share = tm_percent(count, whole);
+    tm_report_cells(text, what, "%.2f", &share, 1);
+    tm_report_bar(text,
+                  longest > 0 ? TM_LONGEST_BAR * (double)count / (double)longest : 0);
 }
 
 static size_t highest(const size_t *histogram, size_t bins)
@@ -250,16 +199,16 @@ static void count_histogram(tm_text *text, const char *what, const size_t *histo
 {
     const size_t bins = tm_count_bins(histogram), longest = highest(histogram, bins);
     size_t i = 0;
-    heading(text, what);
+    heading(text, what, NULL, 0);
     while (i < bins && histogram[i] == 0)
         i++;
     for (; i < bins; i++) {
-        char label[CELL_CHARS];
+        char label[LABEL_CHARS];
         const size_t first = tm_count_bin_begin(i), last = tm_count_bin_begin(i + 1) - 1;
         if (first == last)
-            snprintf(label, sizeof label, "%zu", first);
+            snprintf(label, sizeof label, "  %zu", first);
         else
-            snprintf(label, sizeof label, "%zu to %zu", first, last);
+            snprintf(label, sizeof label, "  %zu to %zu", first, last);
         bar_row(text, label, histogram[i], whole, longest);
     }
 }
@@ -270,10 +219,10 @@ static void ratio_histogram(tm_text *text, const tm_poly_statistics *s)
     for (size_t i = 0; i < TM_KERNEL_RATIO_BINS / 2; i++)
         histogram[i] = s->kernel_ratios[2 * i] + s->kernel_ratios[2 * i + 1];
     const size_t longest = highest(histogram, TM_KERNEL_RATIO_BINS / 2);
-    heading(text, "histogram of volume of the kernel / volume, %");
+    heading(text, "histogram of volume of the kernel / volume, %", NULL, 0);
     for (size_t i = 0; i < TM_KERNEL_RATIO_BINS / 2; i++) {
-        char label[CELL_CHARS];
-        snprintf(label, sizeof label, "%.1f to %.1f", i == 0 ? 0 : ratio_end(2 * i - 1),
+        char label[LABEL_CHARS];
+        snprintf(label, sizeof label, "  %.1f to %.1f", i == 0 ? 0 : ratio_end(2 * i - 1),
                  ratio_end(2 * i + 1));
         bar_row(text, label, histogram[i], s->size.elements, longest);
     }
@@ -281,11 +230,14 @@ static void ratio_histogram(tm_text *text, const tm_poly_statistics *s)
 
 void tm_poly_statistics_table(tm_text *text, const tm_poly_statistics *s)
 {
-    size_rows(text, s);
-    simple_rows(text, s);
-    count_rows(text, s);
-    reduction_rows(text, s);
-    shape_rows(text, s);
+    table(text, sizes, s);
+    table(text, swallowed, s);
+    table(text, volume, s);
+    table(text, simple, s);
+    mean_rows(text, s);
+    reduction_rows(text, &s->size, &s->input);
+    table(text, shape, s);
+    range_rows(text, s);
     count_histogram(text, "histogram of facets per polyhedron, %", s->faces,
                     s->size.elements);
     if (s->input.elements > 0)

@@ -113,12 +113,6 @@ tm_status tm_tet_statistics_measure(tm_tet_statistics *statistics, const double 
     return TM_OK;
 }
 
-double tm_percent(size_t part, size_t whole)
-{
-    const double hundred = 100;
-    return whole == 0 ? 0 : hundred * (double)part / (double)whole;
-}
-
 size_t tm_count_through(const size_t *histogram, size_t bin)
 {
     size_t count = 0;

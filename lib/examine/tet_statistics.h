@@ -46,9 +46,6 @@ tm_status tm_tet_statistics_measure(tm_tet_statistics *statistics, const double 
                                     size_t nodes, const uint32_t (*tet)[4], size_t tets,
                                     double limit, unsigned threads, tm_error *error);
 
-/* 100 part / whole; 0 of nothing is 0. */
-double tm_percent(size_t part, size_t whole);
-
 /* How many of the values lie below the upper end of a bin. */
 size_t tm_count_through(const size_t *histogram, size_t bin);
 
@@ -56,6 +53,10 @@ size_t tm_count_through(const size_t *histogram, size_t bin);
  * min_dihedral max_dihedral bad_percent dihedral_percent volume_quality_percent and
  * the two histograms as [[upper end, count], …]. */
 void tm_tet_statistics_json(tm_json *json, const tm_tet_statistics *statistics);
+
+/* The same as an object of its own. */
+void tm_tet_statistics_object(tm_json *json, const char *key,
+                              const tm_tet_statistics *statistics);
 
 /* Writes the tables to read; with before not NULL in two columns, and the sizes' ratio.
  */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "getfem.h"
+#include "mesh_format.h"
 
 #include "../base/array.h"
 #include "../mesh/cell_faces.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "m3d.h"
+#include "mesh_format.h"
 
 #include "../base/array.h"
 #include "../mesh/cell_faces.h"
@@ -23,9 +23,11 @@ static const unsigned char wedge_corner[WEDGE] = {0, 2, 1, 3, 5, 4};
 
 /* Reading -------------------------------------------------------------------------- */
 
+typedef enum m3d_form { M3D, MVM } m3d_form;
+
 typedef struct reader {
     tm_scan scan;
-    tm_m3d_form form;
+    m3d_form form;
     bool has_nodes, has_elements;
     size_t nodes, node_room;
     double (*xyz)[COORDINATES];
@@ -47,7 +49,7 @@ static tm_status read_node(reader *r)
     r->xyz = grown;
     tm_status status = TM_OK;
     double flag;
-    if (r->form == TM_M3D)
+    if (r->form == M3D)
         status =
             tm_scan_next_double(&r->scan, "the number before a node", &flag, r->error);
     for (int i = 0; i < COORDINATES && status == TM_OK; i++)
@@ -118,7 +120,7 @@ static tm_status read_element(reader *r)
     }
     start[e + 1] = begin + k;
     r->elements++;
-    return r->form == TM_M3D ? read_material(r) : TM_OK;
+    return r->form == M3D ? read_material(r) : TM_OK;
 }
 
 static tm_status read_elements(reader *r, int64_t count)
@@ -175,7 +177,7 @@ static tm_status read_all(reader *r)
         return tm_scan_fail(&r->scan, r->error, "is empty");
     tm_word word = tm_scan_word(&r->scan);
     if (tm_word_is(word, "MIXED")) {
-        r->form = TM_MVM;
+        r->form = MVM;
         return read_mvm(r);
     }
     if (*word.begin != '[')
@@ -227,7 +229,7 @@ static tm_status give(reader *r, tm_stream *stream)
 tm_status tm_m3d_read(tm_stream *stream, const char *bytes, size_t size, const char *name,
                       size_t *materials, tm_error *error)
 {
-    reader r = {.form = TM_M3D, .error = error, .element_room = 1};
+    reader r = {.form = M3D, .error = error, .element_room = 1};
     r.start = calloc(1, sizeof *r.start);
     if (!r.start)
         return tm_fail_memory(error);
@@ -273,24 +275,36 @@ static char *put_element(const void *context, size_t row, char *to)
     return to;
 }
 
-tm_status tm_m3d_write(tm_text *text, const tm_stream *stream, tm_m3d_form form,
-                       unsigned threads, tm_error *error)
+static tm_status write_form(tm_text *text, const tm_stream *stream, m3d_form form,
+                            unsigned threads, tm_error *error)
 {
     tm_content content = tm_content_of(stream);
     if (content != TM_CONTENT_MIXED && content != TM_CONTENT_TETRAHEDRA)
         return tm_fail(error, TM_ERROR_INPUT, "has no elements (.mix or .ele)");
     const tm_block *node = tm_stream_find(stream, ".node");
     const tm_block *block = tm_content_block(stream, content);
-    elements all = {block, form == TM_M3D ? material : ""};
+    elements all = {block, form == M3D ? material : ""};
     const tm_text_rows rows = {&all, block->count, room, put_element};
-    if (form == TM_M3D)
+    if (form == M3D)
         tm_text_format(text, "[Nodes, ARRAY1<STRING>]\n%zu\n\n", node->count);
     else
         tm_text_format(text, "MIXED\n%zu %zu\n\n", node->count, block->count);
-    tm_text_append_points(text, node->real, node->count, form == TM_M3D ? "1 " : "",
+    tm_text_append_points(text, node->real, node->count, form == M3D ? "1 " : "",
                           threads);
-    if (form == TM_M3D)
+    if (form == M3D)
         tm_text_format(text, "\n[Elements, ARRAY1<STRING>]\n%zu\n\n", block->count);
     tm_text_append_rows(text, &rows, threads);
     return text->failed ? tm_fail_memory(error) : TM_OK;
+}
+
+tm_status tm_m3d_write(tm_text *text, const tm_stream *stream, unsigned threads,
+                       tm_error *error)
+{
+    return write_form(text, stream, M3D, threads, error);
+}
+
+tm_status tm_mvm_write(tm_text *text, const tm_stream *stream, unsigned threads,
+                       tm_error *error)
+{
+    return write_form(text, stream, MVM, threads, error);
 }

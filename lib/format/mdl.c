@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "mdl.h"
+#include "surface_format.h"
 
 #include "scan.h"
 

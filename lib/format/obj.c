@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "obj.h"
+#include "surface_format.h"
 
 #include "../base/number.h"
 #include "scan.h"
@@ -89,9 +89,7 @@ static tm_status read_face(tm_scan *scan, tm_polygon_surface *surface, tm_error 
         status =
             tm_scan_fail(scan, error, "the face has %d corners (three or more)", corners);
     if (status == TM_OK)
-        status = tm_polygon_surface_end_polygon(surface, error);
-    if (status == TM_OK)
-        status = tm_polygon_surface_end_facet(surface, 0, error);
+        status = tm_polygon_surface_end_face(surface, error);
     return status;
 }
 

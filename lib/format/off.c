@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "off.h"
+#include "mesh_format.h"
+#include "surface_format.h"
 
 #include "../base/array.h"
 #include "../mesh/cell_faces.h"
@@ -86,9 +87,7 @@ static tm_status read_face(tm_scan *scan, tm_polygon_surface *surface, int64_t f
             status = tm_polygon_surface_add_corner(surface, (uint32_t)node, error);
     }
     if (status == TM_OK)
-        status = tm_polygon_surface_end_polygon(surface, error);
-    if (status == TM_OK)
-        status = tm_polygon_surface_end_facet(surface, 0, error);
+        status = tm_polygon_surface_end_face(surface, error);
     tm_scan_end_line(scan);
     return status;
 }

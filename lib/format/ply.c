@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "ply.h"
+#include "surface_format.h"
 
 #include "../base/array.h"
 #include "binary.h"
@@ -309,9 +309,7 @@ static tm_status read_corners(reader *r, const property *p, int64_t length)
         status = tm_polygon_surface_add_corner(r->surface, (uint32_t)node, r->error);
     }
     if (status == TM_OK)
-        status = tm_polygon_surface_end_polygon(r->surface, r->error);
-    if (status == TM_OK)
-        status = tm_polygon_surface_end_facet(r->surface, 0, r->error);
+        status = tm_polygon_surface_end_face(r->surface, r->error);
     return status;
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "stl.h"
+#include "surface_format.h"
 
 #include "binary.h"
 #include "../surface/point_table.h"

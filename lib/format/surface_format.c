@@ -1,13 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "surface_format.h"
 
-#include "mdl.h"
-#include "obj.h"
-#include "off.h"
-#include "ply.h"
 #include "scan.h"
-#include "stl.h"
-#include "tetgen_poly.h"
+#include "tetgen.h"
 
 #include <string.h>
 #include <strings.h>
@@ -18,35 +13,95 @@ static bool has_suffix(const char *name, const char *suffix)
     return size >= length && strcasecmp(name + size - length, suffix) == 0;
 }
 
-/* OFF, or letters of its variants before it. */
-static bool is_off_keyword(tm_word word)
+/* The beginning of a file: its first word. */
+typedef struct head {
+    const char *bytes;
+    size_t size;
+    tm_word word;
+} head;
+
+static bool is_stream(const head *h)
 {
-    size_t length = strlen("OFF");
-    return word.size >= length && word.size <= strlen("STCN4nOFF") &&
-           memcmp(word.begin + word.size - length, "OFF", length) == 0;
+    return tm_word_is(h->word, "termesh");
 }
 
-static bool is_obj_keyword(tm_word word)
+/* OFF, or letters of its variants before it. */
+static bool is_off(const head *h)
+{
+    const size_t length = strlen("OFF");
+    return h->word.size >= length && h->word.size <= strlen("STCN4nOFF") &&
+           memcmp(h->word.begin + h->word.size - length, "OFF", length) == 0;
+}
+
+static bool is_stl(const head *h)
+{
+    return tm_word_is_like(h->word, "solid");
+}
+
+static bool is_ply(const head *h)
+{
+    return tm_word_is(h->word, "ply");
+}
+
+static bool is_obj(const head *h)
 {
     static const char *const keywords[] = {"v", "vt", "vn",     "vp",     "f", "g",
                                            "o", "s",  "mtllib", "usemtl", "l", "p"};
     for (size_t k = 0; k < sizeof keywords / sizeof keywords[0]; k++)
-        if (tm_word_is(word, keywords[k]))
+        if (tm_word_is(h->word, keywords[k]))
             return true;
     return false;
 }
 
+static bool is_mdl(const head *h)
+{
+    static const char points[] = "ARRAY1<POINT3D>]";
+    return *h->word.begin == '[' && memmem(h->bytes, h->size, points, strlen(points));
+}
+
+static tm_status read_node(tm_polygon_surface *surface, const char *bytes, size_t size,
+                           const char *name, tm_error *error)
+{
+    return tm_plc_read(surface, TM_PLC_NODE, bytes, size, name, error);
+}
+
+static tm_status read_poly(tm_polygon_surface *surface, const char *bytes, size_t size,
+                           const char *name, tm_error *error)
+{
+    return tm_plc_read(surface, TM_PLC_POLY, bytes, size, name, error);
+}
+
+static tm_status read_smesh(tm_polygon_surface *surface, const char *bytes, size_t size,
+                            const char *name, tm_error *error)
+{
+    return tm_plc_read(surface, TM_PLC_SMESH, bytes, size, name, error);
+}
+
+/* What is read. Files of TetGen have no first word that tells them. */
+static const struct {
+    const char *name;
+    bool (*sniff)(const head *h);
+    tm_status (*read)(tm_polygon_surface *surface, const char *bytes, size_t size,
+                      const char *name, tm_error *error);
+} formats[] = {
+    [TM_FORMAT_UNKNOWN] = {"", NULL, NULL},
+    [TM_FORMAT_STREAM] = {"termesh stream", is_stream, NULL},
+    [TM_FORMAT_OFF] = {"OFF", is_off, tm_off_read},
+    [TM_FORMAT_STL] = {"STL", is_stl, tm_stl_read},
+    [TM_FORMAT_PLY] = {"PLY", is_ply, tm_ply_read},
+    [TM_FORMAT_OBJ] = {"OBJ", is_obj, tm_obj_read},
+    [TM_FORMAT_MDL] = {".mdl", is_mdl, tm_mdl_read},
+    [TM_FORMAT_NODE] = {".node", NULL, read_node},
+    [TM_FORMAT_POLY] = {".poly", NULL, read_poly},
+    [TM_FORMAT_SMESH] = {".smesh", NULL, read_smesh},
+};
+enum { FORMATS = sizeof formats / sizeof *formats };
+
 static tm_format format_of_numbers(const char *bytes, size_t size, const char *name)
 {
-    static const struct {
-        const char *suffix;
-        tm_format format;
-    } known[] = {{".node", TM_FORMAT_NODE},
-                 {".poly", TM_FORMAT_POLY},
-                 {".smesh", TM_FORMAT_SMESH}};
-    for (size_t k = 0; k < sizeof known / sizeof known[0]; k++)
-        if (has_suffix(name, known[k].suffix))
-            return known[k].format;
+    for (int f = TM_FORMAT_NODE; f <= TM_FORMAT_SMESH; f++)
+        if (has_suffix(name, formats[f].name))
+            return (tm_format)f;
     switch (tm_plc_kind_of(bytes, size)) {
     case TM_PLC_POLY:
         return TM_FORMAT_POLY;
@@ -76,19 +131,10 @@ tm_format tm_format_of(const char *bytes, size_t size, const char *name)
     if (tm_stl_is_binary(bytes, size) || !tm_scan_seek(&scan))
         return tm_stl_is_binary(bytes, size) ? TM_FORMAT_STL : TM_FORMAT_UNKNOWN;
     tm_scan ahead = scan;
-    tm_word word = tm_scan_word(&ahead);
-    if (tm_word_is(word, "termesh"))
-        return TM_FORMAT_STREAM;
-    if (is_off_keyword(word))
-        return TM_FORMAT_OFF;
-    if (tm_word_is(word, "ply"))
-        return TM_FORMAT_PLY;
-    if (tm_word_is_like(word, "solid"))
-        return TM_FORMAT_STL;
-    if (is_obj_keyword(word))
-        return TM_FORMAT_OBJ;
-    if (*word.begin == '[' && memmem(bytes, size, "ARRAY1<POINT3D>]", 16))
-        return TM_FORMAT_MDL;
+    const head h = {bytes, size, tm_scan_word(&ahead)};
+    for (int f = 0; f < FORMATS; f++)
+        if (formats[f].sniff && formats[f].sniff(&h))
+            return (tm_format)f;
     if (is_tetgen(scan))
         return format_of_numbers(bytes, size, name);
     return has_suffix(name, ".stl") ? TM_FORMAT_STL : TM_FORMAT_UNKNOWN;
@@ -96,41 +142,17 @@ tm_format tm_format_of(const char *bytes, size_t size, const char *name)
 
 const char *tm_format_name(tm_format format)
 {
-    static const char *const names[] = {
-        [TM_FORMAT_UNKNOWN] = "",   [TM_FORMAT_STREAM] = "termesh stream",
-        [TM_FORMAT_OFF] = "OFF",    [TM_FORMAT_STL] = "STL",
-        [TM_FORMAT_PLY] = "PLY",    [TM_FORMAT_OBJ] = "OBJ",
-        [TM_FORMAT_MDL] = ".mdl",   [TM_FORMAT_NODE] = ".node",
-        [TM_FORMAT_POLY] = ".poly", [TM_FORMAT_SMESH] = ".smesh",
-    };
-    return names[format];
+    return formats[format].name;
 }
 
 tm_status tm_format_read(tm_polygon_surface *surface, tm_format format, const char *bytes,
                          size_t size, const char *name, tm_error *error)
 {
-    switch (format) {
-    case TM_FORMAT_OFF:
-        return tm_off_read(surface, bytes, size, name, error);
-    case TM_FORMAT_STL:
-        return tm_stl_read(surface, bytes, size, name, error);
-    case TM_FORMAT_PLY:
-        return tm_ply_read(surface, bytes, size, name, error);
-    case TM_FORMAT_OBJ:
-        return tm_obj_read(surface, bytes, size, name, error);
-    case TM_FORMAT_MDL:
-        return tm_mdl_read(surface, bytes, size, name, error);
-    case TM_FORMAT_NODE:
-        return tm_plc_read(surface, TM_PLC_NODE, bytes, size, name, error);
-    case TM_FORMAT_POLY:
-        return tm_plc_read(surface, TM_PLC_POLY, bytes, size, name, error);
-    case TM_FORMAT_SMESH:
-        return tm_plc_read(surface, TM_PLC_SMESH, bytes, size, name, error);
-    default:
-        return tm_fail_at(
-            error, TM_ERROR_INPUT, name, 0, NULL,
-            size == 0 ? "is empty (a surface, or points)"
-                      : "is no surface that can be read (OFF, STL, PLY, OBJ, .mdl, "
-                        ".node, .poly or .smesh)");
-    }
+    if (formats[format].read)
+        return formats[format].read(surface, bytes, size, name, error);
+    return tm_fail_at(error, TM_ERROR_INPUT, name, 0, NULL,
+                      size == 0
+                          ? "is empty (a surface, or points)"
+                          : "is no surface that can be read (OFF, STL, PLY, OBJ, .mdl, "
+                            ".node, .poly or .smesh)");
 }

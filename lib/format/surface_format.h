@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which foreign format a surface file is in, and the reader for it. */
+/* The formats of surface files: which one a file is in, and their readers. A new format
+ * is a reader, here, and a row of the table in surface_format.c. */
 #ifndef TM_FORMAT_SURFACE_FORMAT_H
 #define TM_FORMAT_SURFACE_FORMAT_H
 
-#include "../surface/surface_file.h"
+#include "../surface/polygon_surface.h"
 
 typedef enum tm_format {
     TM_FORMAT_UNKNOWN,
@@ -30,5 +31,44 @@ const char *tm_format_name(tm_format format);
  * TM_FORMAT_UNKNOWN and TM_FORMAT_STREAM it fails with a list of what is read. */
 tm_status tm_format_read(tm_polygon_surface *surface, tm_format format, const char *bytes,
                          size_t size, const char *name, tm_error *error);
+
+/* The readers. *surface must be empty; after an error it is again. O(size). */
+
+/* OFF of Geomview, text: OFF, and with colours, normals or texture coordinates per
+ * vertex COFF, NOFF, STOFF and their combinations. One vertex and one face a line;
+ * colours and all else behind them are skipped, `#` begins a comment, the three counts
+ * stand behind the keyword or on the next line (the number of edges may lack).
+ * 4OFF, nOFF and OFF BINARY are refused. */
+tm_status tm_off_read(tm_polygon_surface *surface, const char *bytes, size_t size,
+                      const char *name, tm_error *error);
+
+/* Wavefront OBJ: `v x y z` and `f a b c …`, whose corners are v, v/vt, v//vn or v/vt/vn
+ * with numbers from 1, or negative ones that count back from the last vertex so far. A
+ * backslash at the end of a line goes on in the next. All other statements (normals,
+ * groups, materials, lines, points) are skipped. */
+tm_status tm_obj_read(tm_polygon_surface *surface, const char *bytes, size_t size,
+                      const char *name, tm_error *error);
+
+/* PLY (G. Turk, 1994), ascii, binary_little_endian and binary_big_endian: x y z of the
+ * element `vertex` and the list vertex_indices (or vertex_index) of `face`, of any types
+ * and in any order; all other elements and properties are skipped. */
+tm_status tm_ply_read(tm_polygon_surface *surface, const char *bytes, size_t size,
+                      const char *name, tm_error *error);
+
+/* STL, text and binary. Triangles come with coordinates; points with equal ones become
+ * one node, in the order in which they come first. Normals, names, attribute bytes and
+ * colours are skipped. */
+tm_status tm_stl_read(tm_polygon_surface *surface, const char *bytes, size_t size,
+                      const char *name, tm_error *error);
+
+/* True for a binary file that is as long as its count says, whatever its first word. */
+bool tm_stl_is_binary(const char *bytes, size_t size);
+
+/* The .mdl surface of the mixed-element octree mesher: sections in any order, of which
+ *     [Vertices, ARRAY1<POINT3D>]   N, then N times x y z
+ *     [Triangles, ARRAY1<STRING>]   M, then M times a b c x x x  (0-based; x is ignored)
+ * are read, each known by its type, the other ones skipped. */
+tm_status tm_mdl_read(tm_polygon_surface *surface, const char *bytes, size_t size,
+                      const char *name, tm_error *error);
 
 #endif

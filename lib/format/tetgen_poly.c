@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tetgen_poly.h"
+#include "tetgen.h"
 
-#include "tetgen_rows.h"
+#include "scan.h"
 
 typedef struct {
     tm_polygon_surface *surface;
@@ -194,7 +194,7 @@ tm_status tm_plc_read(tm_polygon_surface *surface, tm_plc_kind kind, const char 
                       size_t size, const char *name, tm_error *error)
 {
     reader r = {.surface = surface, .error = error};
-    tm_tetgen_begin(&r.scan, bytes, size, name);
+    tm_scan_begin(&r.scan, bytes, size, name, '#');
     tm_status status = read_nodes(&r);
     if (kind != TM_PLC_NODE) {
         if (status == TM_OK)
@@ -222,7 +222,7 @@ bool tm_plc_lacks_nodes(const char *bytes, size_t size)
 {
     tm_scan scan;
     int64_t nodes;
-    tm_tetgen_begin(&scan, bytes, size, "");
+    tm_scan_begin(&scan, bytes, size, "", '#');
     return tm_scan_seek(&scan) && peek_integer(&scan, &nodes) && nodes == 0;
 }
 
@@ -242,7 +242,7 @@ tm_plc_kind tm_plc_kind_of(const char *bytes, size_t size)
     enum { POLY_FACET_WORDS = 3 };
     tm_scan scan;
     int64_t nodes = 0;
-    tm_tetgen_begin(&scan, bytes, size, "");
+    tm_scan_begin(&scan, bytes, size, "", '#');
     tm_scan_seek(&scan);
     if (!peek_integer(&scan, &nodes))
         return TM_PLC_NODE;

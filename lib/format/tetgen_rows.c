@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tetgen_rows.h"
+#include "tetgen.h"
+
+#include "../geom/predicates.h"
+#include "scan.h"
 
 /* Columns that `tetgen -nn` adds. */
 enum { FACE_NEIGHBOURS = 2, EDGE_NEIGHBOURS = 1 };
@@ -14,11 +17,6 @@ typedef struct {
     size_t extra; /* columns that may follow and are skipped */
     tm_error *error;
 } reader;
-
-void tm_tetgen_begin(tm_scan *scan, const char *bytes, size_t size, const char *name)
-{
-    tm_scan_begin(scan, bytes, size, name, '#');
-}
 
 /* A header field that may be left out: *value is then as it was. */
 static tm_status read_field(reader *r, const char *what, int64_t lo, int64_t hi,
@@ -191,4 +189,40 @@ tm_status tm_tetgen_read_rows(tm_block *block, tm_scan *scan, unsigned *base,
     if (status != TM_OK)
         tm_block_allocate(block, 0, 0, NULL);
     return status;
+}
+
+tm_status tm_tetgen_read(tm_block *block, const char *bytes, size_t size,
+                         const char *name, unsigned *base, size_t nodes, tm_error *error)
+{
+    tm_scan scan;
+    tm_scan_begin(&scan, bytes, size, name, '#');
+    tm_status status = tm_tetgen_read_rows(block, &scan, base, nodes, error);
+    if (status == TM_OK && tm_scan_seek(&scan)) {
+        status = tm_scan_no_more(&scan, "the last row", error);
+        tm_block_allocate(block, 0, 0, NULL);
+    }
+    return status;
+}
+
+tm_turned tm_tetgen_orient(const tm_block *node, tm_block *ele)
+{
+    enum { CORNERS = 4 };
+    tm_turned result = {0};
+    const double *xyz = node->real;
+    for (size_t t = 0; t < ele->count; t++) {
+        uint32_t *v = ele->integer + CORNERS * t;
+        const double *corner[CORNERS];
+        for (int i = 0; i < CORNERS; i++)
+            corner[i] = xyz + (size_t)v[i] * 3;
+        int sign = tm_orient3d(corner[0], corner[1], corner[2], corner[3]);
+        if (sign < 0) {
+            uint32_t last = v[3];
+            v[3] = v[2];
+            v[2] = last;
+            result.turned++;
+        } else if (sign == 0) {
+            result.flat++;
+        }
+    }
+    return result;
 }

@@ -23,14 +23,7 @@ static void format_chunk(void *context, size_t chunk)
     size_t first = b->first + chunk * CHUNK_ROWS, past = first + CHUNK_ROWS;
     if (past > rows->count)
         past = rows->count;
-    size_t needed = rows->room(rows->context, first, past) + TM_NUMBER_ROOM;
-    if (text->capacity < needed) {
-        free(text->byte);
-        text->byte = malloc(needed);
-        text->capacity = text->byte ? needed : 0;
-        text->failed = !text->byte;
-    }
-    if (text->failed)
+    if (!tm_text_room(text, rows->room(rows->context, first, past) + TM_NUMBER_ROOM))
         return;
     char *end = text->byte;
     for (size_t row = first; row < past; row++)

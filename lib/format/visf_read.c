@@ -45,7 +45,7 @@ static tm_status fail(reader *r, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 static tm_status fail(reader *r, const char *format, ...)
 {
-    char what[sizeof r->error->what];
+    char what[sizeof((tm_error){0}).what];
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(what, sizeof what, format, arguments);
@@ -138,12 +138,14 @@ static tm_status read_list(reader *r, lists *to, const char *what, size_t least,
 {
     size_t k, begin = to->start[to->count];
     tm_status status = next_count(r, what, 1, &k);
-    if (status == TM_OK && k < least)
-        status = fail(r, "%s is %zu (%zu or more would be right)", what, k, least);
+    if (status != TM_OK)
+        return status;
+    if (k < least)
+        return fail(r, "%s is %zu (%zu or more would be right)", what, k, least);
     uint32_t *item = tm_grow(to->item, &to->item_room, begin + k, sizeof *item);
-    if (status == TM_OK && !item)
-        status = tm_fail_memory(r->error);
-    to->item = item ? item : to->item;
+    if (!item)
+        return tm_fail_memory(r->error);
+    to->item = item;
     for (size_t i = 0; i < k && status == TM_OK; i++) {
         int64_t number = 0;
         status = next_integer(r, "a number in the list", 0, (int64_t)limit - 1, &number);
@@ -226,17 +228,21 @@ static tm_status skip_neighbours(reader *r)
 static tm_status read_rest(reader *r)
 {
     const place begin = r->at;
+    tm_error *const error = r->error, with_flag;
+    r->error = &with_flag;
     tm_status status = skip_neighbours(r);
     if (status == TM_OK)
         status = read_polyhedra(r, 0);
+    r->error = error;
+    if (status == TM_OK)
+        return TM_OK;
     if (status != TM_ERROR_INPUT)
-        return status;
-    const tm_error with_flag = *r->error;
+        return tm_fail_as(error, &with_flag);
     const char *reached = r->at.scan.at;
     r->at = begin;
     status = read_polyhedra(r, 1);
     if (status == TM_ERROR_INPUT && reached >= r->at.scan.at)
-        *r->error = with_flag;
+        tm_fail_as(error, &with_flag);
     return status;
 }
 
@@ -363,9 +369,12 @@ static tm_status orient(reader *r, tm_block *facet)
     bool *inward = tm_new(uses, sizeof *inward);
     tm_status status = inward ? check_uses(r, facet) : tm_fail_memory(r->error);
     if (status == TM_OK) {
-        status = tm_cells_orient(&mesh, inward, r->error);
+        tm_error cause;
+        status = tm_cells_orient(&mesh, inward, &cause);
         if (status == TM_ERROR_INPUT)
-            snprintf(r->error->file, sizeof r->error->file, "%s", r->at.scan.name);
+            tm_fail_at(r->error, status, r->at.scan.name, 0, NULL, "%s", cause.what);
+        else if (status != TM_OK)
+            tm_fail_as(r->error, &cause);
     }
     if (status == TM_OK)
         set_sides(r, facet, inward);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "vtk_legacy.h"
+#include "mesh_format.h"
 
 #include "../element/shape.h"
 #include "../mesh/cell_faces.h"
@@ -104,18 +104,13 @@ static size_t type_room(const void *context, size_t first, size_t past)
 
 static char *put_type(const void *context, size_t row, char *to)
 {
-    static const unsigned char of_content[] = {[TM_CONTENT_POINTS] = TM_VTK_VERTEX,
-                                               [TM_CONTENT_SURFACE] = TM_VTK_TRIANGLE,
-                                               [TM_CONTENT_TETRAHEDRA] = TM_VTK_TETRA,
-                                               [TM_CONTENT_POLYHEDRA] =
-                                                   TM_VTK_POLYHEDRON};
     const writer *w = context;
-    unsigned char type;
-    if (w->content == TM_CONTENT_MIXED)
-        type = tm_element_shapes[w->cell->start[row + 1] - w->cell->start[row]].vtk_type;
-    else
-        type = of_content[w->content];
-    to = tm_write_uint32(to, type);
+    size_t nodes = 1;
+    if (w->content != TM_CONTENT_POINTS && w->content != TM_CONTENT_POLYHEDRA)
+        tm_row_nodes(w->cell, row, &nodes);
+    to =
+        tm_write_uint32(to, w->content == TM_CONTENT_POLYHEDRA ? TM_VTK_POLYHEDRON
+                                                               : tm_vtk_cell_type(nodes));
     *to++ = '\n';
     return to;
 }

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "vtu.h"
+#include "mesh_format.h"
 
 #include "../base/array.h"
 #include "../base/parallel.h"
 #include "../element/shape.h"
 #include "../element/tet_quality.h"
 #include "binary.h"
+#include "text_rows.h"
 #include "../mesh/cell_faces.h"
 
 #include <stdio.h>
@@ -13,7 +14,7 @@
 #include <string.h>
 #include <zlib.h>
 
-enum { BLOCK_BYTES = 1 << 17, HEADER_BYTES = 8, TRIANGLE = 3 };
+enum { BLOCK_BYTES = 1 << 17, HEADER_BYTES = 8, TETRAHEDRON = 4 };
 
 typedef enum { FLOAT64, INT32, INT64, UINT8 } number_type;
 
@@ -213,33 +214,27 @@ typedef struct cell_arrays {
     unsigned char *type;
 } cell_arrays;
 
-static void append_cell(cell_arrays *a, const uint32_t *node, size_t k, size_t c,
-                        unsigned char type)
+static void append_cell(cell_arrays *a, const uint32_t *node, size_t k, size_t c)
 {
     for (size_t i = 0; i < k; i++)
         append(&a->connectivity, node[i]);
     append(&a->offsets, a->connectivity.count);
-    a->type[c] = type;
-}
-
-/* The rows of .face or .ele. */
-static void append_rows(const writer *w, cell_arrays *a, size_t k, unsigned char type)
-{
-    for (size_t c = 0; c < w->cell->count; c++)
-        append_cell(a, w->cell->integer + k * c, k, c, type);
+    a->type[c] = tm_vtk_cell_type(k);
 }
 
 static void append_points(const writer *w, cell_arrays *a)
 {
     for (uint32_t v = 0; v < w->node->count; v++)
-        append_cell(a, &v, 1, v, TM_VTK_VERTEX);
+        append_cell(a, &v, 1, v);
 }
 
+/* The rows of .face, .ele or .mix. */
 static void append_elements(const writer *w, cell_arrays *a)
 {
     for (size_t c = 0; c < w->cell->count; c++) {
-        size_t begin = w->cell->start[c], k = w->cell->start[c + 1] - begin;
-        append_cell(a, w->cell->item + begin, k, c, tm_element_shapes[k].vtk_type);
+        size_t k;
+        const uint32_t *node = tm_row_nodes(w->cell, c, &k);
+        append_cell(a, node, k, c);
     }
 }
 
@@ -281,22 +276,13 @@ static tm_status append_polyhedra(const writer *w, cell_arrays *a)
 
 static tm_status append_cells(const writer *w, cell_arrays *a)
 {
-    switch (w->content) {
-    case TM_CONTENT_SURFACE:
-        append_rows(w, a, TRIANGLE, TM_VTK_TRIANGLE);
-        return TM_OK;
-    case TM_CONTENT_TETRAHEDRA:
-        append_rows(w, a, TM_TET_NODES, TM_VTK_TETRA);
-        return TM_OK;
-    case TM_CONTENT_MIXED:
-        append_elements(w, a);
-        return TM_OK;
-    case TM_CONTENT_POLYHEDRA:
+    if (w->content == TM_CONTENT_POLYHEDRA)
         return append_polyhedra(w, a);
-    default:
+    if (w->content == TM_CONTENT_POINTS)
         append_points(w, a);
-        return TM_OK;
-    }
+    else
+        append_elements(w, a);
+    return TM_OK;
 }
 
 /* How many numbers the connectivity holds at most, and the faces of polyhedra. */

@@ -14,35 +14,44 @@
  * no two corners of the programme are equally good. Each round looks at every plane
  * once; a dozen are usual.
  *
- * No memory is allocated, nothing is random, threads may call all of it. A half-space is
- * plane[i] = {n, d}, n of length 1 pointing outward: n·x ≤ d is inside. Any unit of
- * length will do, but d is rounded relative to the distance from the origin: take a
- * corner of the polyhedron as the origin where that matters. */
+ * But for the volume no memory is allocated, nothing is random, threads may call all of
+ * it. A half-space is plane[i] = {n, d}, n of length 1 pointing outward: n·x ≤ d is
+ * inside. Any unit of length will do, but d is rounded relative to the distance from the
+ * origin: take a corner of the polyhedron as the origin where that matters. */
 #ifndef TM_GEOM_KERNEL_H
 #define TM_GEOM_KERNEL_H
 
 #include <stdbool.h>
 #include <stddef.h>
 
-/* How deep a point is inside all half-spaces: the radius of the largest ball around it,
- * negative where the point is outside of one by so much. count > 0. O(count). */
-double tm_kernel_depth(const double (*plane)[4], size_t count, const double point[3]);
-
-/* Writes the centre and the radius of the largest ball. *radius is tm_kernel_depth() of
- * the centre: it is right for that centre but for one rounding, and the largest one to
- * about 1e-12 of the size. It is 0 or negative, the distance by which all planes had to
- * move outward, where the intersection has no interior. Of several centres it is any one
- * at the end of their range. False, with *radius 0, where the planes do not bound the
- * ball and its place (fewer than four never do) or are not finite.
- * O(count) for each of a few rounds: about 1 µs for 50 planes. */
+/* Writes the centre and the radius of the largest ball. *radius is how deep the centre is
+ * inside all half-spaces, the least d - n·x: it is right for that centre but for one
+ * rounding, and the largest one to about 1e-12 of the size. It is 0 or negative, the
+ * distance by which all planes had to move outward, where the intersection has no
+ * interior. Of several centres it is any one at the end of their range. False, with
+ * *radius 0, where the planes do not bound the ball and its centre (fewer than four never
+ * do) or are not finite. O(count) for each of a few rounds: about 1 µs for 50 planes. */
 bool tm_kernel_ball(const double (*plane)[4], size_t count, double center[3],
                     double *radius);
 
-/* Whether a ball of radius `least` fits in; center and radius of one that does. It stops
- * at the first such ball, or when it is known that there is none: faster than
- * tm_kernel_ball(), and a ball that still fits after planes were added is found at once
- * by tm_kernel_depth(). False also where tm_kernel_ball() is. */
-bool tm_kernel_holds_ball(const double (*plane)[4], size_t count, double least,
-                          double center[3], double *radius);
+/* Memory that is kept from one call to the next. {0} is empty. */
+typedef struct tm_kernel_memory {
+    struct tm_kernel_plane *plane;
+    size_t planes;
+    double (*polygon)[2];
+    size_t points;
+} tm_kernel_memory;
+
+void tm_kernel_memory_free(tm_kernel_memory *memory);
+
+/* Writes the volume of what is inside all the half-spaces plane[i] = {n, d}, n·x ≤ d,
+ * and in a ball of radius `reach`, which must hold it, around an inner point: that of
+ * tm_kernel_ball(), or any other of a depth above 0. Planes may be there twice or nearly
+ * so. Each face is a square on its plane that the others cut, nearest first, until they
+ * are out of its reach; pyramids over the faces add up. Returns NULL where memory is out,
+ * else memory->plane. O(count²) at worst, where no plane is out of reach, as around a
+ * sphere: 40 µs for 50 planes, 0.4 s for 10 000. */
+void *tm_kernel_volume(tm_kernel_memory *memory, const double (*plane)[4], size_t count,
+                       const double inner[3], double reach, double *volume);
 
 #endif

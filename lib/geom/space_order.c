@@ -34,39 +34,40 @@ static uint32_t spread(uint32_t bits)
 
 uint32_t tm_space_position(const tm_space *space, const double p[3])
 {
-    uint32_t place = 0;
+    uint32_t position = 0;
     for (int k = 0; k < 3; k++) {
         double cell = (p[k] - space->low[k]) * space->cells;
         /* What is no number, as 0 times infinity, goes to the first cell. */
         uint32_t c = cell > 0 ? (uint32_t)fmin(cell, CELLS - 1) : 0;
-        place |= spread(c) << k;
+        position |= spread(c) << k;
     }
-    return place;
+    return position;
 }
 
-/* Sorts by ten bits of the place from bit `from` on; equal ones stay in their order. */
-static void sort_by_digit(tm_curve_point *to, const tm_curve_point *placed, size_t count,
+/* Sorts by ten bits of the position from bit `from` on; equal ones stay in their order.
+ */
+static void sort_by_digit(tm_curve_point *to, const tm_curve_point *point, size_t count,
                           int from)
 {
     size_t begin[CELLS + 1] = {0};
     for (size_t i = 0; i < count; i++)
-        begin[(placed[i].place >> from & (CELLS - 1)) + 1]++;
+        begin[(point[i].position >> from & (CELLS - 1)) + 1]++;
     for (size_t d = 0; d < CELLS; d++)
         begin[d + 1] += begin[d];
     for (size_t i = 0; i < count; i++)
-        to[begin[placed[i].place >> from & (CELLS - 1)]++] = placed[i];
+        to[begin[point[i].position >> from & (CELLS - 1)]++] = point[i];
 }
 
-bool tm_space_sort(tm_curve_point *placed, size_t count)
+bool tm_space_sort(tm_curve_point *point, size_t count)
 {
     enum { DIGIT = 10 };
     tm_curve_point *other = tm_new(count, sizeof *other);
     if (!other)
         return false;
-    sort_by_digit(other, placed, count, 0);
-    sort_by_digit(placed, other, count, DIGIT);
-    sort_by_digit(other, placed, count, 2 * DIGIT);
-    memcpy(placed, other, count * sizeof *placed);
+    sort_by_digit(other, point, count, 0);
+    sort_by_digit(point, other, count, DIGIT);
+    sort_by_digit(other, point, count, 2 * DIGIT);
+    memcpy(point, other, count * sizeof *point);
     free(other);
     return true;
 }

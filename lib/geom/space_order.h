@@ -16,17 +16,17 @@ typedef struct tm_space {
 } tm_space;
 
 typedef struct tm_curve_point {
-    uint32_t place; /* on the curve */
+    uint32_t position; /* on the curve */
     uint32_t item;
 } tm_curve_point;
 
 tm_space tm_space_around(const double (*xyz)[3], size_t count);
 
-/* The place of a point on the curve; the nearest end for points outside. */
+/* The position of a point on the curve; the nearest end for points outside. */
 uint32_t tm_space_position(const tm_space *space, const double p[3]);
 
-/* Sorts by place; what has the same stays in its order. False where memory is out.
+/* Sorts by position; what has the same stays in its order. False where memory is out.
  * O(count). */
-bool tm_space_sort(tm_curve_point *placed, size_t count);
+bool tm_space_sort(tm_curve_point *point, size_t count);
 
 #endif

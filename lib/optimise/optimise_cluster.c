@@ -3,8 +3,8 @@
 #include "optimise_parts.h"
 
 #include "../base/array.h"
-#include "../geom/vector.h"
 #include "../element/jens.h"
+#include "../geom/vector.h"
 #include "../stream/stream.h"
 
 #include <math.h>

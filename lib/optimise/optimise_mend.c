@@ -3,8 +3,8 @@
 #include "optimise_parts.h"
 
 #include "../base/array.h"
-#include "../geom/vector.h"
 #include "../element/jens.h"
+#include "../geom/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -17,7 +17,7 @@ enum { CORE_MOST = 32 };
 typedef struct pass {
     unsigned rings;
     bool untangle; /* what stays inverted, by the other objective */
-    double kick;   /* nodes are thrown about by so much of their size before */
+    double kick;   /* nodes are moved at random by so much of their size before */
 } pass;
 
 static const pass passes[] = {
@@ -45,7 +45,7 @@ static uint64_t next_bits(uint64_t *state)
     return z ^ (z >> 31);
 }
 
-/* Throws the nodes about, each time and in each cluster in another way. */
+/* Moves the nodes at random, each time and in each cluster in another way. */
 static void kick_nodes(tm_cluster *cluster, double kick, uint64_t seed)
 {
     for (size_t v = 0; v < cluster->moving; v++) {

@@ -2,8 +2,8 @@
 /* What is minimised over the positions of a cluster's nodes. */
 #include "optimise_parts.h"
 
-#include "../geom/vector.h"
 #include "../element/jens.h"
+#include "../geom/vector.h"
 
 #include <math.h>
 #include <string.h>

@@ -12,8 +12,8 @@
  * the more an element is inverted. */
 #include "optimise_parts.h"
 
-#include "../geom/vector.h"
 #include "../element/jens.h"
+#include "../geom/vector.h"
 
 #include <math.h>
 #include <string.h>

@@ -43,21 +43,6 @@ static bool make_lists(lists *l, const uint32_t *set, size_t tets, size_t sets)
     return true;
 }
 
-static tm_status label_regions(const tm_tet_mesh *mesh, const tm_poly_options *options,
-                               uint32_t *label, size_t *regions, tm_error *error)
-{
-    switch (options->mode) {
-    case TM_POLY_EDGE:
-        return tm_label_longest_edge(mesh, label, regions, error);
-    case TM_POLY_FACE:
-        return tm_label_best_face(mesh, options->face_metric, label, regions, error);
-    case TM_POLY_CAVITY:
-        return tm_label_cavity(mesh, label, regions, error);
-    default:
-        return tm_label_terminal(mesh, label, regions, error);
-    }
-}
-
 /* What the repair works with. */
 typedef struct {
     const tm_tet_mesh *mesh;
@@ -286,8 +271,8 @@ tm_status tm_partition_make(tm_partition *partition, const tm_tet_mesh *mesh,
     *partition = (tm_partition){.cell = tm_new(mesh->slots, sizeof *partition->cell)};
     if (!partition->cell)
         return tm_fail_memory(error);
-    tm_status status =
-        label_regions(mesh, options, partition->cell, &report->regions, error);
+    tm_status status = tm_poly_modes[options->mode].label(mesh, options, partition->cell,
+                                                          &report->regions, error);
     partition->cells = report->regions;
     if (status == TM_OK && options->repair)
         status = repair_regions(partition, mesh, options, report, error);

@@ -14,12 +14,13 @@
 
 #include "../tet/mesh.h"
 
-/* How regions are found. */
+/* How regions are found: a row of tm_poly_modes. */
 typedef enum tm_poly_mode {
     TM_POLY_TERMINAL, /* one for each terminal edge: fans and their outlets */
     TM_POLY_EDGE,     /* tetrahedra with one longest edge: what the 2022 program did */
     TM_POLY_FACE,     /* joined across the best face of each tetrahedron */
-    TM_POLY_CAVITY    /* circumcentres in the circumscribed sphere of a seed */
+    TM_POLY_CAVITY,   /* circumcentres in the circumscribed sphere of a seed */
+    TM_POLY_MODES
 } tm_poly_mode;
 
 /* Which face is best. */
@@ -34,6 +35,15 @@ typedef struct tm_poly_options {
     bool no_swallow; /* no node inside of a polyhedron */
     size_t max_tets; /* in one polyhedron; 0: any number */
 } tm_poly_options;
+
+typedef struct tm_poly_mode_row {
+    const char *name;
+    /* Labels each tetrahedron by its region, 0 … *regions-1 in any order. */
+    tm_status (*label)(const tm_tet_mesh *mesh, const tm_poly_options *options,
+                       uint32_t *label, size_t *regions, tm_error *error);
+} tm_poly_mode_row;
+
+extern const tm_poly_mode_row tm_poly_modes[TM_POLY_MODES];
 
 typedef struct tm_poly_report {
     size_t tets, regions, cells;
@@ -57,17 +67,5 @@ void tm_partition_free(tm_partition *partition);
 
 /* Marked faces inside of one region of the mesh are no longer kept. */
 void tm_ignore_markers(tm_tet_mesh *mesh);
-
-/* The steps of it. */
-
-/* Labels each tetrahedron by its region, 0 … *regions-1 in any order. */
-tm_status tm_label_terminal(const tm_tet_mesh *mesh, uint32_t *label, size_t *regions,
-                            tm_error *error);
-tm_status tm_label_longest_edge(const tm_tet_mesh *mesh, uint32_t *label, size_t *regions,
-                                tm_error *error);
-tm_status tm_label_best_face(const tm_tet_mesh *mesh, tm_face_metric metric,
-                             uint32_t *label, size_t *regions, tm_error *error);
-tm_status tm_label_cavity(const tm_tet_mesh *mesh, uint32_t *label, size_t *regions,
-                          tm_error *error);
 
 #endif

@@ -64,10 +64,8 @@ static tm_status read_magic(reader *r)
     /* A binary file may be one long line: then there is no first line to look at. */
     tm_error too_long;
     if (tm_lines_fill(&r->lines, &too_long) != TM_OK) {
-        if (too_long.status != TM_ERROR_INPUT) {
-            *r->error = too_long;
-            return too_long.status;
-        }
+        if (too_long.status != TM_ERROR_INPUT)
+            return tm_fail_as(r->error, &too_long);
         r->lines.end = r->lines.filled;
     }
     size_t there = (size_t)(r->lines.end - r->lines.at);

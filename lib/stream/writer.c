@@ -22,11 +22,12 @@ typedef struct {
     tm_text *text;
 } batch;
 
-static char *put_reals(char *to, const double *real, size_t count)
+/* Those of a row; the array may be NULL where rows have none. */
+static char *put_reals(char *to, const double *real, size_t row, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         *to++ = ' ';
-        to = tm_write_double(to, real[i]);
+        to = tm_write_double(to, real[row * count + i]);
     }
     return to;
 }
@@ -74,10 +75,11 @@ static inline char *put_index(char *to, uint32_t index, uint32_t base)
     return to + 2;
 }
 
-static inline char *put_indices(char *to, const uint32_t *index, size_t count,
+/* index[from…past - 1]; the array may be NULL where there are none. */
+static inline char *put_indices(char *to, const uint32_t *index, size_t from, size_t past,
                                 uint32_t base)
 {
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = from; i < past; i++) {
         *to++ = ' ';
         to = put_index(to, index[i], base);
     }
@@ -89,29 +91,29 @@ static inline char *put_indices(char *to, const uint32_t *index, size_t count,
 static char *put_integers(char *to, const tm_block *block, size_t width, size_t row,
                           uint32_t base)
 {
+    const size_t from = row * width;
     size_t plain = 0;
-    const uint32_t *integer = block->integer + row * width;
     if (block->kind == TM_OCTANT)
         plain = TM_OCTANT_PLAIN;
     else if (block->kind == TM_ROOT)
         plain = 1;
-    to = put_indices(to, integer, plain, 0);
-    return put_indices(to, integer + plain, width - plain, base);
+    to = put_indices(to, block->integer, from, from + plain, 0);
+    return put_indices(to, block->integer, from + plain, from + width, base);
 }
 
 /* What follows the number of a row. */
 static char *put_row(char *to, const tm_block *block, const tm_block_shape *shape,
                      size_t row, uint32_t base)
 {
-    to = put_reals(to, block->real + row * shape->reals, shape->reals);
+    to = put_reals(to, block->real, row, shape->reals);
     to = put_integers(to, block, shape->integers, row, base);
     if (block->start) {
         size_t begin = block->start[row], count = block->start[row + 1] - begin;
         *to++ = ' ';
         to = tm_write_int64(to, (int64_t)count);
-        to = put_indices(to, block->item + begin, count, base);
+        to = put_indices(to, block->item, begin, begin + count, base);
     }
-    to = put_reals(to, block->attribute + row * block->attributes, block->attributes);
+    to = put_reals(to, block->attribute, row, block->attributes);
     if (block->markers) {
         *to++ = ' ';
         to = tm_write_int64(to, block->marker[row]);
@@ -138,14 +140,7 @@ static void format_chunk(void *context, size_t chunk)
     size_t from = b->first + chunk * CHUNK_ROWS, to = from + CHUNK_ROWS;
     if (to > b->block->count)
         to = b->block->count;
-    size_t needed = room(b->block, from, to);
-    if (text->capacity < needed) {
-        free(text->byte);
-        text->byte = malloc(needed);
-        text->capacity = text->byte ? needed : 0;
-        text->failed = !text->byte;
-    }
-    if (text->failed)
+    if (!tm_text_room(text, room(b->block, from, to)))
         return;
     const tm_block_shape *shape = tm_block_shape_of(b->block->kind);
     row_number number = row_number_from(from + b->base);

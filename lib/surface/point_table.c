@@ -32,11 +32,11 @@ static bool same(const double a[3], const double b[3])
     return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
-/* The slot of the point at a place, or the free one where it belongs. */
-static size_t find(const tm_point_table *table, double (*xyz)[3], const double place[3])
+/* The slot of the point with those coordinates, or the free one where it belongs. */
+static size_t find(const tm_point_table *table, double (*xyz)[3], const double point[3])
 {
-    size_t mask = table->slots - 1, s = hash(place) & mask;
-    while (table->slot[s] != UINT32_MAX && !same(xyz[table->slot[s]], place))
+    size_t mask = table->slots - 1, s = hash(point) & mask;
+    while (table->slot[s] != UINT32_MAX && !same(xyz[table->slot[s]], point))
         s = (s + 1) & mask;
     return s;
 }
@@ -75,9 +75,9 @@ bool tm_point_table_join(tm_point_table *table, double (*xyz)[3], uint32_t id,
 }
 
 uint32_t tm_point_table_find(const tm_point_table *table, double (*xyz)[3],
-                             const double place[3])
+                             const double point[3])
 {
-    return table->slots > 0 ? table->slot[find(table, xyz, place)] : UINT32_MAX;
+    return table->slots > 0 ? table->slot[find(table, xyz, point)] : UINT32_MAX;
 }
 
 void tm_point_table_free(tm_point_table *table)

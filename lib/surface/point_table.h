@@ -22,9 +22,9 @@ typedef struct tm_point_table {
 bool tm_point_table_join(tm_point_table *table, double (*xyz)[3], uint32_t id,
                          uint32_t *first);
 
-/* The id of the first point at a place, or UINT32_MAX. */
+/* The id of the first point with those coordinates, or UINT32_MAX. */
 uint32_t tm_point_table_find(const tm_point_table *table, double (*xyz)[3],
-                             const double place[3]);
+                             const double point[3]);
 
 void tm_point_table_free(tm_point_table *table);
 

@@ -5,7 +5,7 @@
 #ifndef TM_SURFACE_SURFACE_H
 #define TM_SURFACE_SURFACE_H
 
-#include "surface_file.h"
+#include "polygon_surface.h"
 
 /* Sharp edges are chained to curves that end at corners: nodes where another number than
  * two sharp edges meet, or where two meet at a sharp angle that the next node of the
@@ -36,7 +36,7 @@ typedef struct tm_surface {
     double low[3], high[3];
     struct tm_surface_tree *tree; /* bounding boxes; see surface_tree.h */
 
-    size_t welded;     /* nodes that had another at their place */
+    size_t welded;     /* nodes that had another where they are */
     size_t flat;       /* triangles without area that were dropped, or went by a flip */
     size_t duplicates; /* triangles that were there twice, dropped */
     bool turned;       /* some or all triangles turned the other way */
@@ -67,8 +67,8 @@ typedef struct tm_surface_options {
  * it is negative. Where an edge has four or more triangles, solids touch: the triangles
  * on both sides of each solid wedge become neighbours, by the file's orientation.
  *
- * TM_ERROR_INPUT, with counts and a place, in the numbers of the file, where nothing is
- * left, coordinates are not finite or beyond 1e100, a facet has several polygons or
+ * TM_ERROR_INPUT, with counts and a position, in the numbers of the file, where nothing
+ * is left, coordinates are not finite or beyond 1e100, a facet has several polygons or
  * holes; and unless lenient where an edge has one triangle, or more than two that do not
  * pair, where a shell cannot be oriented, or where two triangles meet otherwise than in
  * common nodes and edges, exactly (touching is meeting). With lenient the surface is cut
@@ -85,20 +85,20 @@ void tm_surface_free(tm_surface *surface);
  * that does not hold. O(n log n), for tests and self-checks. */
 tm_status tm_surface_check(const tm_surface *surface, tm_error *error);
 
-/* A place on the surface. */
+/* A point of the surface. */
 typedef struct tm_surface_point {
     double xyz[3];
     double distance2;  /* squared distance to the point that was asked for */
     uint32_t triangle; /* on it, or on its border */
 } tm_surface_point;
 
-/* The place of the surface (of one patch; TM_NONE: any) closest to a point. Where
+/* The point of the surface (of one patch; TM_NONE: any) closest to a point. Where
  * at->triangle is not TM_NONE it is a guess, and the search only looks for what is
  * closer. Expected O(log n); below 1 µs with a near guess. */
 void tm_surface_closest(const tm_surface *surface, const double point[3], uint32_t patch,
                         tm_surface_point *at);
 
-/* The place of a curve closest to a point; `segment` is the first of its two nodes,
+/* The point of a curve closest to a point; `segment` is the first of its two nodes,
  * counted from curve_start[curve]. */
 void tm_surface_closest_on_curve(const tm_surface *surface, uint32_t curve,
                                  const double point[3], double closest[3],
@@ -123,6 +123,12 @@ bool tm_surface_has_inside(const tm_surface *surface, const double point[3]);
 /* The generalised winding number, near 1 inside and 0 outside; for surfaces that have
  * by_winding. */
 double tm_surface_winding_number(const tm_surface *surface, const double point[3]);
+
+/* Where the solid, or a gap in it, is thin: looks for a triangle from whose centre the
+ * surface is left again within a distance, along its normal to either side, first within
+ * an eighth of `most`, then a quarter, a half, all of it. Fills centre with the first
+ * such one; false where there is none. O(triangles) queries. */
+bool tm_surface_find_thin(const tm_surface *surface, double most, double centre[3]);
 
 /* Whether some of the surface is in the closed box: true also where it only is within
  * rounding of it. */

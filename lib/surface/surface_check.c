@@ -108,7 +108,7 @@ static bool check_leaf(const tm_surface *surface, const tm_tree_node *leaf,
     const tm_surface_tree *tree = surface->tree;
     for (uint32_t i = leaf->first; i < leaf->first + leaf->count; i++) {
         const tm_tree_triangle *triangle = &tree->triangle[i];
-        if (i >= surface->triangles || tree->place[triangle->id] != i ||
+        if (i >= surface->triangles || tree->slot[triangle->id] != i ||
             triangle->patch != surface->patch[triangle->id])
             return false;
         for (int k = 0; k < 9; k++) {

@@ -10,7 +10,7 @@
 typedef struct finder {
     tm_surface *surface;
     uint32_t pair[2]; /* the first that was found */
-    double place[3];
+    double point[3];
     bool all; /* else the first is enough */
 } finder;
 
@@ -154,13 +154,13 @@ static void bounds_of(const tm_tree_triangle *triangle, double low[3], double hi
 }
 
 /* Somewhere in both boxes. */
-static void find_place(finder *f, const tm_tree_triangle *a, const tm_tree_triangle *b)
+static void find_point(finder *f, const tm_tree_triangle *a, const tm_tree_triangle *b)
 {
     double low[2][3], high[2][3];
     bounds_of(a, low[0], high[0]);
     bounds_of(b, low[1], high[1]);
     for (int i = 0; i < 3; i++)
-        f->place[i] = (fmax(low[0][i], low[1][i]) + fmin(high[0][i], high[1][i])) / 2;
+        f->point[i] = (fmax(low[0][i], low[1][i]) + fmin(high[0][i], high[1][i])) / 2;
     f->pair[0] = a->id < b->id ? a->id : b->id;
     f->pair[1] = a->id < b->id ? b->id : a->id;
 }
@@ -174,7 +174,7 @@ static void try_pair(finder *f, const tm_tree_triangle *a, const tm_tree_triangl
         !triangles_meet(f->surface, a->id, b->id))
         return;
     if (f->surface->crossings++ == 0)
-        find_place(f, a, b);
+        find_point(f, a, b);
 }
 
 static void try_leaves(finder *f, const tm_tree_node *n, const tm_tree_node *m)
@@ -221,6 +221,6 @@ tm_status tm_surface_find_crossings(tm_surface *surface, bool lenient, unsigned 
                        ? "the surface crosses itself"
                        : "two pieces of the surface cross",
                    (size_t)surface->facet[f.pair[0]] + base,
-                   (size_t)surface->facet[f.pair[1]] + base, f.place[0], f.place[1],
-                   f.place[2]);
+                   (size_t)surface->facet[f.pair[1]] + base, f.point[0], f.point[1],
+                   f.point[2]);
 }

@@ -20,38 +20,38 @@ static int compare_edges(const void *a, const void *b)
     return (p[1] > q[1]) - (p[1] < q[1]);
 }
 
-/* place[v] becomes the first node with v's coordinates. */
-static bool find_places(const tm_polygon_surface *surface, uint32_t *place,
+/* unique[v] becomes the first node with v's coordinates. */
+static bool find_unique(const tm_polygon_surface *surface, uint32_t *unique,
                         size_t *duplicates)
 {
     tm_point_table table = {0};
     bool done = true;
     for (size_t v = 0; v < surface->nodes && done; v++)
-        done = tm_point_table_join(&table, surface->xyz, (uint32_t)v, &place[v]);
+        done = tm_point_table_join(&table, surface->xyz, (uint32_t)v, &unique[v]);
     *duplicates = surface->nodes - table.points;
     tm_point_table_free(&table);
     return done;
 }
 
-static void count_unused(const tm_polygon_surface *surface, const uint32_t *place,
+static void count_unused(const tm_polygon_surface *surface, const uint32_t *unique,
                          bool *used, tm_surface_defects *defects)
 {
     memset(used, 0, surface->nodes * sizeof *used);
     for (size_t i = 0; i < surface->corners; i++)
-        used[place[surface->item[i]]] = true;
+        used[unique[surface->item[i]]] = true;
     for (size_t v = 0; v < surface->nodes; v++)
-        defects->unused_nodes += place[v] == v && !used[v];
+        defects->unused_nodes += unique[v] == v && !used[v];
 }
 
-/* The edges of a polygon, without those between two corners at one place; sets *repeated
+/* The edges of a polygon, without those between two corners at one point; sets *repeated
  * where there is such an edge. */
 static size_t polygon_edges(const tm_polygon_surface *surface, size_t polygon,
-                            const uint32_t *place, edge *edges, bool *repeated)
+                            const uint32_t *unique, edge *edges, bool *repeated)
 {
     size_t first = surface->start[polygon], last = surface->start[polygon + 1], count = 0;
     for (size_t i = first; i < last; i++) {
-        uint32_t a = place[surface->item[i]];
-        uint32_t b = place[surface->item[i + 1 < last ? i + 1 : first]];
+        uint32_t a = unique[surface->item[i]];
+        uint32_t b = unique[surface->item[i + 1 < last ? i + 1 : first]];
         if (a == b) {
             *repeated = true;
             continue;
@@ -62,7 +62,7 @@ static size_t polygon_edges(const tm_polygon_surface *surface, size_t polygon,
     return count;
 }
 
-static void count_edges(const tm_polygon_surface *surface, const uint32_t *place,
+static void count_edges(const tm_polygon_surface *surface, const uint32_t *unique,
                         edge *edges, tm_surface_defects *defects)
 {
     size_t count = 0;
@@ -70,7 +70,7 @@ static void count_edges(const tm_polygon_surface *surface, const uint32_t *place
         if (surface->start[p + 1] - surface->start[p] < POLYGON_MIN)
             continue;
         bool repeated = false;
-        count += polygon_edges(surface, p, place, edges + count, &repeated);
+        count += polygon_edges(surface, p, unique, edges + count, &repeated);
         defects->repeated_corners += repeated;
     }
     qsort(edges, count, sizeof *edges, compare_edges);
@@ -128,16 +128,16 @@ tm_status tm_surface_find_defects(const tm_polygon_surface *surface,
                                   tm_surface_defects *defects, tm_error *error)
 {
     *defects = (tm_surface_defects){.flat = is_flat(surface)};
-    uint32_t *place = tm_new(surface->nodes, sizeof *place);
+    uint32_t *unique = tm_new(surface->nodes, sizeof *unique);
     bool *used = tm_new(surface->nodes, sizeof *used);
     edge *edges = tm_new(surface->corners, sizeof *edges);
-    bool done =
-        place && used && edges && find_places(surface, place, &defects->duplicate_nodes);
+    bool done = unique && used && edges &&
+                find_unique(surface, unique, &defects->duplicate_nodes);
     if (done) {
-        count_unused(surface, place, used, defects);
-        count_edges(surface, place, edges, defects);
+        count_unused(surface, unique, used, defects);
+        count_edges(surface, unique, edges, defects);
     }
-    free(place);
+    free(unique);
     free(used);
     free(edges);
     return done ? TM_OK : tm_fail_memory(error);

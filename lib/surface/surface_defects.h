@@ -4,12 +4,12 @@
 #ifndef TM_SURFACE_SURFACE_DEFECTS_H
 #define TM_SURFACE_SURFACE_DEFECTS_H
 
-#include "surface_file.h"
+#include "polygon_surface.h"
 
 typedef struct tm_surface_defects {
-    size_t duplicate_nodes;  /* nodes at the place of an earlier one */
-    size_t unused_nodes;     /* places that no polygon has as a corner */
-    size_t repeated_corners; /* polygons with a place twice */
+    size_t duplicate_nodes;  /* nodes where an earlier one is */
+    size_t unused_nodes;     /* points that no polygon has as a corner */
+    size_t repeated_corners; /* polygons with a point twice */
     size_t open_edges;       /* with one polygon only */
     size_t crowded_edges;    /* with more than two polygons */
     uint32_t open_edge[2];   /* the nodes of one of the open edges */

@@ -56,7 +56,8 @@ static bool own_normal(const tm_surface *surface, uint32_t t, double normal[3])
     return true;
 }
 
-/* The triangle beyond the longest edge of t, which has the larger part of the place. */
+/* The triangle beyond the longest edge of t, which has most of the surface that is
+ * there. */
 static uint32_t beyond_longest(const tm_surface *surface, uint32_t t)
 {
     uint32_t best = TM_NONE;

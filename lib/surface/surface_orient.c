@@ -113,18 +113,18 @@ static void add_volumes(const tm_surface *surface, const uint32_t *first, double
 }
 
 /* Whether a shell is inside: an odd number of other shells is around most of it. Where
- * they neither cross nor have holes all places say the same, and a few are asked. Places
+ * they neither cross nor have holes all points say the same, and a few are asked. Points
  * on another shell say nothing. */
 static tm_status find_nesting(const tm_surface *surface, const size_t *size, bool *nested,
                               tm_error *error)
 {
-    const size_t places = 32;
+    const size_t points = 32;
     int *votes = calloc(surface->components, sizeof *votes);
     size_t *met = calloc(surface->components, sizeof *met);
     for (size_t t = 0; t < surface->triangles && votes && met; t++) {
         uint32_t s = surface->shell[t];
         bool on = false;
-        if (met[s]++ % (size[s] / places + 1) != 0)
+        if (met[s]++ % (size[s] / points + 1) != 0)
             continue;
         bool odd =
             tm_surface_ray_is_odd(surface, surface->xyz[surface->triangle[t][0]], s, &on);

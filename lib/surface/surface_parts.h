@@ -14,12 +14,6 @@ tm_status tm_surface_triangulate(tm_surface *surface, const tm_polygon_surface *
 /* Drops the nodes that no triangle has; low and high. */
 tm_status tm_surface_drop_nodes(tm_surface *surface, tm_error *error);
 
-/* Cuts the polygon through k nodes of xyz into at most k - 2 triangles, which turn as it
- * does; returns how many. aside: room for k items. A flat triangle is made only where
- * nothing else is left. O(k²) for convex ones. */
-size_t tm_polygon_triangulate(const double (*xyz)[3], const uint32_t *node, size_t k,
-                              uint32_t *aside, uint32_t (*triangle)[3]);
-
 /* Whether the three points are on a line, exactly. */
 bool tm_is_flat(const double a[3], const double b[3], const double c[3]);
 

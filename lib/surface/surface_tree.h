@@ -29,20 +29,21 @@ typedef struct tm_tree_triangle {
 /* What the triangles of a box are from afar: the first two terms of Barill 2018,
  * equation 8. */
 typedef struct tm_tree_dipole {
-    double centre[3];    /* of area */
-    double normal[3];    /* the sum of the triangles', as long as their areas */
-    double moment[3][3]; /* the sum of the products of places from the centre, normals */
-    double radius2;      /* squared, of a ball around centre with all of them */
+    double centre[3]; /* of area */
+    double normal[3]; /* the sum of the triangles', as long as their areas */
+    double moment[3]
+                 [3]; /* the sum of the products of positions from the centre, normals */
+    double radius2;   /* squared, of a ball around centre with all of them */
 } tm_tree_dipole;
 
 typedef struct tm_surface_tree {
     size_t nodes;
     tm_tree_node *node;
     tm_tree_triangle *triangle;
-    uint32_t *place;        /* [triangles of the surface]: where it is in triangle */
-    tm_tree_dipole *dipole; /* [nodes], or NULL: see surface_winding.c */
+    uint32_t *slot;         /* [triangles of the surface]: where it is in triangle */
+    tm_tree_dipole *dipole; /* [nodes], or NULL: see surface_inside.c */
     unsigned axis;          /* of rays: the one along which the surface is thinnest */
-    double (*curve_box)[6]; /* [nodes of curves], low and high: see surface_curve.c */
+    double (*curve_box)[6]; /* [nodes of curves], low and high: see surface_closest.c */
 } tm_surface_tree;
 
 /* Makes surface->tree, with patches TM_NONE. The boxes are split where the areas of both

@@ -2,6 +2,7 @@
 #include "mesh.h"
 
 #include "../base/array.h"
+#include "../geom/vector.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -107,29 +108,29 @@ tm_status tm_tet_mesh_copy(tm_tet_mesh *to, const tm_tet_mesh *from, tm_error *e
 {
     bool done = true;
     size_t nodes = from->nodes, slots = from->slots;
-    tm_tet_mesh_free(to);
-    *to = *from;
-    to->node_room = nodes;
-    to->slot_room = slots;
-    to->face_room = from->faces;
-    to->edge_room = from->edges;
-    to->xyz = copy(from->xyz, nodes, sizeof *to->xyz, &done);
-    to->node_attribute = copy(from->node_attribute, nodes * from->node_attributes,
-                              sizeof *to->node_attribute, &done);
-    to->node_marker = copy(from->node_marker, nodes, sizeof *to->node_marker, &done);
-    to->tet = copy(from->tet, slots, sizeof *to->tet, &done);
-    to->neighbour = copy(from->neighbour, slots, sizeof *to->neighbour, &done);
-    to->region = copy(from->region, slots * from->regions, sizeof *to->region, &done);
-    to->face = copy(from->face, from->faces, sizeof *to->face, &done);
-    to->edge = copy(from->edge, from->edges, sizeof *to->edge, &done);
-    to->edge_of.slot =
-        copy(from->edge_of.slot, from->edge_of.room, sizeof *to->edge_of.slot, &done);
-    to->locked.slot =
-        copy(from->locked.slot, from->locked.room, sizeof *to->locked.slot, &done);
-    if (done)
-        return TM_OK;
-    tm_tet_mesh_free(to);
-    return tm_fail_memory(error);
+    tm_tet_mesh made = *from;
+    made.node_room = nodes;
+    made.slot_room = slots;
+    made.face_room = from->faces;
+    made.edge_room = from->edges;
+    made.xyz = copy(from->xyz, nodes, sizeof *made.xyz, &done);
+    made.node_attribute = copy(from->node_attribute, nodes * from->node_attributes,
+                               sizeof *made.node_attribute, &done);
+    made.node_marker = copy(from->node_marker, nodes, sizeof *made.node_marker, &done);
+    made.tet = copy(from->tet, slots, sizeof *made.tet, &done);
+    made.neighbour = copy(from->neighbour, slots, sizeof *made.neighbour, &done);
+    made.region = copy(from->region, slots * from->regions, sizeof *made.region, &done);
+    made.face = copy(from->face, from->faces, sizeof *made.face, &done);
+    made.edge = copy(from->edge, from->edges, sizeof *made.edge, &done);
+    made.edge_of.slot =
+        copy(from->edge_of.slot, from->edge_of.room, sizeof *made.edge_of.slot, &done);
+    made.locked.slot =
+        copy(from->locked.slot, from->locked.room, sizeof *made.locked.slot, &done);
+    tm_tet_mesh_free(done ? to : &made);
+    if (!done)
+        return tm_fail_memory(error);
+    *to = made;
+    return TM_OK;
 }
 
 size_t tm_tet_mesh_most(const tm_tet_mesh *mesh, double growth)
@@ -195,4 +196,45 @@ void tm_tet_mesh_forget_edge(tm_tet_mesh *mesh, uint32_t a, uint32_t b)
         return;
     edge->gone = true;
     tm_edge_map_remove(&mesh->edge_of, a, b);
+}
+
+/* Weights of the corners of a tetrahedron that make p. Returns the least one: it is
+ * negative where p is outside, and NaN in a flat tetrahedron. */
+static double weights_of(const tm_tet_mesh *mesh, const uint32_t n[4], const double p[3],
+                         double weight[4])
+{
+    double least = HUGE_VAL, sum = 0;
+    for (int i = 0; i < 4; i++) {
+        const double *x[4] = {mesh->xyz[n[0]], mesh->xyz[n[1]], mesh->xyz[n[2]],
+                              mesh->xyz[n[3]]};
+        x[i] = p;
+        weight[i] = tm_tet_volume(x[0], x[1], x[2], x[3]);
+        sum += weight[i];
+    }
+    for (int i = 0; i < 4; i++) {
+        weight[i] /= sum;
+        least = fmin(least, weight[i]);
+    }
+    return sum > 0 ? least : NAN;
+}
+
+void tm_tet_interpolate(const tm_tet_mesh *mesh, const uint32_t *tet, size_t count,
+                        const double p[3], double *value)
+{
+    size_t width = mesh->node_attributes;
+    const uint32_t *nodes = mesh->tet[tet[0]];
+    double weight[4] = {1, 0, 0, 0}, deepest = -HUGE_VAL;
+    for (size_t i = 0; i < count && width > 0; i++) {
+        double w[4], least = weights_of(mesh, mesh->tet[tet[i]], p, w);
+        if (!(least > deepest))
+            continue;
+        deepest = least;
+        nodes = mesh->tet[tet[i]];
+        memcpy(weight, w, sizeof weight);
+    }
+    for (size_t k = 0; k < width; k++) {
+        value[k] = 0;
+        for (int i = 0; i < 4; i++)
+            value[k] += weight[i] * mesh->node_attribute[nodes[i] * width + k];
+    }
 }

@@ -128,9 +128,15 @@ void tm_tet_mesh_free(tm_tet_mesh *mesh);
  * than a mesh can have, TM_TETS_MAX. */
 size_t tm_tet_mesh_most(const tm_tet_mesh *mesh, double growth);
 
-/* Makes *to, which is a mesh or {0}, the same as *from. TM_ERROR_SYSTEM, with *to empty,
- * where memory is out. O(n). */
+/* Makes *to, which is a mesh or {0}, the same as *from. TM_ERROR_SYSTEM, with *to as it
+ * was, where memory is out. O(n). */
 tm_status tm_tet_mesh_copy(tm_tet_mesh *to, const tm_tet_mesh *from, tm_error *error);
+
+/* Puts the tetrahedra of a mesh without dead slots in the order of a space-filling curve,
+ * so that what is near comes near: for work that goes over the mesh more than once and
+ * whose result does not depend on their numbers. O(n). The mesh cannot be given back
+ * after an error, only freed. */
+tm_status tm_tet_mesh_sort(tm_tet_mesh *mesh, tm_error *error);
 
 /* Verifies every invariant that this header states. TM_ERROR_INTERNAL with the first
  * that does not hold. O(n log n), for tests and self-checks. */
@@ -180,5 +186,11 @@ tm_marked_edge *tm_tet_mesh_edge(const tm_tet_mesh *mesh, uint32_t a, uint32_t b
 
 /* For an edge that is removed from the mesh: .edge forgets it too, if it had it. */
 void tm_tet_mesh_forget_edge(tm_tet_mesh *mesh, uint32_t a, uint32_t b);
+
+/* Attributes of nodes are a field that is linear in each tetrahedron: writes its values
+ * at p to value[0 … node_attributes), by the tetrahedron of the `count` ones in tet that
+ * p is deepest in. O(count). */
+void tm_tet_interpolate(const tm_tet_mesh *mesh, const uint32_t *tet, size_t count,
+                        const double p[3], double *value);
 
 #endif

@@ -1,29 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "mesh_measure.h"
 
-#include "../geom/vector.h"
 #include "../element/tet_four.h"
-#include "star.h"
+
+#include <float.h>
 
 static uint8_t longest_edge(const tm_tet_mesh *mesh, uint32_t t)
 {
-    const uint32_t *n = mesh->tet[t];
-    unsigned longest = 0;
-    double longest_length = -1;
-    uint64_t longest_key = 0;
-    for (unsigned e = 0; e < 6; e++) {
-        uint32_t a = n[tm_edge_corner[e][0]], b = n[tm_edge_corner[e][1]];
-        double length = tm_distance2(mesh->xyz[a], mesh->xyz[b]);
-        if (length < longest_length)
-            continue;
-        uint64_t key = tm_edge_key(a, b);
-        if (length > longest_length || key > longest_key) {
-            longest = e;
-            longest_length = length;
-            longest_key = key;
-        }
-    }
-    return (uint8_t)longest;
+    tm_edge_rank rank;
+    return (uint8_t)tm_longest_edge(mesh, t, &rank);
 }
 
 static double sine2_of(const tm_tet_mesh *mesh, uint32_t t)
@@ -92,4 +77,44 @@ void tm_tet_mesh_measure(const tm_tet_mesh *mesh, const uint32_t *tet, size_t co
         sine2[i] = sine2_of(mesh, tet[i]);
         longest[i] = longest_edge(mesh, tet[i]);
     }
+}
+
+double tm_facet_flatness(const tm_tet_mesh *mesh)
+{
+    const double ulps = 64;
+    double largest = 0;
+    for (uint32_t v = 0; v < mesh->nodes; v++)
+        for (int k = 0; k < 3 && tm_node_lives(mesh, v); k++)
+            largest = fmax(largest, fabs(mesh->xyz[v][k]));
+    return ulps * DBL_EPSILON * largest;
+}
+
+static bool is_near_plane(const double normal[3], const double on_plane[3],
+                          const double p[3], double flatness)
+{
+    double to[3];
+    tm_subtract(to, p, on_plane);
+    return fabs(tm_dot(normal, to)) <= flatness * tm_norm(normal);
+}
+
+static bool is_between_two(const tm_constrained_face *face)
+{
+    return face->side[0] != TM_NONE && face->side[1] != TM_NONE;
+}
+
+bool tm_facet_continues(const tm_tet_mesh *mesh, uint32_t f, uint32_t g, uint32_t a,
+                        uint32_t b, uint32_t c, uint32_t d, double flatness)
+{
+    const tm_constrained_face *p = &mesh->face[f], *q = &mesh->face[g];
+    const tm_marked_edge *edge = tm_tet_mesh_edge(mesh, a, b);
+    if (p->marker != q->marker || p->listed != q->listed ||
+        is_between_two(p) != is_between_two(q) || (edge && edge->marker != 0) ||
+        tm_edge_map_get(&mesh->locked, a, b))
+        return false;
+    double of_c[3], of_d[3];
+    tm_triangle_normal(of_c, mesh->xyz[a], mesh->xyz[b], mesh->xyz[c]);
+    tm_triangle_normal(of_d, mesh->xyz[b], mesh->xyz[a], mesh->xyz[d]);
+    return tm_dot(of_c, of_d) > 0 &&
+           is_near_plane(of_c, mesh->xyz[a], mesh->xyz[d], flatness) &&
+           is_near_plane(of_d, mesh->xyz[a], mesh->xyz[c], flatness);
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "mesh_order.h"
+/* The order of the tetrahedra in memory. */
+#include "mesh.h"
 
 #include "../base/array.h"
 #include "../geom/space_order.h"

@@ -4,9 +4,21 @@
 
 bats_require_minimum_version 1.5.0
 
+# Whether a filter needs p4est, and there is none.
+is_left_out() {
+    needs_p4est "$1" && ! [ -x "$TM_BUILD/bin/$1" ]
+}
+
+# Only these may.
+needs_p4est() {
+    [ "$1" = octree-mesh ] || [ "$1" = octree-repair ]
+}
+
 setup_file() {
     root=$(cd "$BATS_TEST_DIRNAME/../.." && pwd)
-    filters=$(cd "$root/cmd" && for file in *.c; do echo "${file%.c}"; done)
+    filters=$(cd "$root/cmd" && for file in *.c; do
+        is_left_out "${file%.c}" || echo "${file%.c}"
+    done)
     export root filters
 }
 
@@ -276,6 +288,7 @@ examples() {
     command -v tetgen >/dev/null || skip "there is no tetgen"
     command -v gnuplot >/dev/null || skip "there is no gnuplot"
     for page in "$root"/man/*.[157]; do
+        ! is_left_out "$(basename "$page" .1)" || continue
         folder=$(basename "$page").examples
         mkdir "$folder"
         examples "$page" >"$folder/commands"
@@ -288,12 +301,55 @@ examples() {
     done
 }
 
+@test "only the filters that need p4est load it, or what it brings" {
+    command -v ldd >/dev/null || skip "there is no ldd"
+    loads() {
+        run -0 ldd "$TM_BUILD/bin/$1"
+        if needs_p4est "$1"; then
+            [[ "$output" == *libp4est* ]]
+        else
+            run -1 grep -vE 'lib(gmp|z|m|c|asan|ubsan|pthread|gcc_s)\.so|linux-vdso|ld-linux' <<<"$output"
+        fi
+    }
+    for_each_filter loads
+}
+
+@test "without p4est all else is built, and what is left out is said once" {
+    case ${TM_BUILD:?} in */san) skip "the same as without the sanitizers" ;; esac
+    echo '#include <p4est.h>' | cc -E -x c - >/dev/null 2>&1 && skip "p4est needs no mpicc"
+    # Objects are the same with p4est and without it.
+    mkdir build
+    cp -pR "$TM_BUILD/cmd" "$TM_BUILD/lib" "$TM_BUILD/generate" "$TM_BUILD/generated" build
+    without() {
+        run -0 --separate-stderr make -s -C "$root" BUILD="$PWD/build" MPICC=/nonexistent "$@"
+    }
+    without all
+    [ "$output" = "" ]
+    [ "${#stderr_lines[@]}" -eq 1 ]
+    [[ "$stderr" == *"octree-mesh and octree-repair are left out." ]]
+    for file in "$root"/cmd/*.c; do
+        filter=$(basename "$file" .c)
+        if needs_p4est "$filter"; then
+            [ ! -e "build/bin/$filter" ]
+        else
+            # shellcheck disable=SC2046 # words
+            run -0 "build/bin/$filter" $(operands "$filter" "$(input "$filter")")
+        fi
+    done
+    without -n tests
+    [[ "$output" == *tests/test_lepp* ]]
+    [[ "$output" != *tests/test_octree* ]]
+    without clean
+    [ "$output$stderr" = "" ]
+    [ ! -e build ]
+}
+
 @test "make install: filters, man pages, headers and library, and uninstall removes them" {
     variables=(BUILD="$TM_BUILD" PREFIX=/usr DESTDIR="$PWD/to")
     case ${TM_BUILD:?} in
     */san) variables=(SAN=1 BUILD="${TM_BUILD%/san}" "${variables[@]:1}") ;;
     esac
-    run -0 make -s -C "$root" "${variables[@]}" install
+    run -0 --separate-stderr make -s -C "$root" "${variables[@]}" install
     [ "$output" = "" ]
     [ "$(to/usr/bin/tet-stats --list corner.tm)" = "$(tet-stats --list corner.tm)" ]
     for filter in $filters; do
@@ -332,6 +388,7 @@ examples() {
     done
     run -0 make -C "$root/examples" build="$TM_BUILD" to="$PWD/made"
     [[ "$output" != *lepp-improve* ]]
+    ! is_left_out octree-mesh || return 0
     run -0 make -s -C "$root/examples" build="$TM_BUILD" to="$PWD/made" LEVEL=4 mixed
     for model in knot bar gear; do
         [ -s "made/$model.mixed.txt" ]

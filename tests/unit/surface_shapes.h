@@ -3,7 +3,7 @@
 #ifndef TESTS_UNIT_SURFACE_SHAPES_H
 #define TESTS_UNIT_SURFACE_SHAPES_H
 
-#include "../../lib/surface/surface_file.h"
+#include "../../lib/surface/polygon_surface.h"
 #include "../../lib/geom/vector.h"
 
 #include <math.h>

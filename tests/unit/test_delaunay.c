@@ -22,30 +22,55 @@ static bool all_spheres_are_empty(const tm_tet_mesh *mesh)
     return true;
 }
 
+/* The corner of a tetrahedron that is not among the nodes. */
+static uint32_t corner_outside(const uint32_t n[4], const bool *among)
+{
+    uint32_t i = 0;
+    while (i < 3 && among[n[i]])
+        i++;
+    return i;
+}
+
+static void mark(bool *among, const uint32_t n[4], bool is)
+{
+    for (int i = 0; i < 4; i++)
+        among[n[i]] = is;
+}
+
+/* Whether the face between tetrahedra t and u, three of whose nodes are the same, has a
+ * far node inside a sphere and need not stay. `in_t` marks the nodes of t. */
+static bool is_wrong_face(const tm_tet_mesh *mesh, uint32_t t, uint32_t u, bool *in_t)
+{
+    const uint32_t *n = mesh->tet[t], *m = mesh->tet[u];
+    const uint32_t far_u = m[corner_outside(m, in_t)];
+    mark(in_t, n, false);
+    mark(in_t, m, true);
+    const uint32_t at = corner_outside(n, in_t);
+    mark(in_t, m, false);
+    mark(in_t, n, true);
+    return !(mesh->neighbour[t][at] & TM_FACE_BIT) &&
+           (sphere_holds(mesh, n, far_u) || sphere_holds(mesh, m, n[at]));
+}
+
 /* Inner faces with a far node inside a sphere, by all pairs of tetrahedra. */
 static size_t count_wrong_faces(const tm_tet_mesh *mesh)
 {
     size_t wrong = 0;
-    for (uint32_t t = 0; t < mesh->slots; t++)
+    bool *in_t = calloc(mesh->nodes, sizeof *in_t);
+    assert_non_null(in_t);
+    for (uint32_t t = 0; t < mesh->slots; t++) {
+        if (!tm_tet_lives(mesh, t))
+            continue;
+        mark(in_t, mesh->tet[t], true);
         for (uint32_t u = 0; u < t; u++) {
-            uint32_t far_t = TM_NONE, far_u = TM_NONE, common = 0, at = 0;
-            for (uint32_t i = 0; i < 4; i++) {
-                uint32_t in_u = TM_NONE;
-                for (int j = 0; j < 4; j++)
-                    if (mesh->tet[u][j] == mesh->tet[t][i])
-                        in_u = mesh->tet[t][i];
-                common += in_u != TM_NONE;
-                if (in_u == TM_NONE)
-                    far_t = mesh->tet[t][at = i];
-            }
-            for (int j = 0; j < 4; j++)
-                if (tm_tet_corner(mesh, t, mesh->tet[u][j]) == 0 &&
-                    mesh->tet[t][0] != mesh->tet[u][j])
-                    far_u = mesh->tet[u][j];
-            if (common == 3 && !(mesh->neighbour[t][at] & TM_FACE_BIT))
-                wrong += sphere_holds(mesh, mesh->tet[t], far_u) ||
-                         sphere_holds(mesh, mesh->tet[u], far_t);
+            const uint32_t *m = mesh->tet[u];
+            if (tm_tet_lives(mesh, u) &&
+                in_t[m[0]] + in_t[m[1]] + in_t[m[2]] + in_t[m[3]] == 3)
+                wrong += is_wrong_face(mesh, t, u, in_t);
         }
+        mark(in_t, mesh->tet[t], false);
+    }
+    free(in_t);
     return wrong;
 }
 

@@ -2,7 +2,7 @@
 /* The readers of foreign surface formats: one pyramid from each, how formats are told
  * apart, and what they say of files that are wrong. */
 #include "../../lib/surface/surface_defects.h"
-#include "../../lib/format/tetgen_poly.h"
+#include "../../lib/format/tetgen.h"
 #include "format_samples.h"
 
 #include <setjmp.h>

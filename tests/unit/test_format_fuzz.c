@@ -2,9 +2,9 @@
 /* No input makes a reader of foreign formats crash or return a surface that is not one:
  * every beginning of a good file, and good files with bytes changed. */
 #include "../../lib/mesh/cell_faces.h"
-#include "../../lib/format/m3d.h"
+#include "../../lib/format/mesh_format.h"
 #include "../../lib/format/oct.h"
-#include "../../lib/format/tetgen_rows.h"
+#include "../../lib/format/tetgen.h"
 #include "../../lib/format/visf.h"
 #include "format_samples.h"
 #include "random.h"
@@ -116,11 +116,9 @@ static void read_rows(const char *bytes, size_t size, const char *name)
     tm_stream_init(&stream);
     tm_block *block = tm_stream_add(&stream, name);
     assert_non_null(block);
-    tm_scan scan;
     tm_error error = {.status = TM_OK};
     unsigned base = 1;
-    tm_tetgen_begin(&scan, copy, size, "file");
-    if (tm_tetgen_read_rows(block, &scan, &base, NODES, &error) == TM_OK) {
+    if (tm_tetgen_read(block, copy, size, "file", &base, NODES, &error) == TM_OK) {
         size_t integers = block->count * tm_block_integers(block->kind);
         for (size_t i = 0; i < integers; i++)
             assert_true(block->integer[i] < NODES);
@@ -236,7 +234,7 @@ static void read_m3d(const char *bytes, size_t size)
         for (size_t i = 0; i < mix->start[mix->count]; i++)
             assert_true(mix->item[i] < tm_stream_find(&stream, ".node")->count);
         assert_true(materials <= mix->count);
-        assert_int_equal(tm_m3d_write(&text, &stream, TM_MVM, 1, &error),
+        assert_int_equal(tm_mvm_write(&text, &stream, 1, &error),
                          mix->count > 0 ? TM_OK : TM_ERROR_INPUT);
         tm_text_free(&text);
     } else {

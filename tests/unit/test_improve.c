@@ -171,7 +171,7 @@ static void test_every_palette(void **state)
         tm_tet_mesh mesh;
         make_mesh(&mesh, &stream, GRID, 0.9, ops % 2);
         tm_improve_options options = {
-            .angle = 40, .measure = TM_MEASURE_DIHEDRAL, .max_growth = 3, .ops = ops};
+            .angle = 30, .measure = TM_MEASURE_DIHEDRAL, .max_growth = 3, .ops = ops};
         tm_improve_report report = run(&mesh, &options);
         if (ops == 0)
             assert_int_equal(tm_improve_operations(&report), 0);
@@ -188,7 +188,7 @@ static void test_growth(void **state)
         tm_stream stream;
         tm_tet_mesh mesh;
         make_mesh(&mesh, &stream, 4, 0.9, false);
-        tm_improve_options options = {.angle = 45,
+        tm_improve_options options = {.angle = 40,
                                       .measure = TM_MEASURE_DIHEDRAL,
                                       .max_growth = growths[k],
                                       .ops = TM_IMPROVE_ALL_OPS};

@@ -203,12 +203,6 @@ static void test_slope(void **state)
                 assert_near(slope[v][i],
                             (moved(p, v, i, h) - moved(p, v, i, -h)) / (2 * h), 1e-7);
     }
-    const double k = TM_K_WEDGE;
-    const double at[] = {-0.95, -0.5, 0.3, 0.8, 0.99};
-    for (size_t i = 0; i < sizeof at / sizeof *at; i++)
-        assert_near(tm_jens_slope_of(at[i], k),
-                    (tm_jens_of(at[i] + h, k) - tm_jens_of(at[i] - h, k)) / (2 * h),
-                    1e-9);
 }
 
 int main(void)

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whole meshes: what is sharp at turned boxes, and whether the elements of random solids
  * are valid, fit together, and end on the surface. */
+#include "../../lib/element/jens.h"
 #include "../../lib/examine/element_examine.h"
 #include "../../lib/octree/layer/adaptive_refinement.h"
-#include "../../lib/element/jens.h"
+#include "../../lib/octree/repair/repair_stream.h"
 #include "octree_fixture.h"
 
 #include <stdlib.h>
@@ -355,6 +356,41 @@ static void test_resolve(void **state)
     tm_surface_free(&surface);
 }
 
+/* Without an octree in the stream, and with nobody to tell why, nodes get their rules. */
+static void test_repair_without_octree(void **state)
+{
+    (void)state;
+    const double low[3] = {0, 0, 0}, high[3] = {1, 1, 1};
+    static const uint32_t tetrahedron[] = {0, 1, 2, 4}; /* corners of the box */
+    tm_polygon_surface box;
+    tm_surface surface;
+    tm_stream stream;
+    tm_repair_state repair;
+    tm_repair_notes notes;
+    tm_polygon_surface_init(&box);
+    tm_stream_init(&stream);
+    add_box(&box, low, high, false);
+    assert_int_equal(tm_surface_build(&surface, &box, &(tm_surface_options){0}, NULL),
+                     TM_OK);
+    assert_non_null(tm_stream_add(&stream, ".node"));
+    tm_block *mix = tm_stream_add(&stream, ".mix");
+    assert_int_equal(tm_repair_from_stream(&repair, &stream, NULL), TM_ERROR_INPUT);
+    tm_repair_state_free(&repair);
+    tm_block *node = tm_stream_find(&stream, ".node");
+    assert_int_equal(tm_block_allocate(node, surface.nodes, 0, NULL), TM_OK);
+    assert_int_equal(tm_block_allocate(mix, 1, 4, NULL), TM_OK);
+    memcpy(node->real, surface.xyz, surface.nodes * sizeof *surface.xyz);
+    memcpy(mix->item, tetrahedron, sizeof tetrahedron);
+    mix->start[1] = 4;
+    assert_int_equal(tm_repair_from_stream(&repair, &stream, NULL), TM_OK);
+    assert_int_equal(tm_repair_prepare(&repair, &stream, &surface, &notes, NULL), TM_OK);
+    assert_true(notes.no_octree.what[0] != '\0');
+    tm_repair_state_free(&repair);
+    tm_stream_free(&stream);
+    tm_surface_free(&surface);
+    tm_polygon_surface_free(&box);
+}
+
 int main(void)
 {
     random_start();
@@ -362,6 +398,7 @@ int main(void)
         cmocka_unit_test(test_boxes),
         cmocka_unit_test(test_random),
         cmocka_unit_test(test_resolve),
+        cmocka_unit_test(test_repair_without_octree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,7 +6,6 @@
 #include "../../lib/poly/partition.h"
 #include "../../lib/poly/simple.h"
 #include "../../lib/tet/operation/ball.h"
-#include "../../lib/tet/mesh_order.h"
 #include "tet_fixture.h"
 
 enum { GRID = 3, FACES = 400 };

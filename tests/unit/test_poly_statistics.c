@@ -2,7 +2,6 @@
 /* Volumes of kernels against what they must add up to; shapes that are known; statistics
  * of meshes of which all is known. */
 #include "../../lib/geom/kernel.h"
-#include "../../lib/geom/kernel_volume.h"
 #include "../../lib/examine/poly_shape.h"
 #include "../../lib/examine/poly_statistics.h"
 #include "random.h"

@@ -4,7 +4,7 @@
 #include "../../lib/geom/vector.h"
 #include "../../lib/element/tet_slope.h"
 #include "../../lib/tet/operation/shortest_vector.h"
-#include "../../lib/tet/operation/smoothing.h"
+#include "../../lib/tet/operation/cavity_boundary.h"
 #include "random.h"
 
 #include <math.h>

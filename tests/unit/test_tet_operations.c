@@ -17,7 +17,7 @@ static uint32_t random_tet(const tm_tet_mesh *mesh)
     return t;
 }
 
-/* What tm_star.h promises of a star, against a search of all tetrahedra. */
+/* What star.h promises of a star, against a search of all tetrahedra. */
 static void check_star(const tm_tet_mesh *mesh, const tm_star *star)
 {
     size_t around = 0;

@@ -294,7 +294,7 @@ static bool bad_by_dihedrals(const tetrahedron t, double limit)
     tm_tet_dihedrals(t[0], t[1], t[2], t[3], angle);
     bool bad = false;
     for (size_t e = 0; e < TM_TET_EDGES; e++)
-        bad = bad || tm_angle_below(angle[e], limit) ||
+        bad = bad || angle[e] < limit - TM_ANGLE_TOLERANCE ||
               tm_angle_above(angle[e], 180 - limit);
     return bad;
 }

@@ -112,11 +112,11 @@ static int volume(const tm_piece *element)
     for (unsigned f = 0; f < is->faces; f++) {
         unsigned at[4] = {0};
         for (unsigned i = 0; i < is->face[f].k; i++)
-            at[i] = element->place[is->face[f].place[i]];
-        sum += determinant(element->place[0], at[0], at[1], at[2]);
+            at[i] = element->point[is->face[f].point[i]];
+        sum += determinant(element->point[0], at[0], at[1], at[2]);
         if (is->face[f].k == 4) {
             assert_int_equal(determinant(at[0], at[1], at[2], at[3]), 0);
-            sum += determinant(element->place[0], at[0], at[2], at[3]);
+            sum += determinant(element->point[0], at[0], at[2], at[3]);
         }
     }
     return sum;
@@ -154,7 +154,7 @@ static bool opposite(const tm_piece *a, const tm_piece *b)
         return false;
     for (unsigned shift = 0; shift < a->k; shift++) {
         unsigned same = 0;
-        while (same < a->k && a->place[same] == b->place[(shift + a->k - same) % a->k])
+        while (same < a->k && a->point[same] == b->point[(shift + a->k - same) % a->k])
             same++;
         if (same == a->k)
             return true;
@@ -177,20 +177,20 @@ static void put_face(face_list *list, const tm_piece *face)
 static void turn_over(tm_piece *face)
 {
     for (unsigned i = 0; i < face->k / 2U; i++) {
-        const uint8_t other = face->place[face->k - 1U - i];
-        face->place[face->k - 1U - i] = face->place[i];
-        face->place[i] = other;
+        const uint8_t other = face->point[face->k - 1U - i];
+        face->point[face->k - 1U - i] = face->point[i];
+        face->point[i] = other;
     }
 }
 
-/* Whether the leaf has a node at each place that the elements use, and they use each. */
+/* Whether the leaf has a node at each point that the elements use, and they use each. */
 static void check_places(tm_leaf_state state)
 {
     const tm_transition is = tm_transition_of(state);
     uint32_t used = 0;
     for (unsigned p = 0; p < is.pieces; p++) {
         for (unsigned i = 0; i < is.piece[p].k; i++)
-            used |= 1U << is.piece[p].place[i];
+            used |= 1U << is.piece[p].point[i];
     }
     assert_int_equal(used, 0xffU | state << TM_LEAF_EDGE |
                                (uint32_t)is.centre << TM_LEAF_CENTRE);
@@ -206,7 +206,7 @@ static void check_faces(tm_leaf_state state)
         for (unsigned f = 0; f < as->faces; f++) {
             tm_piece face = {.k = as->face[f].k};
             for (unsigned i = 0; i < face.k; i++)
-                face.place[i] = is.piece[p].place[as->face[f].place[i]];
+                face.point[i] = is.piece[p].point[as->face[f].point[i]];
             put_face(&list, &face);
         }
     }
@@ -248,7 +248,7 @@ static double normalised(unsigned at, unsigned p, unsigned q, unsigned r, double
 static double worst_corner(const tm_piece *element, unsigned n, const uint8_t corner[][4],
                            double k)
 {
-    const uint8_t *at = element->place;
+    const uint8_t *at = element->point;
     double worst = 1;
     for (unsigned c = 0; c < n; c++)
         worst = fmin(worst, normalised(at[corner[c][0]], at[corner[c][1]],
@@ -293,7 +293,7 @@ static double star(tm_leaf_state state, unsigned *pieces)
         const unsigned n = tm_face_pieces(state, f, face);
         for (unsigned p = 0; p < n; p++) {
             turn_over(&face[p]);
-            face[p].place[face[p].k++] = TM_LEAF_CENTRE;
+            face[p].point[face[p].k++] = TM_LEAF_CENTRE;
             worst = fmin(worst, quality(&face[p]));
         }
         *pieces += n;
@@ -360,7 +360,7 @@ static int triple_product(const tm_piece *element, const uint8_t edge[3][2])
 {
     int u[3][3];
     for (int i = 0; i < 3; i++)
-        edge_of(element->place[edge[i][0]], element->place[edge[i][1]], u[i]);
+        edge_of(element->point[edge[i][0]], element->point[edge[i][1]], u[i]);
     return u[0][0] * (u[1][1] * u[2][2] - u[1][2] * u[2][1]) -
            u[0][1] * (u[1][0] * u[2][2] - u[1][2] * u[2][0]) +
            u[0][2] * (u[1][0] * u[2][1] - u[1][1] * u[2][0]);
@@ -404,7 +404,7 @@ static tm_leaf_state seen_at(tm_leaf_state state, unsigned f)
     return seen;
 }
 
-/* The place of the leaf beyond face f that is at a place on that face. */
+/* The point of the leaf beyond face f that is at a point on that face. */
 static uint8_t beyond(uint8_t place, unsigned f)
 {
     for (unsigned p = 0; p < TM_LEAF_CENTRE; p++) {
@@ -438,9 +438,9 @@ static void check_neighbours(tm_leaf_state state)
         face_list list = {.n = 0};
         for (unsigned p = 0; p < n; p++) {
             assert_int_equal(here[p].k, alone[p].k);
-            assert_memory_equal(here[p].place, alone[p].place, here[p].k);
+            assert_memory_equal(here[p].point, alone[p].point, here[p].k);
             for (unsigned i = 0; i < here[p].k; i++)
-                here[p].place[i] = beyond(here[p].place[i], f);
+                here[p].point[i] = beyond(here[p].point[i], f);
             put_face(&list, &here[p]);
         }
         assert_int_equal(list.n, n);

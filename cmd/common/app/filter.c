@@ -96,7 +96,7 @@ void filter_fail(const filter *f, const tm_error *error)
         fprintf(stderr, "%s: ", error->block);
     fprintf(stderr, "%s\n", error->what);
     output_files_abandon(f->files);
-    exit(error->status);
+    exit((int)error->status);
 }
 
 double filter_number(const filter *f, const char *option, const char *text, double lo,
@@ -252,24 +252,46 @@ const char *filter_input_name(const filter *f)
     return f->input ? f->input : "<stdin>";
 }
 
-int filter_open_input(const filter *f)
+static int open_file(const filter *f, const char *file)
 {
-    if (!f->input)
-        return STDIN_FILENO;
-    int fd = open(f->input, O_RDONLY | O_CLOEXEC);
+    int fd = open(file, O_RDONLY | O_CLOEXEC);
     if (fd < 0) {
         tm_error error;
-        tm_fail_at(&error, TM_ERROR_SYSTEM, f->input, 0, NULL, "cannot open: %s",
+        tm_fail_at(&error, TM_ERROR_SYSTEM, file, 0, NULL, "cannot open: %s",
                    strerror(errno));
         filter_fail(f, &error);
     }
     return fd;
 }
 
+static int open_input(const filter *f)
+{
+    return f->input ? open_file(f, f->input) : STDIN_FILENO;
+}
+
+static void read_bytes(const filter *f, int fd, const char *name, tm_text *bytes)
+{
+    tm_error error;
+    if (tm_read_all(fd, name, bytes, &error) != TM_OK)
+        filter_fail(f, &error);
+    if (fd != STDIN_FILENO)
+        close(fd);
+}
+
+void filter_read_bytes(const filter *f, tm_text *bytes)
+{
+    read_bytes(f, open_input(f), filter_input_name(f), bytes);
+}
+
+void filter_read_file(const filter *f, const char *file, tm_text *bytes)
+{
+    read_bytes(f, open_file(f, file), file, bytes);
+}
+
 void filter_read(const filter *f, tm_stream *stream)
 {
     tm_error error;
-    int fd = filter_open_input(f);
+    int fd = open_input(f);
     tm_stream_init(stream);
     if (tm_stream_read(stream, fd, filter_input_name(f), &error) != TM_OK)
         filter_fail(f, &error);
@@ -277,7 +299,9 @@ void filter_read(const filter *f, tm_stream *stream)
         close(fd);
 }
 
-int filter_open_output(filter *f)
+/* Standard output, or a temporary file beside -o FILE that filter_finish() renames, so
+ * that FILE is whole or not there. */
+static int open_output(filter *f)
 {
     int fd = STDOUT_FILENO;
     tm_error error;
@@ -304,7 +328,7 @@ void filter_write(filter *f, tm_stream *stream, const char *summary, ...)
         tm_text_free(&line);
     }
     tm_error error;
-    int fd = filter_open_output(f);
+    int fd = open_output(f);
     if (tm_stream_write(stream, fd, f->threads, &error) != TM_OK)
         filter_fail(f, &error);
 }
@@ -324,19 +348,39 @@ static void write_or_fail(const filter *f, int fd, const tm_text *text, const ch
 
 void filter_write_text(filter *f, const tm_text *text)
 {
-    int fd = filter_open_output(f);
+    int fd = open_output(f);
     write_or_fail(f, fd, text, f->output);
 }
 
-void filter_write_json(filter *f, const tm_text *text)
+bool filter_has_report(const filter *f)
 {
-    if (strcmp(f->json, "-") == 0) {
-        write_or_fail(f, f->json_is_output ? STDOUT_FILENO : STDERR_FILENO, text, NULL);
-        return;
-    }
+    return f->output || !f->json || strcmp(f->json, "-") != 0;
+}
+
+tm_json *filter_json_begin(filter *f)
+{
+    f->json_object = (tm_json){.text = &f->report};
+    tm_json_open(&f->json_object, NULL, '{');
+    return &f->json_object;
+}
+
+void filter_json_end(filter *f)
+{
     tm_error error;
-    if (output_file_write(f->json, text, &error) != TM_OK)
+    tm_json_close(&f->json_object, '}');
+    tm_text_string(&f->report, "\n");
+    if (f->json && strcmp(f->json, "-") == 0)
+        write_or_fail(f, f->json_is_output ? STDOUT_FILENO : STDERR_FILENO, &f->report,
+                      NULL);
+    else if (f->json && output_file_write(f->json, &f->report, &error) != TM_OK)
         filter_fail(f, &error);
+    tm_text_free(&f->report);
+}
+
+void filter_write_json(filter *f, const tm_report_row *rows, const void *of)
+{
+    tm_report_json(filter_json_begin(f), rows, of);
+    filter_json_end(f);
 }
 
 int filter_finish(filter *f, int status)

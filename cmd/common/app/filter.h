@@ -11,12 +11,15 @@
  *     filter_write(&filter, &stream, "what was done");
  *     return filter_finish(&filter, 0);
  *
- * Functions that fail print one line on stderr and exit with the status of cli.md. */
+ * Functions that fail print one line on stderr and exit with the status of termesh(7): 2
+ * usage, 3 input, 4 system, 5 internal. */
 #ifndef CMD_COMMON_FILTER_H
 #define CMD_COMMON_FILTER_H
 
 #include "../../../lib/base/error.h"
+#include "../../../lib/base/report.h"
 #include "../../../lib/base/text.h"
+#include "../../../lib/base/version.h"
 #include "../../../lib/stream/stream.h"
 #include "output_files.h"
 
@@ -72,6 +75,8 @@ typedef struct filter {
     unsigned threads;
     tm_text command;     /* the options as given, for the history */
     output_files *files; /* -o FILE in the making */
+    tm_text report;      /* of --json, in the making */
+    tm_json json_object;
 } filter;
 
 void filter_start(filter *f, int argc, char **argv);
@@ -109,12 +114,9 @@ void filter_verbose(const filter *f, const char *format, ...)
 /* The input's name for messages: the file, or "<stdin>". */
 const char *filter_input_name(const filter *f);
 
-/* Opens FILE or standard input; the descriptor is the caller's to close. */
-int filter_open_input(const filter *f);
-
-/* Opens where the output goes: standard output, or a temporary file beside -o FILE
- * that filter_finish() renames, so that FILE is whole or not there. */
-int filter_open_output(filter *f);
+/* All bytes of FILE or standard input, or of another file, which is named. */
+void filter_read_bytes(const filter *f, tm_text *bytes);
+void filter_read_file(const filter *f, const char *file, tm_text *bytes);
 
 /* Reads the stream from FILE or standard input. */
 void filter_read(const filter *f, tm_stream *stream);
@@ -124,9 +126,17 @@ void filter_read(const filter *f, tm_stream *stream);
 void filter_write(filter *f, tm_stream *stream, const char *summary, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Writes a text (a table, JSON) to the output, or JSON to where --json says. */
+/* Writes a text (a table, a foreign file) to the output. */
 void filter_write_text(filter *f, const tm_text *text);
-void filter_write_json(filter *f, const tm_text *text);
+
+/* Whether the report to read is written: not where standard output is for the JSON. */
+bool filter_has_report(const filter *f);
+
+/* An object with these rows of a struct (report.h) to where --json says, if it does. Of
+ * one that has more, the members are put between begin and end. */
+void filter_write_json(filter *f, const tm_report_row *rows, const void *of);
+tm_json *filter_json_begin(filter *f);
+void filter_json_end(filter *f);
 
 /* Ends the program after text on standard output, which must have arrived. */
 _Noreturn void filter_exit_after_text(const filter *f);

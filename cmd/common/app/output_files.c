@@ -2,7 +2,7 @@
 #include "output_files.h"
 
 #include "../../../lib/base/file.h"
-#include "../process/private_signals.h"
+#include "../process/private.h"
 
 #include <errno.h>
 #include <stdbool.h>

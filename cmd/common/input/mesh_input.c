@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "mesh_input.h"
 
-#include "../../../lib/base/json.h"
-#include "../../../lib/format/tetgen_orient.h"
+#include "../../../lib/format/tetgen.h"
 
 #include <stdio.h>
 
@@ -11,6 +10,21 @@ void mesh_input_fail(const filter *f, tm_error *error)
     if (error->status == TM_ERROR_INPUT && !error->file[0])
         snprintf(error->file, sizeof error->file, "%s", filter_input_name(f));
     filter_fail(f, error);
+}
+
+void mesh_input_turn(const filter *f, const tm_stream *stream, tm_block *ele,
+                     const char *what)
+{
+    const tm_turned turned = tm_tetgen_orient(tm_stream_find(stream, ".node"), ele);
+    if (turned.turned > 0)
+        filter_note(f, "%s: %zu of %zu tetrahedra were left-handed and %s",
+                    filter_input_name(f), turned.turned, ele->count, what);
+}
+
+size_t mesh_rows(const tm_stream *stream, const char *name)
+{
+    const tm_block *block = tm_stream_find(stream, name);
+    return block ? block->count : 0;
 }
 
 tm_content mesh_input_read(const filter *f, tm_stream *stream)
@@ -22,13 +36,8 @@ tm_content mesh_input_read(const filter *f, tm_stream *stream)
         tm_fail(&error, TM_ERROR_INPUT, "has no nodes (.node)");
         mesh_input_fail(f, &error);
     }
-    if (content == TM_CONTENT_TETRAHEDRA) {
-        tm_block *ele = tm_content_block(stream, content);
-        const tm_turned turned = tm_tetgen_orient(tm_stream_find(stream, ".node"), ele);
-        if (turned.turned > 0)
-            filter_note(f, "%s: %zu of %zu tetrahedra were left-handed and are turned",
-                        filter_input_name(f), turned.turned, ele->count);
-    }
+    if (content == TM_CONTENT_TETRAHEDRA)
+        mesh_input_turn(f, stream, tm_content_block(stream, content), "are turned");
     return content;
 }
 
@@ -41,22 +50,39 @@ void mesh_input_report(filter *f, const tm_stream *stream)
     if (!f->json)
         return;
     const tm_content content = tm_content_of(stream);
-    const tm_block *node = tm_stream_find(stream, ".node");
-    tm_text text = {0};
-    tm_json json = {.text = &text};
-    tm_json_open(&json, NULL, '{');
-    tm_json_integer(&json, "nodes", node ? (int64_t)node->count : 0);
+    tm_json *json = filter_json_begin(f);
+    tm_json_integer(json, "nodes", (int64_t)mesh_rows(stream, ".node"));
     if (content > TM_CONTENT_POINTS)
-        tm_json_integer(&json, key[content],
+        tm_json_integer(json, key[content],
                         (int64_t)tm_content_block(stream, content)->count);
-    tm_json_close(&json, '}');
-    tm_text_string(&text, "\n");
-    filter_write_json(f, &text);
-    tm_text_free(&text);
+    filter_json_end(f);
 }
 
-int mesh_export(int argc, char **argv, const char *name, const char *purpose,
-                mesh_writer *write)
+void mesh_rows_json(tm_json *json, const tm_stream *stream)
+{
+    static const char *const row[][2] = {
+        {"nodes", ".node"}, {"tets", ".ele"}, {"faces", ".face"}, {"edges", ".edge"}};
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++)
+        tm_json_integer(json, row[i][0], (int64_t)mesh_rows(stream, row[i][1]));
+}
+
+int mesh_write(filter *f, mesh_writer *write)
+{
+    tm_stream stream;
+    tm_text text = {0};
+    tm_error error;
+    mesh_input_read(f, &stream);
+    if (write(&text, &stream, f->threads, &error) != TM_OK)
+        mesh_input_fail(f, &error);
+    filter_write_text(f, &text);
+    mesh_input_report(f, &stream);
+    tm_text_free(&text);
+    tm_stream_free(&stream);
+    return filter_finish(f, 0);
+}
+
+/* A filter with the shared options alone, up to its operands. */
+static filter start(int argc, char **argv, const char *name, const char *purpose)
 {
     static const struct option long_options[] = {FILTER_OPTIONS};
     filter f = {.name = name,
@@ -69,16 +95,46 @@ int mesh_export(int argc, char **argv, const char *name, const char *purpose,
     while (filter_option(&f) != -1)
         ;
     filter_operands(&f);
+    return f;
+}
 
+int mesh_export(int argc, char **argv, const char *name, const char *purpose,
+                mesh_writer *write)
+{
+    filter f = start(argc, argv, name, purpose);
+    return mesh_write(&f, write);
+}
+
+static void write_imported(filter *f, tm_stream *stream)
+{
+    const size_t nodes = mesh_rows(stream, ".node");
+    if (tm_stream_find(stream, ".cell"))
+        filter_write(f, stream, "%zu nodes, %zu facets, %zu polyhedra", nodes,
+                     mesh_rows(stream, ".facet"), mesh_rows(stream, ".cell"));
+    else if (tm_stream_find(stream, ".mix"))
+        filter_write(f, stream, "%zu nodes, %zu elements", nodes,
+                     mesh_rows(stream, ".mix"));
+    else if (tm_stream_find(stream, ".face"))
+        filter_write(f, stream, "%zu nodes, %zu triangles", nodes,
+                     mesh_rows(stream, ".face"));
+    else
+        filter_write(f, stream, "%zu nodes", nodes);
+}
+
+int mesh_import(int argc, char **argv, const char *name, const char *purpose,
+                mesh_reader *read)
+{
+    filter f = start(argc, argv, name, purpose);
     tm_stream stream;
-    tm_text text = {0};
+    tm_text bytes = {0};
     tm_error error;
-    mesh_input_read(&f, &stream);
-    if (write(&text, &stream, f.threads, &error) != TM_OK)
-        mesh_input_fail(&f, &error);
-    filter_write_text(&f, &text);
+    tm_stream_init(&stream);
+    filter_read_bytes(&f, &bytes);
+    if (read(&f, &stream, &bytes, &error) != TM_OK)
+        filter_fail(&f, &error);
+    tm_text_free(&bytes);
+    write_imported(&f, &stream);
     mesh_input_report(&f, &stream);
-    tm_text_free(&text);
     tm_stream_free(&stream);
     return filter_finish(&f, 0);
 }

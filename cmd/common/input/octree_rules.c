@@ -1,14 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "octree_rules.h"
 
-#include "../../../lib/base/file.h"
 #include "surface_input.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
 static void add(const filter *f, octree_rules *rules, const tm_octree_rule *rule)
 {
@@ -28,20 +23,6 @@ static unsigned level_of(const filter *f, const char *option, const char *text)
     return (unsigned)filter_integer(f, option, text, 0, TM_OCTREE_LEVEL_MAX);
 }
 
-static tm_text read_file(const filter *f, const char *file)
-{
-    tm_error error;
-    tm_text bytes = {0};
-    const int fd = open(file, O_RDONLY | O_CLOEXEC);
-    if (fd < 0)
-        tm_fail_at(&error, TM_ERROR_SYSTEM, file, 0, NULL, "cannot open: %s",
-                   strerror(errno));
-    if (fd < 0 || tm_read_all(fd, file, &bytes, &error) != TM_OK)
-        filter_fail(f, &error);
-    close(fd);
-    return bytes;
-}
-
 /* One item more at the end of an array of `count`. */
 static void *append(const filter *f, void *array, size_t count, size_t size)
 {
@@ -57,7 +38,8 @@ static void *append(const filter *f, void *array, size_t count, size_t size)
 static void add_boxes(const filter *f, octree_rules *rules, const char *file)
 {
     tm_error error;
-    tm_text bytes = read_file(f, file);
+    tm_text bytes = {0};
+    filter_read_file(f, file, &bytes);
     if (tm_reg_read(&rules->rules, bytes.byte, bytes.size, file, &error) != TM_OK)
         filter_fail(f, &error);
     tm_text_free(&bytes);
@@ -66,7 +48,8 @@ static void add_boxes(const filter *f, octree_rules *rules, const char *file)
 static void add_leaves(const filter *f, octree_rules *rules, const char *file)
 {
     tm_error error;
-    tm_text bytes = read_file(f, file);
+    tm_text bytes = {0};
+    filter_read_file(f, file, &bytes);
     tm_octree_rule rule = {.kind = TM_RULE_LEAVES};
     uint32_t *leaf;
     if (tm_ref_read(&leaf, &rule.leaves, bytes.byte, bytes.size, file, &error) != TM_OK)

@@ -3,8 +3,7 @@
 
 #include "../../../lib/base/file.h"
 #include "../../../lib/mesh/cell_faces.h"
-#include "../../../lib/format/tetgen_poly.h"
-#include "import_file.h"
+#include "../../../lib/format/tetgen.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -30,11 +29,11 @@ static tm_status read_nodes_beside(const filter *f, tm_polygon_surface *surface,
                           "looked for when the file is named as an operand");
     tm_text file = {0}, bytes = {0};
     node_file(f->input, &file);
-    tm_status status =
-        file.failed ? tm_fail_memory(error) : import_file(file.byte, &bytes, error);
-    if (status == TM_OK)
-        status =
-            tm_plc_read(surface, TM_PLC_NODE, bytes.byte, bytes.size, file.byte, error);
+    if (file.failed)
+        return tm_fail_memory(error);
+    filter_read_file(f, file.byte, &bytes);
+    const tm_status status =
+        tm_plc_read(surface, TM_PLC_NODE, bytes.byte, bytes.size, file.byte, error);
     tm_text_free(&file);
     tm_text_free(&bytes);
     return status;
@@ -117,20 +116,16 @@ tm_format surface_input_read(const filter *f, tm_polygon_surface *surface,
     const char *name = filter_input_name(f);
     tm_polygon_surface_init(surface);
     tm_stream_init(stream);
-    int fd = filter_open_input(f);
-    tm_status status = tm_read_all(fd, name, &bytes, &error);
-    if (f->input)
-        close(fd);
-    tm_format format = TM_FORMAT_UNKNOWN;
-    if (status == TM_OK)
-        format = tm_format_of(bytes.byte, bytes.size, name);
+    filter_read_bytes(f, &bytes);
+    tm_status status = TM_OK;
+    const tm_format format = tm_format_of(bytes.byte, bytes.size, name);
     if (format == TM_FORMAT_STREAM) {
         status = read_stream(&bytes, name, stream, &error);
         if (status == TM_OK) {
             rename_surface(stream);
             status = surface_input_of_stream(stream, name, surface, &error);
         }
-    } else if (status == TM_OK) {
+    } else {
         if ((format == TM_FORMAT_POLY || format == TM_FORMAT_SMESH) &&
             tm_plc_lacks_nodes(bytes.byte, bytes.size))
             status = read_nodes_beside(f, surface, &error);

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "jens_plot.h"
-
-#include "plot_style.h"
+#include "plot.h"
 
 #include <math.h>
 
@@ -10,17 +8,6 @@
 enum { BARS = TM_JENS_BUCKETS - 1, SHADE = 1, LEGEND = 1 };
 
 static const double width = 1.0 / BARS;
-
-static double percent(size_t part, size_t whole)
-{
-    const double hundred = 100;
-    return whole == 0 ? 0 : hundred * (double)part / (double)whole;
-}
-
-static size_t bar(const tm_jens_histogram *h, size_t i)
-{
-    return i == 0 ? h->bucket[0] + h->bucket[1] : h->bucket[i + 1];
-}
 
 /* How many elements there are, and the worst. */
 static void legend(tm_text *script, const tm_jens_statistics *s)
@@ -39,33 +26,26 @@ static void legend(tm_text *script, const tm_jens_statistics *s)
 static void panel(tm_text *script, const char *name, const tm_jens_histogram *h,
                   size_t elements)
 {
-    const double headroom = 1.06;
-    const double of_nothing = 10;
-    double highest = percent(h->negative, elements);
-    tm_text_format(script, "$%s << END\n0 0\n", name);
-    for (size_t i = 0; i < BARS; i++) {
-        const double share = percent(bar(h, i), elements);
-        highest = fmax(highest, share);
-        tm_text_format(script, "%.4g %.6g\n%.4g %.6g\n", width * (double)i, share,
-                       width * (double)(i + 1), share);
-    }
+    const double negative = tm_percent(h->negative, elements);
+    size_t bar[BARS];
+    for (size_t i = 0; i < BARS; i++)
+        bar[i] = i == 0 ? h->bucket[0] + h->bucket[1] : h->bucket[i + 1];
+    plot_outline(script, name, bar, BARS, width, elements);
+    tm_text_format(script,
+                   "$%s_negative << END\n%g 0\n%g %.6g\n0 %.6g\n0 0\nEND\n"
+                   "set xrange [%g:1]\nset yrange [0:%.6g]\n"
+                   "set object %d rectangle from graph 0, graph 0 to first 0, graph 1 "
+                   "behind fillcolor rgb bad fillstyle solid noborder\nplot ",
+                   name, -width, -width, negative, negative, -width,
+                   plot_axis(fmax(negative, plot_highest(bar, BARS, elements))), SHADE);
+    plot_blue(script, name);
     tm_text_format(
-        script, "1 0\nEND\n$%s_negative << END\n%g 0\n%g %.6g\n0 %.6g\n0 0\nEND\n", name,
-        -width, -width, percent(h->negative, elements), percent(h->negative, elements));
-    tm_text_format(
-        script,
-        "set xrange [%g:1]\nset yrange [0:%.6g]\n"
-        "set object %d rectangle from graph 0, graph 0 to first 0, graph 1 "
-        "behind fillcolor rgb bad fillstyle solid noborder\n"
-        "plot $%s with filledcurves y=0 fillstyle transparent solid 0.3 noborder "
-        "linecolor rgb blue, $%s with lines linewidth 2 linecolor rgb blue, "
-        "$%s_negative with lines linewidth 2 linecolor rgb '#c0392b'\n",
-        -width, headroom * (highest > 0 ? highest : of_nothing), SHADE, name, name, name);
+        script, ", $%s_negative with lines linewidth 2 linecolor rgb '#c0392b'\n", name);
 }
 
 void jens_plot_script(tm_text *script, const tm_jens_statistics *statistics)
 {
-    tm_text_string(script, plot_settings);
+    plot_begin(script);
     legend(script, statistics);
     tm_text_string(script, "set lmargin screen 0.07\n"
                            "set rmargin screen 0.485\n"
@@ -79,5 +59,5 @@ void jens_plot_script(tm_text *script, const tm_jens_statistics *statistics)
                            "set rmargin screen 0.985\n"
                            "set xlabel 'scaled Jacobian, negative ones left of 0'\n");
     panel(script, "scaled", &statistics->scaled_jacobian, statistics->elements);
-    tm_text_string(script, "unset multiplot\n");
+    plot_end(script);
 }

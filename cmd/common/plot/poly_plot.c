@@ -1,34 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "poly_plot.h"
-
-#include "plot_style.h"
-
-#include "../../../lib/examine/tet_statistics.h"
+#include "plot.h"
 
 #include <math.h>
-
-/* Where the axis of shares ends, but for headroom; of nothing, so that there is one. */
-static double highest_share(const size_t *histogram, size_t bins, size_t whole)
-{
-    const double of_nothing = 10;
-    double highest = 0;
-    for (size_t i = 0; i < bins; i++)
-        highest = fmax(highest, tm_percent(histogram[i], whole));
-    return highest > 0 ? highest : of_nothing;
-}
-
-/* A data block: the outline of a histogram whose bins are `width` wide. */
-static void outline(tm_text *script, const char *name, const size_t *histogram,
-                    size_t bins, double width, size_t whole)
-{
-    tm_text_format(script, "$%s << END\n0 0\n", name);
-    for (size_t i = 0; i < bins; i++) {
-        const double share = tm_percent(histogram[i], whole);
-        tm_text_format(script, "%.4g %.6g\n%.4g %.6g\n", width * (double)i, share,
-                       width * (double)(i + 1), share);
-    }
-    tm_text_format(script, "%.4g 0\nEND\n", width * (double)bins);
-}
 
 static void legend(tm_text *script, const tm_poly_statistics *s)
 {
@@ -56,15 +29,14 @@ static void count_tics(tm_text *script, size_t bins)
 
 static void count_panel(tm_text *script, const tm_poly_statistics *s)
 {
-    const double headroom = 1.06;
     const size_t face_bins = tm_count_bins(s->faces), tet_bins = tm_count_bins(s->tets);
     size_t bins = face_bins > tet_bins ? face_bins : tet_bins;
     bins = bins > 0 ? bins : 1;
     const double highest =
-        fmax(highest_share(s->faces, bins, s->size.elements),
-             tet_bins > 0 ? highest_share(s->tets, bins, s->size.elements) : 0);
-    outline(script, "tetrahedra", s->tets, bins, 1, s->size.elements);
-    outline(script, "facets", s->faces, bins, 1, s->size.elements);
+        fmax(plot_highest(s->faces, bins, s->size.elements),
+             tet_bins > 0 ? plot_highest(s->tets, bins, s->size.elements) : 0);
+    plot_outline(script, "tetrahedra", s->tets, bins, 1, s->size.elements);
+    plot_outline(script, "facets", s->faces, bins, 1, s->size.elements);
     count_tics(script, bins);
     tm_text_format(script,
                    "set lmargin screen 0.08\n"
@@ -73,22 +45,19 @@ static void count_panel(tm_text *script, const tm_poly_statistics *s)
                    "set xlabel 'facets%s per polyhedron'\n"
                    "set xrange [0:%zu]\nset yrange [0:%.6g]\nplot ",
                    tet_bins > 0 ? " (blue) and tetrahedra (grey)" : "", bins,
-                   headroom * highest);
+                   plot_axis(highest));
     if (tet_bins > 0)
         tm_text_string(script,
                        "$tetrahedra with filledcurves y=0 fillstyle solid 1 noborder "
                        "linecolor rgb grey, ");
-    tm_text_string(script,
-                   "$facets with filledcurves y=0 fillstyle transparent solid 0.3 "
-                   "noborder linecolor rgb blue, "
-                   "$facets with lines linewidth 2 linecolor rgb blue\n");
+    plot_blue(script, "facets");
+    tm_text_string(script, "\n");
 }
 
 static void kernel_panel(tm_text *script, const tm_poly_statistics *s)
 {
-    const double headroom = 1.06;
-    outline(script, "kernel", s->kernel_ratios, TM_KERNEL_RATIO_BINS,
-            1.0 / TM_KERNEL_RATIO_BINS, s->size.elements);
+    plot_outline(script, "kernel", s->kernel_ratios, TM_KERNEL_RATIO_BINS,
+                 1.0 / TM_KERNEL_RATIO_BINS, s->size.elements);
     tm_text_format(script,
                    "unset label\n"
                    "set lmargin screen 0.57\n"
@@ -96,18 +65,18 @@ static void kernel_panel(tm_text *script, const tm_poly_statistics *s)
                    "set xtics 0.2\n"
                    "set xlabel 'volume of the kernel / volume (1 for convex ones)'\n"
                    "set xrange [0:1]\nset yrange [0:%.6g]\n"
-                   "plot $kernel with filledcurves y=0 fillstyle transparent solid 0.3 "
-                   "noborder linecolor rgb blue, "
-                   "$kernel with lines linewidth 2 linecolor rgb blue\n",
-                   headroom * highest_share(s->kernel_ratios, TM_KERNEL_RATIO_BINS,
-                                            s->size.elements));
+                   "plot ",
+                   plot_axis(plot_highest(s->kernel_ratios, TM_KERNEL_RATIO_BINS,
+                                          s->size.elements)));
+    plot_blue(script, "kernel");
+    tm_text_string(script, "\n");
 }
 
 void poly_plot_script(tm_text *script, const tm_poly_statistics *statistics)
 {
-    tm_text_string(script, plot_settings);
+    plot_begin(script);
     legend(script, statistics);
     count_panel(script, statistics);
     kernel_panel(script, statistics);
-    tm_text_string(script, "unset multiplot\n");
+    plot_end(script);
 }

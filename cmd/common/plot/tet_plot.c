@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tet_plot.h"
-
-#include "plot_style.h"
+#include "plot.h"
 
 #include "../../../lib/element/tet_quality.h"
 
@@ -20,33 +18,6 @@ typedef struct panel {
     size_t whole_before;
     size_t whole_after;
 } panel;
-
-/* Where the share's axis ends, but for headroom; of empty meshes, so that there is one.
- */
-static double highest_share(const panel *p)
-{
-    const double of_nothing = 10;
-    double highest = 0;
-    for (size_t i = 0; i < p->bins; i++) {
-        highest = fmax(highest, tm_percent(p->after[i], p->whole_after));
-        if (p->before)
-            highest = fmax(highest, tm_percent(p->before[i], p->whole_before));
-    }
-    return highest > 0 ? highest : of_nothing;
-}
-
-/* A data block: the outline of the histogram, from the left end to the right one. */
-static void outline(tm_text *script, const char *name, const char *when,
-                    const size_t *histogram, const panel *p, size_t whole)
-{
-    tm_text_format(script, "$%s_%s << END\n0 0\n", name, when);
-    for (size_t i = 0; i < p->bins; i++) {
-        const double share = tm_percent(histogram[i], whole);
-        tm_text_format(script, "%.4g %.6g\n%.4g %.6g\n", p->width * (double)i, share,
-                       p->width * (double)(i + 1), share);
-    }
-    tm_text_format(script, "%.4g 0\nEND\n", p->width * (double)p->bins);
-}
 
 /* An entry of the legend: how large a mesh is, and how bad. */
 static void legend(tm_text *script, int object, double x, const char *colour,
@@ -78,22 +49,25 @@ static void legends(tm_text *script, const tm_tet_statistics *before,
 
 static void plot(tm_text *script, const panel *p)
 {
-    const double headroom = 1.06;
-    outline(script, p->name, "after", p->after, p, p->whole_after);
-    if (p->before)
-        outline(script, p->name, "before", p->before, p, p->whole_before);
+    enum { NAME = 32 };
+    char after[NAME], before[NAME];
+    double highest = plot_highest(p->after, p->bins, p->whole_after);
+    snprintf(after, sizeof after, "%s_after", p->name);
+    snprintf(before, sizeof before, "%s_before", p->name);
+    plot_outline(script, after, p->after, p->bins, p->width, p->whole_after);
+    if (p->before) {
+        plot_outline(script, before, p->before, p->bins, p->width, p->whole_before);
+        highest = fmax(highest, plot_highest(p->before, p->bins, p->whole_before));
+    }
     tm_text_format(script, "set xrange [0:%g]\nset yrange [0:%.6g]\nplot ",
-                   p->width * (double)p->bins, headroom * highest_share(p));
+                   p->width * (double)p->bins, plot_axis(highest));
     if (p->before)
         tm_text_format(script,
-                       "$%s_before with filledcurves y=0 fillstyle solid 1 noborder "
+                       "$%s with filledcurves y=0 fillstyle solid 1 noborder "
                        "linecolor rgb grey, ",
-                       p->name);
-    tm_text_format(script,
-                   "$%s_after with filledcurves y=0 fillstyle transparent solid 0.3 "
-                   "noborder linecolor rgb blue, "
-                   "$%s_after with lines linewidth 2 linecolor rgb blue\n",
-                   p->name, p->name);
+                       before);
+    plot_blue(script, after);
+    tm_text_string(script, "\n");
 }
 
 static void dihedral_panel(tm_text *script, const tm_tet_statistics *before,
@@ -146,9 +120,9 @@ static void volume_quality_panel(tm_text *script, const tm_tet_statistics *befor
 void tet_plot_script(tm_text *script, const tm_tet_statistics *before,
                      const tm_tet_statistics *statistics)
 {
-    tm_text_string(script, plot_settings);
+    plot_begin(script);
     legends(script, before, statistics);
     dihedral_panel(script, before, statistics);
     volume_quality_panel(script, before, statistics);
-    tm_text_string(script, "unset multiplot\n");
+    plot_end(script);
 }

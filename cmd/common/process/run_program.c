@@ -2,7 +2,7 @@
 #include "run_program.h"
 
 #include "../../../lib/base/file.h"
-#include "private_signals.h"
+#include "private.h"
 
 #include <errno.h>
 #include <fcntl.h>

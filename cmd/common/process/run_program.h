@@ -15,7 +15,7 @@ typedef struct program_end {
 
 /* Runs argv[0], which is looked up in PATH, without a shell and with nothing on stdin.
  * It has a terminal on stdout, so that what it says is not lost in a buffer when it
- * aborts. While signals are held (private_signals.h) they kill it and its children. */
+ * aborts. While signals are held (private.h) they kill it and its children. */
 tm_status run_program(char *const argv[], program_end *end, tm_error *error);
 
 #endif

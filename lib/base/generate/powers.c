@@ -5,10 +5,11 @@
  * with 2^127 <= significand < 2^128, and the lower 64 of them not all ones, so that the
  * writer can add 1. */
 #include <errno.h>
-#include <gmp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include <gmp.h> /* declares gmp_printf() after stdio.h only */
 
 /* 10^19 · 10^-343 is less than half the smallest double, so the reader needs no power
  * below -342; the writer needs 10^324 for the smallest double, 5·10^-324. */

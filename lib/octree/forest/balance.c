@@ -25,10 +25,10 @@ typedef struct inflation {
 static size_t tree_of(const tm_brick *brick, size_t tree, const uint32_t anchor[3])
 {
     for (;; tree++) {
-        const uint32_t *place = brick->root[tree];
-        if (anchor[0] >> TM_OCTREE_FINEST == place[0] &&
-            anchor[1] >> TM_OCTREE_FINEST == place[1] &&
-            anchor[2] >> TM_OCTREE_FINEST == place[2])
+        const uint32_t *root = brick->root[tree];
+        if (anchor[0] >> TM_OCTREE_FINEST == root[0] &&
+            anchor[1] >> TM_OCTREE_FINEST == root[1] &&
+            anchor[2] >> TM_OCTREE_FINEST == root[2])
             return tree;
     }
 }

@@ -24,6 +24,32 @@ static double cube_side(const double extent[3])
                 (1 + 2 * beyond) * longest / TM_BRICK_LONGEST);
 }
 
+static void make_trees(void *user)
+{
+    tm_brick *brick = user;
+    brick->trees = p8est_connectivity_new_brick(
+        (int)brick->roots[0], (int)brick->roots[1], (int)brick->roots[2], 0, 0, 0);
+}
+
+/* Of a brick with low, side and roots the rest. */
+static tm_status fill(tm_brick *brick, tm_error *error)
+{
+    brick->count = (size_t)brick->roots[0] * brick->roots[1] * brick->roots[2];
+    if (brick->count > roots_max)
+        return tm_fail(error, TM_ERROR_INPUT, "%zu root cubes are too many (%zu)",
+                       brick->count, roots_max);
+    brick->root = tm_new(brick->count, sizeof *brick->root);
+    const tm_status status =
+        brick->root ? tm_p4est_call(make_trees, brick, error) : tm_fail_memory(error);
+    /* The first vertex of a tree is its low corner. */
+    for (size_t r = 0; r < brick->count && status == TM_OK; r++) {
+        const size_t v = (size_t)brick->trees->tree_to_vertex[P8EST_CHILDREN * r];
+        for (size_t i = 0; i < 3; i++)
+            brick->root[r][i] = (uint32_t)brick->trees->vertices[3 * v + i];
+    }
+    return status;
+}
+
 tm_status tm_brick_over(tm_brick *brick, const double low[3], const double high[3],
                         tm_error *error)
 {
@@ -43,32 +69,7 @@ tm_status tm_brick_over(tm_brick *brick, const double low[3], const double high[
             return tm_fail(error, TM_ERROR_INPUT,
                            "the surface is too far from the origin for its size");
     }
-    return tm_brick_fill(brick, error);
-}
-
-static void make_trees(void *user)
-{
-    tm_brick *brick = user;
-    brick->trees = p8est_connectivity_new_brick(
-        (int)brick->roots[0], (int)brick->roots[1], (int)brick->roots[2], 0, 0, 0);
-}
-
-tm_status tm_brick_fill(tm_brick *brick, tm_error *error)
-{
-    brick->count = (size_t)brick->roots[0] * brick->roots[1] * brick->roots[2];
-    if (brick->count > roots_max)
-        return tm_fail(error, TM_ERROR_INPUT, "%zu root cubes are too many (%zu)",
-                       brick->count, roots_max);
-    brick->root = tm_new(brick->count, sizeof *brick->root);
-    const tm_status status =
-        brick->root ? tm_p4est_call(make_trees, brick, error) : tm_fail_memory(error);
-    /* The first vertex of a tree is its low corner. */
-    for (size_t r = 0; r < brick->count && status == TM_OK; r++) {
-        const size_t v = (size_t)brick->trees->tree_to_vertex[P8EST_CHILDREN * r];
-        for (size_t i = 0; i < 3; i++)
-            brick->root[r][i] = (uint32_t)brick->trees->vertices[3 * v + i];
-    }
-    return status;
+    return fill(brick, error);
 }
 
 tm_status tm_brick_of(tm_brick *brick, const tm_octree *octree, tm_error *error)
@@ -76,7 +77,7 @@ tm_status tm_brick_of(tm_brick *brick, const tm_octree *octree, tm_error *error)
     *brick = (tm_brick){.low = {octree->low[0], octree->low[1], octree->low[2]},
                         .side = octree->side,
                         .roots = {octree->roots[0], octree->roots[1], octree->roots[2]}};
-    return tm_brick_fill(brick, error);
+    return fill(brick, error);
 }
 
 void tm_brick_free(tm_brick *brick)

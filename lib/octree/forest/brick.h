@@ -16,7 +16,7 @@ typedef struct tm_brick {
     double side;
     uint32_t roots[3];   /* along each axis */
     size_t count;        /* their product */
-    uint32_t (*root)[3]; /* [count]: each one's place, in Z order, which is p4est's */
+    uint32_t (*root)[3]; /* [count]: each one's position, in Z order, which is p4est's */
     struct p8est_connectivity *trees; /* p4est's brick */
 } tm_brick;
 
@@ -28,9 +28,6 @@ typedef struct tm_brick {
  * from the origin that its size is lost in rounding. */
 tm_status tm_brick_over(tm_brick *brick, const double low[3], const double high[3],
                         tm_error *error);
-
-/* A brick with low, side and roots given; fills the rest. TM_ERROR_SYSTEM: memory. */
-tm_status tm_brick_fill(tm_brick *brick, tm_error *error);
 
 /* The brick that an octree is on. */
 tm_status tm_brick_of(tm_brick *brick, const tm_octree *octree, tm_error *error);

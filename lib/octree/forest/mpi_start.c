@@ -5,8 +5,17 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-/* What Open MPI does not free is no leak of ours. */
+/* gcc and clang say it in different ways. */
 #ifdef __SANITIZE_ADDRESS__
+#define FINDS_LEAKS
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define FINDS_LEAKS
+#endif
+#endif
+
+/* What Open MPI does not free is no leak of ours. */
+#ifdef FINDS_LEAKS
 #include <sanitizer/lsan_interface.h>
 
 const char *__lsan_default_suppressions(void)
@@ -22,7 +31,7 @@ const char *__lsan_default_options(void)
 
 static void ignore_leaks(bool ignore)
 {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef FINDS_LEAKS
     if (ignore)
         __lsan_disable();
     else
@@ -30,32 +39,6 @@ static void ignore_leaks(bool ignore)
 #else
     (void)ignore;
 #endif
-}
-
-/* What a launcher sets: Open MPI's, PMIx's, PMI's. */
-static bool launched(void)
-{
-    static const char *const sign[] = {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"};
-    for (size_t i = 0; i < sizeof sign / sizeof *sign; i++)
-        if (getenv(sign[i]))
-            return true;
-    return false;
-}
-
-/* Components of Open MPI, and of hwloc, which it asks for the machine's devices, as
- * variables of the environment; those that the user has set stay. */
-static bool choose_components(void)
-{
-    static const char *const choice[][2] = {{"OMPI_MCA_pml", "ob1"},
-                                            {"OMPI_MCA_btl", "self"},
-                                            {"OMPI_MCA_ess_singleton_isolated", "1"},
-                                            {"OMPI_MCA_orte_create_session_dirs", "0"},
-                                            {"OMPI_MCA_shmem", "mmap"},
-                                            {"HWLOC_COMPONENTS", "no_os,stop"}};
-    for (size_t i = 0; i < sizeof choice / sizeof *choice; i++)
-        if (setenv(choice[i][0], choice[i][1], 0) != 0)
-            return false;
-    return true;
 }
 
 static void finish(void)
@@ -75,8 +58,6 @@ tm_status tm_mpi_start(tm_error *error)
     MPI_Initialized(&started);
     if (started)
         return TM_OK;
-    if (!launched() && !choose_components())
-        return tm_fail_memory(error);
     int got = 0;
     ignore_leaks(true);
     const int status = MPI_Init_thread(NULL, NULL, MPI_THREAD_FUNNELED, &got);
@@ -85,7 +66,8 @@ tm_status tm_mpi_start(tm_error *error)
         return tm_fail(error, TM_ERROR_SYSTEM, "MPI does not start");
     if (atexit(finish) != 0)
         return tm_fail_memory(error);
-    sc_init(MPI_COMM_SELF, 0, 0, NULL, SC_LP_SILENT);
-    p4est_init(NULL, SC_LP_SILENT);
+    sc_set_log_defaults(NULL, NULL, SC_LP_SILENT); /* but during p4est_call.c */
+    sc_init(MPI_COMM_SELF, 0, 0, NULL, SC_LP_DEFAULT);
+    p4est_init(NULL, SC_LP_DEFAULT);
     return TM_OK;
 }

@@ -11,7 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The 27 places of a leaf where a node can be. Corner c is at bit 0 of c in x, bit 1 in
+/* The 27 points of a leaf where a node can be. Corner c is at bit 0 of c in x, bit 1 in
  * y, bit 2 in z. Edges 0 … 3 run along x, 4 … 7 along y, 8 … 11 along z, and of each four
  * the first is at the low side of both other axes, the second at the high side of the
  * lower axis. Faces are -x +x -y +y -z +z. (The numbering of p4est.) */
@@ -53,7 +53,7 @@ typedef struct tm_octree {
                                         faces, TM_NONE where there is none */
 } tm_octree;
 
-/* The place of a point of the grid. */
+/* The coordinates of a point of the grid. */
 static inline void tm_octree_point(const tm_octree *octree, const uint32_t grid[3],
                                    double xyz[3])
 {
@@ -104,7 +104,7 @@ tm_status tm_octree_copy(tm_octree *copy, const tm_octree *octree, tm_error *err
 void tm_octree_free(tm_octree *octree);
 
 /* Whether the octree is what it should be, by means other than those that made it: leaves
- * in order that fill each root, balanced; every corner of a leaf a node at its place and
+ * in order that fill each root, balanced; every corner of a leaf a node where it is and
  * no other nodes, none twice, numbered as leaves have them; nodes in the middle of an
  * edge or a face just where something is smaller; `crossed` as tm_surface_meets_box()
  * says (where surface is not NULL). TM_ERROR_INTERNAL says what is wrong and where. For

@@ -13,7 +13,7 @@
  * TM_ERROR_INPUT: a level over the limit, a leaf that is not there, a surface without
  * extent, more leaves or nodes than 32-bit ids have; TM_ERROR_SYSTEM: memory.
  * Starts MPI where it is not yet (mpi_start.h). O(leaves + triangles × roots), see
- * descent.h. */
+ * descent.c. */
 tm_status tm_octree_build(tm_octree *octree, const tm_surface *surface,
                           const tm_octree_rule *rule, size_t rules, tm_error *error);
 

@@ -14,10 +14,10 @@ typedef struct checker {
     tm_error *error;
 } checker;
 
-static void place_of(const tm_leaf *leaf, int place, uint32_t point[3])
+static void position_of(const tm_leaf *leaf, int which, uint32_t point[3])
 {
     for (int k = 0; k < 3; k++)
-        point[k] = leaf->anchor[k] + ((uint32_t)tm_leaf_point[place][k]
+        point[k] = leaf->anchor[k] + ((uint32_t)tm_leaf_point[which][k]
                                       << (TM_OCTREE_LEVEL_MAX - leaf->level));
 }
 
@@ -74,18 +74,18 @@ static tm_status check_order(const checker *c)
     return TM_OK;
 }
 
-/* Nodes of a leaf: all that can be at its places are, and have their numbers in order. As
- * there are as many nodes as corners of leaves, no two are at one place. */
-static tm_status check_places(const checker *c, size_t i, uint32_t *next)
+/* Nodes of a leaf: all that can be at its points are, and have their numbers in order. As
+ * there are as many nodes as corners of leaves, no two are at one point. */
+static tm_status check_points(const checker *c, size_t i, uint32_t *next)
 {
     const tm_octree *o = c->octree;
     const tm_leaf *leaf = &o->leaf[i];
-    for (int place = 0; place < TM_LEAF_NODES; place++) {
+    for (int p = 0; p < TM_LEAF_NODES; p++) {
         uint32_t point[3];
-        place_of(leaf, place, point);
-        const uint32_t v = o->node[i][place];
+        position_of(leaf, p, point);
+        const uint32_t v = o->node[i][p];
         if (v == TM_NONE) {
-            if (place < TM_LEAF_EDGE || is_node(c, point))
+            if (p < TM_LEAF_EDGE || is_node(c, point))
                 return wrong(c, i, "lacks a node");
             continue;
         }
@@ -140,7 +140,7 @@ static tm_status check_leaves(const checker *c, const tm_surface *surface)
     uint32_t next = 0;
     tm_status status = TM_OK;
     for (size_t i = 0; i < c->octree->leaves && status == TM_OK; i++) {
-        status = check_places(c, i, &next);
+        status = check_points(c, i, &next);
         if (status == TM_OK)
             status = check_balance(c, i);
         if (status == TM_OK && surface)
@@ -161,7 +161,7 @@ static tm_status collect_corners(checker *c)
     size_t count = 0;
     for (size_t i = 0; i < o->leaves; i++)
         for (int corner = 0; corner < TM_LEAF_EDGE; corner++, count++)
-            place_of(&o->leaf[i], corner, c->point[count]);
+            position_of(&o->leaf[i], corner, c->point[count]);
     qsort(c->point, count, sizeof *c->point, compare);
     for (size_t p = 0; p < count; p++)
         if (p == 0 || compare(c->point[p], c->point[c->points - 1]) != 0)

@@ -10,17 +10,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A leaf with its place in the order of an octree. */
-typedef struct placed {
-    uint64_t root; /* its place among all roots, in Z order */
+/* A leaf with its rank in the order of an octree. */
+typedef struct ranked {
+    uint64_t root; /* its rank among all roots, in Z order */
     uint64_t cell; /* of its low corner, in the root */
     uint32_t number;
-} placed;
+} ranked;
 
 static int compare(const void *a, const void *b)
 {
-    const placed *p = a;
-    const placed *q = b;
+    const ranked *p = a;
+    const ranked *q = b;
     if (p->root != q->root)
         return p->root < q->root ? -1 : 1;
     if (p->cell != q->cell)
@@ -52,9 +52,9 @@ static tm_status check_leaf(const tm_octree *octree, const tm_leaf *leaf, size_t
     return TM_OK;
 }
 
-/* Places of all leaves, and whether they are in order. */
-static tm_status place(const tm_octree *octree, const tm_leaf *leaf, size_t leaves,
-                       placed *at, bool *in_order, tm_error *error)
+/* Ranks of all leaves, and whether they are in order. */
+static tm_status rank(const tm_octree *octree, const tm_leaf *leaf, size_t leaves,
+                      ranked *at, bool *in_order, tm_error *error)
 {
     *in_order = true;
     for (size_t i = 0; i < leaves; i++) {
@@ -65,7 +65,7 @@ static tm_status place(const tm_octree *octree, const tm_leaf *leaf, size_t leav
         const uint32_t root[3] = {anchor[0] >> TM_OCTREE_FINEST,
                                   anchor[1] >> TM_OCTREE_FINEST,
                                   anchor[2] >> TM_OCTREE_FINEST};
-        at[i] = (placed){tm_z_index(root), tm_z_index(anchor), (uint32_t)i};
+        at[i] = (ranked){tm_z_index(root), tm_z_index(anchor), (uint32_t)i};
         *in_order &= i == 0 || compare(&at[i - 1], &at[i]) < 0;
     }
     return TM_OK;
@@ -73,7 +73,7 @@ static tm_status place(const tm_octree *octree, const tm_leaf *leaf, size_t leav
 
 /* Sorted leaves fill the brick where each begins at the cell behind the one before it. */
 static tm_status check_full(const tm_octree *octree, const tm_leaf *leaf,
-                            const placed *at, size_t leaves, tm_error *error)
+                            const ranked *at, size_t leaves, tm_error *error)
 {
     uint64_t next = 0, full = 0;
     for (size_t i = 0; i < leaves; i++) {
@@ -97,11 +97,10 @@ static tm_status sort(tm_leaf_list *list, const tm_octree *octree, const tm_leaf
                       size_t leaves, uint32_t *order, tm_error *error)
 {
     bool in_order = true;
-    placed *at = tm_new(leaves, sizeof *at);
+    ranked *at = tm_new(leaves, sizeof *at);
     list->leaf = tm_new(leaves, sizeof *list->leaf);
-    tm_status status = at && list->leaf
-                           ? place(octree, leaf, leaves, at, &in_order, error)
-                           : tm_fail_memory(error);
+    tm_status status = at && list->leaf ? rank(octree, leaf, leaves, at, &in_order, error)
+                                        : tm_fail_memory(error);
     if (status == TM_OK && !in_order)
         qsort(at, leaves, sizeof *at, compare);
     if (status == TM_OK)

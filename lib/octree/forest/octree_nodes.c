@@ -29,12 +29,12 @@ static uint32_t child(const walk *w, uint32_t cell, unsigned corner)
     return cell == TM_NONE ? TM_NONE : w->child[cell][corner];
 }
 
-static void put(walk *w, uint32_t leaf, unsigned place, uint32_t id)
+static void put(walk *w, uint32_t leaf, unsigned point, uint32_t id)
 {
-    w->node[leaf & ~TM_LEAF_BIT][place] = id;
+    w->node[leaf & ~TM_LEAF_BIT][point] = id;
 }
 
-/* The cell at place i around a corner (as corners of a cube are numbered) has it as its
+/* Cell i around a corner (as corners of a cube are numbered) has it as its
  * corner 7 - i, and so has the leaf in it that touches it. */
 static void walk_corner(walk *w, const uint32_t cell[CHILDREN])
 {
@@ -53,7 +53,7 @@ static void walk_corner(walk *w, const uint32_t cell[CHILDREN])
     w->nodes += !outside;
 }
 
-/* The corner of a cell at place i around an edge at which the edge begins. */
+/* The corner of cell i around an edge at which the edge begins. */
 static unsigned edge_corner(unsigned axis, unsigned i)
 {
     return (i & 1 ? 0 : 1U << other_axes[axis][0]) |
@@ -75,7 +75,7 @@ static void number_edge(walk *w, unsigned axis, const uint32_t cell[AROUND_EDGE]
     }
 }
 
-/* An edge along axis with four cells around it: place i is at the high side of the lower
+/* An edge along axis with four cells around it: number i is at the high side of the lower
  * of the other axes where bit 0 is set, of the upper where bit 1 is. */
 static void walk_edge(walk *w, unsigned axis, const uint32_t cell[AROUND_EDGE])
 {
@@ -159,8 +159,8 @@ static void walk_cell(walk *w, uint32_t cell)
     if (cell == TM_NONE)
         return;
     if (tm_is_leaf(cell)) {
-        for (unsigned place = TM_LEAF_EDGE; place < TM_LEAF_NODES; place++)
-            put(w, cell, place, TM_NONE);
+        for (unsigned point = TM_LEAF_EDGE; point < TM_LEAF_NODES; point++)
+            put(w, cell, point, TM_NONE);
         return;
     }
     const uint32_t *around = w->child[cell];
@@ -203,14 +203,14 @@ static void order_nodes(tm_octree *octree, uint32_t *number)
     for (size_t i = 0; i < octree->leaves; i++) {
         const tm_leaf *leaf = &octree->leaf[i];
         const unsigned half = TM_OCTREE_LEVEL_MAX - leaf->level;
-        for (int place = 0; place < TM_LEAF_NODES; place++) {
-            uint32_t *v = &octree->node[i][place];
+        for (int p = 0; p < TM_LEAF_NODES; p++) {
+            uint32_t *v = &octree->node[i][p];
             if (*v == TM_NONE)
                 continue;
             if (number[*v] == TM_NONE) {
                 for (int k = 0; k < AXES; k++)
                     octree->grid[next][k] =
-                        leaf->anchor[k] + ((uint32_t)tm_leaf_point[place][k] << half);
+                        leaf->anchor[k] + ((uint32_t)tm_leaf_point[p][k] << half);
                 number[*v] = next++;
             }
             *v = number[*v];
@@ -218,7 +218,7 @@ static void order_nodes(tm_octree *octree, uint32_t *number)
     }
 }
 
-static tm_status place_nodes(tm_octree *octree, tm_error *error)
+static tm_status set_grid(tm_octree *octree, tm_error *error)
 {
     uint32_t *number = tm_new(octree->nodes, sizeof *number);
     octree->grid = tm_new(octree->nodes, sizeof *octree->grid);
@@ -252,5 +252,5 @@ tm_status tm_octree_number_nodes(tm_octree *octree, tm_error *error)
     if (w.nodes >= TM_NONE)
         return tm_fail(error, TM_ERROR_INPUT, "the octree has more than %u nodes",
                        TM_NONE);
-    return place_nodes(octree, error);
+    return set_grid(octree, error);
 }

@@ -13,11 +13,12 @@
 enum { LEVEL, ANCHOR, FIRST = 4, PAST, OCTANT_COLUMNS };
 enum { SIDE = 3, ROOT_COLUMNS };
 
-/* The low corner of the root at that place of the brick. */
-static void root_corner(const tm_octree *octree, const uint32_t place[3], double low[3])
+/* The low corner of the root at that position in the brick. */
+static void root_corner(const tm_octree *octree, const uint32_t position[3],
+                        double low[3])
 {
     for (int i = 0; i < 3; i++)
-        low[i] = octree->low[i] + octree->side * (double)place[i];
+        low[i] = octree->low[i] + octree->side * (double)position[i];
 }
 
 static unsigned deepest_level(const tm_octree *octree)
@@ -29,8 +30,8 @@ static unsigned deepest_level(const tm_octree *octree)
     return deepest;
 }
 
-static tm_status give_roots(const tm_octree *octree, unsigned finest, tm_stream *stream,
-                            tm_error *error)
+static tm_status roots_to_stream(const tm_octree *octree, unsigned finest,
+                                 tm_stream *stream, tm_error *error)
 {
     tm_brick brick;
     tm_status status = tm_brick_of(&brick, octree, error);
@@ -52,7 +53,7 @@ tm_status tm_octree_to_stream(const tm_octree *octree, const uint32_t *element,
                               tm_stream *stream, tm_error *error)
 {
     const unsigned finest = deepest_level(octree);
-    tm_status status = give_roots(octree, finest, stream, error);
+    tm_status status = roots_to_stream(octree, finest, stream, error);
     if (status != TM_OK)
         return status;
     tm_block *block = tm_stream_add(stream, ".octant");
@@ -76,29 +77,29 @@ static tm_status wrong_root(size_t row, unsigned base, const char *what, tm_erro
                       what);
 }
 
-/* Takes the place of a root in the brick. */
-static tm_status place_root(const tm_octree *octree, const tm_block *block, size_t row,
-                            unsigned base, uint8_t *taken, tm_error *error)
+/* Takes the position of a root in the brick. */
+static tm_status take_position(const tm_octree *octree, const tm_block *block, size_t row,
+                               unsigned base, uint8_t *taken, tm_error *error)
 {
     const double *given = block->real + row * ROOT_COLUMNS;
     if (given[SIDE] != octree->side || block->integer[row] != block->integer[0])
         return wrong_root(row, base, "has another size or finest level than the first",
                           error);
-    uint32_t place[3];
+    uint32_t position[3];
     double low[3];
     for (int i = 0; i < 3; i++) {
         const double steps = round((given[i] - octree->low[i]) / octree->side);
         if (!(steps < octree->roots[i]))
             return wrong_root(row, base, "is outside the brick that so many make", error);
-        place[i] = (uint32_t)steps;
+        position[i] = (uint32_t)steps;
     }
-    root_corner(octree, place, low);
+    root_corner(octree, position, low);
     for (int i = 0; i < 3; i++)
         if (!(fabs(low[i] - given[i]) <= 1e-9 * octree->side))
             return wrong_root(row, base, "is not in line with the others", error);
     uint8_t *here =
-        &taken[((size_t)place[2] * octree->roots[1] + place[1]) * octree->roots[0] +
-               place[0]];
+        &taken[((size_t)position[2] * octree->roots[1] + position[1]) * octree->roots[0] +
+               position[0]];
     if (*here)
         return wrong_root(row, base, "is there twice", error);
     *here = 1;
@@ -152,7 +153,7 @@ static tm_status read_roots(tm_octree *octree, const tm_block *block, unsigned b
     if (!taken)
         return tm_fail_memory(error);
     for (size_t r = 0; r < block->count && status == TM_OK; r++)
-        status = place_root(octree, block, r, base, taken, error);
+        status = take_position(octree, block, r, base, taken, error);
     free(taken);
     return status;
 }

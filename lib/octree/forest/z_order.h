@@ -12,7 +12,7 @@ static inline uint64_t tm_z_cells(unsigned level)
     return (uint64_t)1 << (3 * (TM_OCTREE_FINEST - level));
 }
 
-/* The place in its root of the cell at a point of the grid. */
+/* The position in its root of the cell at a point of the grid. */
 static inline uint64_t tm_z_index(const uint32_t point[3])
 {
     uint64_t index = 0;

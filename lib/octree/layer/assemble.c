@@ -115,7 +115,7 @@ static void add_star(assembler *a, size_t l, const uint32_t at[TM_LEAF_NODES])
         for (unsigned i = 0; i < pieces; i++) {
             uint32_t node[4];
             for (unsigned c = 0; c < piece[i].k; c++)
-                node[c] = at[piece[i].place[c]];
+                node[c] = at[piece[i].point[c]];
             unsigned cut = TM_UNCUT;
             if (is_next(a, next, l, TM_FACE_PIECES * f + i))
                 cut = a->boundary->cut[next++];
@@ -157,7 +157,7 @@ static void add_leaf(assembler *a, size_t l)
     for (unsigned i = 0; i < t.pieces; i++) {
         uint32_t node[MOST_NODES];
         for (unsigned c = 0; c < t.piece[i].k; c++)
-            node[c] = at[t.piece[i].place[c]];
+            node[c] = at[t.piece[i].point[c]];
         add_element(a, t.piece[i].k, node);
     }
 }
@@ -215,7 +215,7 @@ static void add_all(assembler *a, bool counting)
 }
 
 /* All nodes on the lattice. */
-static void place_nodes(const assembler *a)
+static void set_points(const assembler *a)
 {
     const tm_assembly *to = a->assembly;
     double(*xyz)[3] = to->mesh.xyz;
@@ -246,7 +246,7 @@ tm_status tm_assemble(tm_assembly *assembly, const tm_octree *octree,
         add_all(&a, false);
         assembly->first[octree->leaves] = (uint32_t)a.elements;
         assembly->mesh.start[a.elements] = a.items;
-        place_nodes(&a);
+        set_points(&a);
     }
     return status;
 }

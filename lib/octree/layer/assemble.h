@@ -28,9 +28,10 @@ typedef struct tm_assembly {
     uint32_t *grid_node;   /* [core]: of the octree */
 } tm_assembly;
 
-/* Makes them. All nodes are on the lattice, where the layer has no height yet; for places
- * at which every element is valid see lattice_points.h. TM_ERROR_SYSTEM where memory or
- * 32-bit ids are out. *assembly is to be freed, after an error too. O(leaves + elements).
+/* Makes them. All nodes are on the lattice, where the layer has no height yet; for
+ * positions at which every element is valid see lattice_points.c. TM_ERROR_SYSTEM where
+ * memory or 32-bit ids are out. *assembly is to be freed, after an error too. O(leaves +
+ * elements).
  */
 tm_status tm_assemble(tm_assembly *assembly, const tm_octree *octree,
                       const tm_interior *interior, const tm_interior_boundary *boundary,

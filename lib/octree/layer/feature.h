@@ -24,7 +24,7 @@ typedef struct tm_feature {
  * path of edges and diagonals of the interior boundary that runs along it, from corner to
  * corner or around, and quadrilaterals are cut where it takes their diagonal; last, what
  * the paths enclose gets the patch that most of its nodes are closest to. at[s] is the
- * place of the surface that is closest to interior boundary node s. Patches on both sides
+ * point of the surface that is closest to interior boundary node s. Patches on both sides
  * of a lost curve become one in the surface. TM_ERROR_SYSTEM where memory is out.
  * *feature is to be freed, after an error too. O(n log n). */
 tm_status tm_feature_find(tm_feature *feature, tm_interior_boundary *boundary,

@@ -38,7 +38,7 @@ typedef struct tm_path_visit {
     uint32_t from;
     bool done;
     double cost;
-    double param;     /* length along the curve up to the closest place */
+    double param;     /* length along the curve up to the closest point */
     double distance2; /* from it */
 } tm_path_visit;
 

@@ -182,8 +182,8 @@ static tm_status measure(tm_path_finder *p, tm_error *error)
     return TM_OK;
 }
 
-/* The place of the curve at a length along it. */
-static void place_on_curve(const tm_path_finder *p, double param, double xyz[3])
+/* The point of the curve at a length along it. */
+static void point_on_curve(const tm_path_finder *p, double param, double xyz[3])
 {
     const uint32_t *node = p->surface->curve_node + p->surface->curve_start[p->curve];
     size_t i = 0;
@@ -198,11 +198,11 @@ static void place_on_curve(const tm_path_finder *p, double param, double xyz[3])
         xyz[j] = a[j] + t * (b[j] - a[j]);
 }
 
-/* The free node closest to a place of the curve; TM_NONE where it is out of reach. */
+/* The free node closest to a point of the curve; TM_NONE where it is out of reach. */
 static uint32_t node_near(const tm_path_finder *p, double param)
 {
     double point[3];
-    place_on_curve(p, param, point);
+    point_on_curve(p, param, point);
     double distance2;
     const uint32_t s =
         tm_boundary_cells_nearest(p->cells, point, p->feature->kind, &distance2);
@@ -210,7 +210,7 @@ static uint32_t node_near(const tm_path_finder *p, double param)
     return distance2 <= reach * reach ? s : TM_NONE;
 }
 
-/* Where the path must pass: its ends, and two or three places more where it comes back to
+/* Where the path must pass: its ends, and two or three points more where it comes back to
  * where it began. False where a node is missing. */
 static bool find_stops(tm_path_finder *p, uint32_t from, uint32_t to)
 {

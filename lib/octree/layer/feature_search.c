@@ -41,7 +41,7 @@ static tm_path_step pop(tm_path_finder *p)
     return top;
 }
 
-/* The node's closest place on the curve. */
+/* The node's closest point on the curve. */
 static tm_path_visit *look_at(tm_path_finder *p, uint32_t s)
 {
     tm_path_visit *v = &p->visit[s];
@@ -61,7 +61,7 @@ static tm_path_visit *look_at(tm_path_finder *p, uint32_t s)
     return v;
 }
 
-/* The distance of two places along the curve; around it where it is closed. */
+/* The distance of two points along the curve; around it where it is closed. */
 static double along_curve(const tm_path_finder *p, double a, double b)
 {
     const double d = fabs(a - b);

@@ -77,11 +77,11 @@ static tm_status find_sizes(tm_interior_boundary *boundary, const tm_octree *oct
     return TM_OK;
 }
 
-/* Whether nothing is chosen beyond face f of a leaf at its corner `place`. */
-static bool is_open(const finder *find, size_t leaf, unsigned f, unsigned place)
+/* Whether nothing is chosen beyond face f of a leaf at its corner. */
+static bool is_open(const finder *find, size_t leaf, unsigned f, unsigned corner)
 {
-    const uint32_t node = find->octree->node[leaf][place];
-    const unsigned own = tm_point_octants[place];
+    const uint32_t node = find->octree->node[leaf][corner];
+    const unsigned own = tm_point_octants[corner];
     const unsigned step = 1u << f / 2;
     const unsigned beyond = f % 2 ? own << step : own >> step;
     return !(find->interior->mask[node] & beyond);
@@ -92,8 +92,8 @@ static bool is_open(const finder *find, size_t leaf, unsigned f, unsigned place)
 static unsigned corner_of(unsigned f, const tm_piece *piece)
 {
     for (unsigned i = 0; i < piece->k; i++)
-        if (piece->place[i] < TM_LEAF_EDGE)
-            return piece->place[i];
+        if (piece->point[i] < TM_LEAF_EDGE)
+            return piece->point[i];
     return f % 2 ? 1u << f / 2 : 0;
 }
 
@@ -120,7 +120,7 @@ static tm_status add_face(finder *find, size_t leaf, const tm_piece *piece,
     uint32_t *corner = boundary->face[boundary->faces];
     corner[3] = TM_NONE;
     for (unsigned i = 0; i < piece->k; i++)
-        corner[i] = find->boundary_node[find->octree->node[leaf][piece->place[i]]];
+        corner[i] = find->boundary_node[find->octree->node[leaf][piece->point[i]]];
     boundary->leaf[boundary->faces++] = (uint32_t)leaf;
     return TM_OK;
 }

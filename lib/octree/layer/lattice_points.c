@@ -21,7 +21,7 @@ static uint8_t *find_levels(const tm_octree *octree, const tm_interior *interior
     return level;
 }
 
-static void place_middles(const tm_assembly *a, const tm_octree *octree, double (*xyz)[3])
+static void set_middles(const tm_assembly *a, const tm_octree *octree, double (*xyz)[3])
 {
     for (size_t m = 0; m < a->middles; m++) {
         const uint32_t *corner = octree->node[a->middle_leaf[m]];
@@ -56,7 +56,7 @@ tm_status tm_lattice_points(const tm_assembly *assembly, const tm_octree *octree
         for (int i = 0; i < 3; i++)
             inner[i] -= step * outward[i];
     }
-    place_middles(assembly, octree, xyz);
+    set_middles(assembly, octree, xyz);
     free(level);
     return TM_OK;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The eight octants around a node, as bits, and the places of a leaf in terms of them. */
+/* The eight octants around a node, as bits, and the points of a leaf in terms of them. */
 #ifndef TM_LAYER_OCTANT_MASK_H
 #define TM_LAYER_OCTANT_MASK_H
 
@@ -12,7 +12,7 @@ typedef uint8_t tm_octant_mask;
 
 enum { TM_ALL_OCTANTS = 0xff };
 
-/* The octants that a leaf fills around the node at each of its places (octree.h): one at
+/* The octants that a leaf fills around the node at each of its points (octree.h): one at
  * a corner, two at the middle of an edge, four at the centre of a face. */
 extern const tm_octant_mask tm_point_octants[26];
 

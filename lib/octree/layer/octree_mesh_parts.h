@@ -15,7 +15,7 @@
 /* Each piece of the interior boundary belongs to the shell of the surface that most of it
  * is closest to; of those of a shell only the largest stays. The leaves inside of another
  * one are taken away, or, where it is the interior boundary of a hollow, added. at[s] is
- * the place of the surface that is closest to interior boundary node s. *changed says
+ * the point of the surface that is closest to interior boundary node s. *changed says
  * whether any leaf was; then the interior boundary must be found again. TM_ERROR_SYSTEM
  * where memory is out. O(leaves). */
 tm_status tm_spurious_components_remove(tm_interior *interior, const tm_octree *octree,
@@ -37,7 +37,7 @@ tm_status tm_project_layer(tm_assembly *assembly, const tm_interior_boundary *bo
                            const tm_feature *feature, const tm_surface *surface,
                            tm_surface_point *at, tm_error *error);
 
-/* lattice_points.c: places of a mesh's nodes at which every element is valid. */
+/* lattice_points.c: positions of a mesh's nodes at which every element is valid. */
 
 /* Fills xyz[assembly->mesh.nodes]: nodes of the lattice as they are on it, but the inner
  * ones 0.08 of the side of the smallest leaf around them inside: outward of the interior

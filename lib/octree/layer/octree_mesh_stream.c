@@ -7,16 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* An empty block. */
-static tm_block *add(tm_stream *stream, const char *name, tm_error *error)
-{
-    tm_block *block = tm_stream_add(stream, name);
-    if (!block)
-        tm_fail_memory(error);
-    return block;
-}
-
-static tm_status give_nodes(tm_octree_mesh *m, tm_stream *stream, tm_error *error)
+static tm_status nodes_to_stream(tm_octree_mesh *m, tm_stream *stream, tm_error *error)
 {
     tm_block *node = tm_stream_find(stream, ".node");
     const tm_assembly *a = &m->assembly;
@@ -24,8 +15,8 @@ static tm_status give_nodes(tm_octree_mesh *m, tm_stream *stream, tm_error *erro
     if (!node->attribute)
         return tm_fail_memory(error);
     for (size_t s = 0; s < m->boundary.nodes; s++) {
-        const double place = TM_NODE_ON_PATCH + m->feature.kind[s];
-        node->attribute[a->outer + s] = m->off_surface[s] ? -place : place;
+        const double class = TM_NODE_ON_PATCH + m->feature.kind[s];
+        node->attribute[a->outer + s] = m->off_surface[s] ? -class : class;
     }
     node->count = a->mesh.nodes;
     node->attributes = 1;
@@ -34,12 +25,12 @@ static tm_status give_nodes(tm_octree_mesh *m, tm_stream *stream, tm_error *erro
     return TM_OK;
 }
 
-static tm_status give_elements(tm_octree_mesh *m, const tm_octree *octree, bool levels,
-                               tm_stream *stream, tm_error *error)
+static tm_status elements_to_stream(tm_octree_mesh *m, const tm_octree *octree,
+                                    bool levels, tm_stream *stream, tm_error *error)
 {
-    tm_block *mix = add(stream, ".mix", error);
+    tm_block *mix = tm_stream_add(stream, ".mix");
     if (!mix)
-        return error->status;
+        return tm_fail_memory(error);
     tm_mixed_mesh *mesh = &m->assembly.mesh;
     mix->count = mesh->elements;
     if (levels) {
@@ -91,8 +82,8 @@ static int32_t marker_of(const tm_octree_mesh *m, const tm_surface *surface, siz
 }
 
 /* The boundary faces as rows of .facet: a quadrilateral, a triangle, or two triangles. */
-static tm_status give_facets(const tm_octree_mesh *m, const tm_surface *surface,
-                             tm_stream *stream, tm_error *error)
+static tm_status facets_to_stream(const tm_octree_mesh *m, const tm_surface *surface,
+                                  tm_stream *stream, tm_error *error)
 {
     const tm_interior_boundary *boundary = &m->boundary;
     size_t facets = 0, items = 0;
@@ -101,9 +92,9 @@ static tm_status give_facets(const tm_octree_mesh *m, const tm_surface *surface,
         facets += cut ? 2 : 1;
         items += cut ? 2 * 3 : tm_boundary_face_corners(boundary, f);
     }
-    tm_block *facet = add(stream, ".facet", error);
+    tm_block *facet = tm_stream_add(stream, ".facet");
     if (!facet)
-        return error->status;
+        return tm_fail_memory(error);
     facet->markers = true;
     const tm_status status = tm_block_allocate(facet, facets, items, error);
     if (status != TM_OK)
@@ -128,17 +119,18 @@ static tm_status give_facets(const tm_octree_mesh *m, const tm_surface *surface,
     return TM_OK;
 }
 
-static tm_status give_surface(tm_surface *surface, tm_stream *stream, tm_error *error)
+static tm_status surface_to_stream(tm_surface *surface, tm_stream *stream,
+                                   tm_error *error)
 {
-    tm_block *node = add(stream, "surface.node", error);
+    tm_block *node = tm_stream_add(stream, "surface.node");
     if (!node)
-        return error->status;
+        return tm_fail_memory(error);
     node->count = surface->nodes;
     node->real = (double *)surface->xyz;
     surface->xyz = NULL;
-    tm_block *face = add(stream, "surface.face", error);
+    tm_block *face = tm_stream_add(stream, "surface.face");
     if (!face)
-        return error->status;
+        return tm_fail_memory(error);
     face->count = surface->triangles;
     face->integer = (uint32_t *)surface->triangle;
     surface->triangle = NULL;
@@ -153,16 +145,16 @@ tm_status tm_octree_mesh_to_stream(tm_octree_mesh *mesh, const tm_octree *octree
                                    tm_error *error)
 {
     /* Nodes come first, but facets look at them before they are given away. */
-    tm_status status = add(stream, ".node", error) ? TM_OK : error->status;
+    tm_status status = tm_stream_add(stream, ".node") ? TM_OK : tm_fail_memory(error);
     if (status == TM_OK && surface->marker)
-        status = give_facets(mesh, surface, stream, error);
+        status = facets_to_stream(mesh, surface, stream, error);
     if (status == TM_OK)
-        status = give_nodes(mesh, stream, error);
+        status = nodes_to_stream(mesh, stream, error);
     if (status == TM_OK)
-        status = give_elements(mesh, octree, levels, stream, error);
+        status = elements_to_stream(mesh, octree, levels, stream, error);
     if (status == TM_OK)
         status = tm_octree_to_stream(octree, mesh->assembly.first, stream, error);
     if (status == TM_OK)
-        status = give_surface(surface, stream, error);
+        status = surface_to_stream(surface, stream, error);
     return status;
 }

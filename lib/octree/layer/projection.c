@@ -19,7 +19,7 @@ typedef struct {
     tm_surface_point *at;
 } fitter;
 
-/* Puts an outer node to the place that its feature has closest to a point. */
+/* Puts an outer node to the point of its feature that is closest to one. */
 static void put(const fitter *projection, size_t s, const double point[3])
 {
     double *xyz = projection->assembly->mesh.xyz[projection->assembly->outer + s];
@@ -98,7 +98,7 @@ static void project_boundary(const fitter *projection)
 
 /* The nodes below the interior boundary that may move, and their neighbours. */
 typedef struct {
-    uint32_t *order; /* [nodes of the mesh]: its place in node[], or TM_NONE */
+    uint32_t *order; /* [nodes of the mesh]: its index in node[], or TM_NONE */
     size_t nodes;
     uint32_t *node;
     size_t *start;   /* [nodes + 1] */

@@ -4,6 +4,7 @@
 #include "../../base/array.h"
 #include "repair_steps.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -42,6 +43,51 @@ static bool is_done(const tm_repair_score *score)
     return score->bad == 0 && score->held == 0;
 }
 
+/* Brings nodes to the surface that leave elements of such a share of the threshold
+ * behind, but with `strict` nothing below the floor of the score. */
+static tm_status bring_some(const repair *r, tm_repair_state *state, double share,
+                            bool strict, tm_repair_score *score, tm_error *error)
+{
+    const double t = r->options->threshold;
+    double left = fmax(share * t, TM_REPAIR_LEAST);
+    if (strict)
+        left = fmax(left, score->floor);
+    score->floor = fmin(score->floor, left);
+    return tm_repair_move(state, r->surface, t, left, 1, score, error);
+}
+
+static tm_status bring_all(const repair *r, tm_repair_state *state, bool strict,
+                           tm_repair_score *score, tm_error *error)
+{
+    tm_status status = TM_OK;
+    for (size_t i = 0; i < HELD_SHARES && status == TM_OK && score->held > 0; i++)
+        status = bring_some(r, state, held_shares[i], strict, score, error);
+    if (status != TM_OK || score->held == 0)
+        return status;
+    tm_repair_free_off_surface(state);
+    return bring_some(r, state, 0, strict, score, error);
+}
+
+/* Brings nodes to the surface. Elements that they leave behind may become worse than all
+ * that was, as they often become better again when the next nodes come; where they do
+ * not, all is done again so that they cannot. */
+static tm_status bring(const repair *r, tm_repair_state *state, tm_repair_score *score,
+                       tm_error *error)
+{
+    const tm_repair_score before = *score;
+    tm_repair_points points = {0};
+    tm_status status = tm_repair_save(&points, state, error);
+    if (status == TM_OK)
+        status = bring_all(r, state, false, score, error);
+    if (status == TM_OK && score->worst < before.floor) {
+        tm_repair_restore(&points, state);
+        *score = before;
+        status = bring_all(r, state, true, score, error);
+    }
+    tm_repair_points_free(&points);
+    return status;
+}
+
 /* All that helps without other octants. */
 static tm_status mend(const repair *r, tm_repair_state *state, tm_repair_score *score,
                       tm_error *error)
@@ -54,13 +100,8 @@ static tm_status mend(const repair *r, tm_repair_state *state, tm_repair_score *
         if (score->held > FEW_HELD && (double)score->held > hopeless * (double)held)
             return status; /* it takes long and leads to nothing */
     }
-    for (size_t i = 0; i < HELD_SHARES && status == TM_OK && score->held > 0; i++)
-        status =
-            tm_repair_move(state, r->surface, t, held_shares[i] * t, 1, score, error);
-    if (status == TM_OK && score->held > 0) {
-        tm_repair_free_off_surface(state);
-        status = tm_repair_move(state, r->surface, t, 0, 1, score, error);
-    }
+    if (status == TM_OK && score->held > 0)
+        status = bring(r, state, score, error);
     const bool some = score->bad > 0 && score->bad <= FEW_BAD;
     if (status == TM_OK && some)
         status = tm_repair_sharp_corners(state, r->surface, t, score, &r->report->corners,

@@ -34,11 +34,12 @@ typedef struct tm_repair_report {
 
 /* Repairs *state. TM_REPAIR_REFINE needs its octree; without it TM_REPAIR_FULL does not
  * refine. What TM_REPAIR_FULL leaves is never worse than what came
- * (tm_repair_better()), and a step that does not make it better is taken back.
+ * (tm_repair_better()), and a step that does not make it better is taken back: so the
+ * worst J_ENS ends at or above the floor of report->before, whatever is gained elsewhere.
  *
- * 1. Nodes move (../mixed/optimise.h), with more and more effort, until no element is
- *    bad and no node off the surface. 2. Elements that stay bad are divided
- *    (repair_divide.h). 3. Octants that hold a bad element, or one at a node that is held
+ * 1. Nodes move (../../optimise/optimise.h), with more and more effort, until no element
+ * is bad and no node off the surface. 2. Elements that stay bad are divided
+ *    (repair_divide.c). 3. Octants that hold a bad element, or one at a node that is held
  *    back, are split once, balanced, and all is meshed again and repaired as before,
  *    while that makes it better and there are not more elements than allowed.
  *

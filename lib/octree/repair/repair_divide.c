@@ -49,8 +49,7 @@ static tm_status add_division(divider *d, size_t e, double jens, unsigned open,
     here->element = (uint32_t)e;
     const tm_status status = tm_star_find(&here->star, &d->state->mesh, e, open,
                                           fmax(d->threshold, TM_REPAIR_LEAST), error);
-    const bool invalid = tm_repair_is_bad(&d->state->mesh, e, jens, 0);
-    d->divisions += here->star.worst > (invalid ? fmin(jens, 0) : jens);
+    d->divisions += here->star.worst > tm_repair_quality(&d->state->mesh, e, jens);
     return status;
 }
 

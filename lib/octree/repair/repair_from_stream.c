@@ -45,16 +45,16 @@ static tm_status find_octree(tm_repair_state *state, const tm_stream *stream,
                              const tm_surface *surface, tm_repair_notes *notes,
                              tm_error *error)
 {
-    notes->no_octree.what[0] = '\0';
     if (!surface)
         return TM_OK;
-    tm_status status =
-        tm_octree_read_blocks(&state->octree, stream, surface, &state->row, error);
-    if (status == TM_ERROR_INPUT) {
-        notes->no_octree = *error;
-        return TM_OK;
-    }
-    return status;
+    tm_error cause;
+    const tm_status status =
+        tm_octree_read_blocks(&state->octree, stream, surface, &state->row, &cause);
+    if (status == TM_ERROR_INPUT)
+        notes->no_octree = cause;
+    else if (status != TM_OK)
+        return tm_fail_as(error, &cause);
+    return TM_OK;
 }
 
 /* Marks the nodes of the boundary. */

@@ -10,24 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A copy of an array; NULL where memory is out. */
-static void *copy(const void *from, size_t count, size_t size)
-{
-    void *to = tm_new(count, size);
-    if (to && count > 0)
-        memcpy(to, from, count * size);
-    return to;
-}
-
-static tm_status copy_octree(tm_octree *to, const tm_octree *from, tm_error *error)
-{
-    *to = *from;
-    to->leaf = copy(from->leaf, from->leaves, sizeof *from->leaf);
-    to->grid = copy(from->grid, from->nodes, sizeof *from->grid);
-    to->node = copy(from->node, from->leaves, sizeof *from->node);
-    return to->leaf && to->grid && to->node ? TM_OK : tm_fail_memory(error);
-}
-
 static tm_status split(tm_octree *octree, const uint32_t *row, const tm_surface *surface,
                        const uint32_t *octant, size_t count, tm_error *error)
 {
@@ -82,7 +64,7 @@ tm_status tm_repair_remake(tm_repair_state *to, const tm_repair_state *from,
 {
     tm_octree_mesh made = {0};
     to->remade = true;
-    tm_status status = copy_octree(&to->octree, &from->octree, error);
+    tm_status status = tm_octree_copy(&to->octree, &from->octree, error);
     if (status == TM_OK)
         status = split(&to->octree, from->row, surface, octant, count, error);
     if (status != TM_OK)

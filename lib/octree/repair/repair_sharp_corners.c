@@ -12,24 +12,29 @@
 /* How far around a tip nodes may move, and how many elements are at the middle. */
 enum { RINGS = 2, CORE_MOST = 24, EFFORT = 1 };
 
+/* What comes in the place of one element, with nodes of the whole mesh. */
+typedef struct {
+    uint32_t first;
+    tm_sharp_corner parts;
+} replacement;
+
+/* The mesh is made anew of all replacements at once, as soon as something is tried where
+ * there is one already, and at the end. */
 typedef struct {
     tm_repair_state *state;
     const tm_surface *surface;
     double threshold;
-    tm_node_elements around;
+    tm_node_elements around; /* without the replacements */
     tm_trial trial;
+    replacement *made;
+    size_t count, room;
+    bool *gone;    /* [elements]: replaced, or dropped */
+    bool *touched; /* [nodes]: of an element that is gone */
 } corners;
 
-static bool is_bad_at(const corners *t, uint32_t v)
+static bool is_bad(const corners *t, const tm_mixed_mesh *mesh, size_t e)
 {
-    const tm_mixed_mesh *mesh = &t->state->mesh;
-    for (size_t a = t->around.start[v]; a < t->around.start[v + 1]; a++) {
-        const size_t e = t->around.element[a];
-        const double jens = tm_mixed_jens(mesh, e);
-        if (tm_repair_is_bad(mesh, e, jens, t->threshold))
-            return true;
-    }
-    return false;
+    return tm_repair_is_bad(mesh, e, tm_mixed_jens(mesh, e), t->threshold);
 }
 
 static bool has_node(const tm_mixed_mesh *mesh, size_t e, uint32_t v)
@@ -37,6 +42,41 @@ static bool has_node(const tm_mixed_mesh *mesh, size_t e, uint32_t v)
     for (size_t i = mesh->start[e]; i < mesh->start[e + 1]; i++)
         if (mesh->item[i] == v)
             return true;
+    return false;
+}
+
+static bool is_bad_at(const corners *t, uint32_t v)
+{
+    const tm_mixed_mesh *mesh = &t->state->mesh;
+    for (size_t a = t->around.start[v]; a < t->around.start[v + 1]; a++) {
+        const size_t e = t->around.element[a];
+        if (!t->gone[e] && is_bad(t, mesh, e))
+            return true;
+    }
+    for (size_t i = 0; t->touched[v] && i < t->count; i++) {
+        tm_sharp_corner *parts = &t->made[i].parts;
+        const tm_mixed_mesh made = {.nodes = mesh->nodes,
+                                    .xyz = mesh->xyz,
+                                    .elements = parts->parts,
+                                    .start = parts->start,
+                                    .item = parts->item};
+        for (size_t p = 0; p < parts->parts; p++)
+            if (has_node(&made, p, v) && is_bad(t, &made, p))
+                return true;
+    }
+    return false;
+}
+
+/* Whether an element at a node has a node that is touched. */
+static bool is_touched_near(const corners *t, uint32_t v)
+{
+    const tm_mixed_mesh *mesh = &t->state->mesh;
+    for (size_t a = t->around.start[v]; a < t->around.start[v + 1]; a++) {
+        const size_t e = t->around.element[a];
+        for (size_t i = mesh->start[e]; i < mesh->start[e + 1]; i++)
+            if (t->touched[mesh->item[i]])
+                return true;
+    }
     return false;
 }
 
@@ -86,14 +126,6 @@ static void replace_first(tm_mixed_mesh *mesh, size_t cores, const tm_sharp_corn
     mesh->elements = parts->parts + rest;
 }
 
-static bool is_in(const uint32_t *list, size_t count, size_t e)
-{
-    for (size_t i = 0; i < count; i++)
-        if (list[i] == e)
-            return true;
-    return false;
-}
-
 static tm_status allocate(tm_repair_state *to, size_t elements, size_t items,
                           tm_error *error)
 {
@@ -106,73 +138,152 @@ static tm_status allocate(tm_repair_state *to, size_t elements, size_t items,
                : tm_fail_memory(error);
 }
 
-static void copy_element(tm_repair_state *to, const tm_repair_state *from,
-                         size_t octant_of, size_t k, const uint32_t *item)
+/* Appends element e, or a part of what comes in its place. */
+static void add_element(tm_repair_state *to, const tm_repair_state *from, size_t e,
+                        size_t k, const uint32_t *item)
 {
     tm_mixed_mesh *mesh = &to->mesh;
     const size_t first = mesh->start[mesh->elements];
     memcpy(mesh->item + first, item, k * sizeof *item);
-    to->octant[mesh->elements] = from->octant[octant_of];
-    to->origin[mesh->elements] = from->origin[octant_of];
+    to->octant[mesh->elements] = from->octant[e];
+    to->origin[mesh->elements] = from->origin[e];
     mesh->start[++mesh->elements] = first + k;
 }
 
-/* Puts the parts, with nodes of the trial, in the place of the first element of `core`,
- * and drops the others. */
-static tm_status replace(const corners *t, const uint32_t *core, size_t cores,
-                         const tm_sharp_corner *parts, tm_error *error)
+static const replacement *find_made(const corners *t, size_t e)
 {
-    tm_repair_state *state = t->state, to = {0};
-    const tm_mixed_mesh *mesh = &state->mesh;
-    const size_t items = parts->start[parts->parts];
-    const tm_status status = allocate(&to, mesh->elements + parts->parts,
-                                      mesh->start[mesh->elements] + items, error);
-    if (status != TM_OK) {
-        tm_repair_state_free(&to);
+    for (size_t i = 0; i < t->count; i++)
+        if (t->made[i].first == e)
+            return &t->made[i];
+    return NULL;
+}
+
+/* The elements with their replacements; `to` has zeros. */
+static tm_status apply(const corners *t, tm_repair_state *to, tm_error *error)
+{
+    const tm_repair_state *from = t->state;
+    const tm_mixed_mesh *mesh = &from->mesh;
+    size_t elements = mesh->elements, items = mesh->start[mesh->elements];
+    for (size_t i = 0; i < t->count; i++) {
+        elements += t->made[i].parts.parts;
+        items += t->made[i].parts.start[t->made[i].parts.parts];
+    }
+    const tm_status status = allocate(to, elements, items, error);
+    if (status != TM_OK)
         return status;
-    }
-    to.mesh.start[0] = 0;
+    to->mesh.start[0] = 0;
     for (size_t e = 0; e < mesh->elements; e++) {
-        if (!is_in(core, cores, e)) {
-            copy_element(&to, state, e, mesh->start[e + 1] - mesh->start[e],
-                         mesh->item + mesh->start[e]);
-            continue;
-        }
-        for (size_t p = 0; e == core[0] && p < parts->parts; p++) {
-            uint32_t node[TM_ELEMENT_NODES];
-            const size_t k = parts->start[p + 1] - parts->start[p];
-            for (size_t i = 0; i < k; i++)
-                node[i] = t->trial.node[parts->item[parts->start[p] + i]];
-            copy_element(&to, state, e, k, node);
-        }
+        if (!t->gone[e])
+            add_element(to, from, e, mesh->start[e + 1] - mesh->start[e],
+                        mesh->item + mesh->start[e]);
+        const replacement *made = t->gone[e] ? find_made(t, e) : NULL;
+        for (size_t p = 0; made && p < made->parts.parts; p++)
+            add_element(to, from, e, made->parts.start[p + 1] - made->parts.start[p],
+                        made->parts.item + made->parts.start[p]);
     }
-    free(state->mesh.start);
-    free(state->mesh.item);
-    free(state->octant);
-    free(state->origin);
-    state->mesh.start = to.mesh.start;
-    state->mesh.item = to.mesh.item;
-    state->mesh.elements = to.mesh.elements;
-    state->octant = to.octant;
-    state->origin = to.origin;
-    state->divided = true;
     return TM_OK;
 }
 
-/* Tries one tip; *done says whether it is other now. */
-static tm_status try_sharp_corner(corners *t, uint32_t corner, uint32_t middle,
-                                  bool *done, tm_error *error)
+/* Finds what is around nodes, without replacements. */
+static tm_status begin(corners *t, tm_error *error)
 {
-    uint32_t core[CORE_MOST];
-    const size_t from = t->around.start[middle];
-    const size_t cores = t->around.start[middle + 1] - from;
-    memcpy(core, t->around.element + from, cores * sizeof *core); /* ascending */
+    const tm_mixed_mesh *mesh = &t->state->mesh;
+    t->count = 0;
+    t->trial = (tm_trial){.whole = t->state, .around = &t->around};
+    t->gone = calloc(mesh->elements + 1, sizeof *t->gone);
+    t->touched = calloc(mesh->nodes + 1, sizeof *t->touched);
+    return t->gone && t->touched ? tm_node_elements_find(&t->around, mesh, error)
+                                 : tm_fail_memory(error);
+}
+
+static void end(corners *t)
+{
+    tm_trial_free(&t->trial);
+    tm_node_elements_free(&t->around);
+    free(t->gone);
+    free(t->touched);
+    t->gone = t->touched = NULL;
+}
+
+/* Makes the mesh anew if there are replacements. */
+static tm_status renew(corners *t, tm_error *error)
+{
+    tm_repair_state *state = t->state, to = {0};
+    if (t->count == 0)
+        return TM_OK;
+    tm_status status = apply(t, &to, error);
+    if (status == TM_OK) {
+        free(state->mesh.start);
+        free(state->mesh.item);
+        free(state->octant);
+        free(state->origin);
+        state->mesh.start = to.mesh.start;
+        state->mesh.item = to.mesh.item;
+        state->mesh.elements = to.mesh.elements;
+        state->octant = to.octant;
+        state->origin = to.origin;
+        state->divided = true;
+        end(t);
+        return begin(t, error);
+    }
+    tm_repair_state_free(&to);
+    return status;
+}
+
+/* Notes that parts, with nodes of the trial, come in the place of the first element of
+ * `core`, and nothing in that of the others. */
+static tm_status add_replacement(corners *t, const uint32_t *core, size_t cores,
+                                 const tm_sharp_corner *parts, tm_error *error)
+{
+    const tm_mixed_mesh *mesh = &t->state->mesh;
+    replacement *grown = tm_grow(t->made, &t->room, t->count + 1, sizeof *grown);
+    if (!grown)
+        return tm_fail_memory(error);
+    t->made = grown;
+    replacement *made = &grown[t->count++];
+    *made = (replacement){.first = core[0], .parts = *parts};
+    for (size_t i = 0; i < parts->start[parts->parts]; i++)
+        made->parts.item[i] = t->trial.node[parts->item[i]];
+    for (size_t c = 0; c < cores; c++) {
+        t->gone[core[c]] = true;
+        for (size_t i = mesh->start[core[c]]; i < mesh->start[core[c] + 1]; i++)
+            t->touched[mesh->item[i]] = true;
+    }
+    return TM_OK;
+}
+
+/* Gathers the elements at a node, the core, and those around; in a mesh made anew if
+ * there is a replacement. */
+static tm_status gather(corners *t, uint32_t middle, uint32_t core[CORE_MOST],
+                        size_t *cores, tm_error *error)
+{
+    for (;;) {
+        const size_t from = t->around.start[middle];
+        *cores = t->around.start[middle + 1] - from;
+        memcpy(core, t->around.element + from, *cores * sizeof *core); /* ascending */
+        tm_status status = tm_trial_gather(&t->trial, core, *cores, RINGS, error);
+        size_t n = 0;
+        while (status == TM_OK && n < t->trial.nodes && !t->touched[t->trial.node[n]])
+            n++;
+        if (status != TM_OK || n == t->trial.nodes)
+            return status;
+        status = renew(t, error);
+        if (status != TM_OK)
+            return status;
+    }
+}
+
+/* Tries one corner; counts it if it is other then. */
+static tm_status try_sharp_corner(corners *t, uint32_t corner, uint32_t middle,
+                                  size_t *count, tm_error *error)
+{
+    uint32_t core[CORE_MOST], first[CORE_MOST];
+    size_t cores;
     tm_repair_state *part = &t->trial.part;
-    tm_status status = tm_trial_gather(&t->trial, core, cores, RINGS, error);
+    tm_status status = gather(t, middle, core, &cores, error);
     if (status != TM_OK)
         return status;
     tm_sharp_corner parts;
-    uint32_t first[CORE_MOST];
     for (size_t i = 0; i < cores; i++)
         first[i] = (uint32_t)i;
     if (!tm_sharp_corner_divide(&parts, &part->mesh, first, cores,
@@ -186,8 +297,8 @@ static tm_status try_sharp_corner(corners *t, uint32_t corner, uint32_t middle,
     if (status != TM_OK || !tm_repair_better(&after, &before))
         return status;
     tm_trial_commit(&t->trial);
-    *done = true;
-    return replace(t, core, cores, &parts, error);
+    (*count)++;
+    return add_replacement(t, core, cores, &parts, error);
 }
 
 tm_status tm_repair_sharp_corners(tm_repair_state *state, const tm_surface *surface,
@@ -195,28 +306,22 @@ tm_status tm_repair_sharp_corners(tm_repair_state *state, const tm_surface *surf
                                   tm_error *error)
 {
     corners t = {.state = state, .surface = surface, .threshold = threshold};
-    bool any = false;
-    tm_status status = tm_node_elements_find(&t.around, &state->mesh, error);
-    t.trial = (tm_trial){.whole = state, .around = &t.around};
+    const size_t old = *count;
+    tm_status status = begin(&t, error);
     for (uint32_t v = 0; status == TM_OK && v < state->mesh.nodes; v++) {
         if (state->place[v] == 0 || !is_bad_at(&t, v))
             continue;
-        const uint32_t middle = find_middle(&t, v);
-        bool done = false;
+        if (is_touched_near(&t, v))
+            status = renew(&t, error);
+        const uint32_t middle = status == TM_OK ? find_middle(&t, v) : TM_NONE;
         if (middle != TM_NONE)
-            status = try_sharp_corner(&t, v, middle, &done, error);
-        if (!done || status != TM_OK)
-            continue;
-        any = true;
-        (*count)++;
-        tm_trial_free(&t.trial);
-        t.trial = (tm_trial){.whole = state, .around = &t.around};
-        tm_node_elements_free(&t.around);
-        status = tm_node_elements_find(&t.around, &state->mesh, error);
+            status = try_sharp_corner(&t, v, middle, count, error);
     }
-    tm_trial_free(&t.trial);
-    tm_node_elements_free(&t.around);
-    if (status == TM_OK && any)
+    if (status == TM_OK && *count > old) {
+        status = renew(&t, error);
         *score = tm_repair_measure(state, threshold);
+    }
+    end(&t);
+    free(t.made);
     return status;
 }

@@ -5,31 +5,42 @@
 #include "../../element/certify.h"
 #include "../../stream/stream.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-bool tm_repair_is_bad(const tm_mixed_mesh *mesh, size_t e, double jens, double threshold)
+static bool is_certified(const tm_mixed_mesh *mesh, size_t e)
 {
     const size_t k = mesh->start[e + 1] - mesh->start[e];
-    if (jens < threshold || jens <= 0)
-        return true;
-    return tm_certify(k, (const double(*)[3])mesh->xyz, mesh->item + mesh->start[e]) !=
+    return tm_certify(k, (const double(*)[3])mesh->xyz, mesh->item + mesh->start[e]) ==
            TM_POSITIVE;
+}
+
+bool tm_repair_is_bad(const tm_mixed_mesh *mesh, size_t e, double jens, double threshold)
+{
+    return jens < fmax(threshold, TM_REPAIR_LEAST) || !is_certified(mesh, e);
+}
+
+double tm_repair_quality(const tm_mixed_mesh *mesh, size_t e, double jens)
+{
+    return jens <= 0 || is_certified(mesh, e) ? jens : 0;
 }
 
 tm_repair_score tm_repair_measure(const tm_repair_state *state, double threshold)
 {
     const tm_mixed_mesh *mesh = &state->mesh;
-    tm_repair_score score = {.worst = 1};
+    tm_repair_score score = {.worst = 1, .floor = fmax(threshold, TM_REPAIR_LEAST)};
     double sum = 0;
     for (size_t v = 0; v < mesh->nodes; v++)
         score.held += state->rule[v].off_surface;
     for (size_t e = 0; e < mesh->elements; e++) {
         const double jens = tm_mixed_jens(mesh, e);
-        const bool invalid = tm_repair_is_bad(mesh, e, jens, 0);
+        const double quality = tm_repair_quality(mesh, e, jens);
+        const bool invalid = quality < TM_REPAIR_LEAST;
         score.invalid += invalid;
         score.bad += invalid || jens < threshold;
-        score.worst = jens < score.worst ? jens : score.worst;
+        score.worst = fmin(score.worst, jens);
+        score.floor = fmin(score.floor, quality);
         sum += jens;
     }
     if (mesh->elements > 0)
@@ -39,6 +50,8 @@ tm_repair_score tm_repair_measure(const tm_repair_state *state, double threshold
 
 bool tm_repair_better(const tm_repair_score *a, const tm_repair_score *b)
 {
+    if (a->worst < b->floor)
+        return false;
     if (a->invalid != b->invalid)
         return a->invalid < b->invalid;
     if (a->held != b->held)

@@ -26,21 +26,29 @@ typedef struct tm_repair_state {
 
 /* How good it is. */
 typedef struct tm_repair_score {
-    size_t held;    /* nodes that are not on the surface yet */
-    size_t invalid; /* elements with J_ENS <= 0, or not certified (certify.h) */
-    size_t bad;     /* these and all below the threshold */
+    size_t held; /* nodes that are not on the surface yet */
+    size_t
+        invalid; /* elements with J_ENS < TM_REPAIR_LEAST, or not certified (certify.h) */
+    size_t bad;  /* these and all below the threshold */
     double worst;   /* J_ENS; 1 of no elements */
-    double average; /* 0 of no elements */
+    double floor;   /* what `worst` must reach after any step: the least of the threshold
+                       and of the quality of all elements */
+    double average; /* of J_ENS; 0 of no elements */
 } tm_repair_score;
 
-/* Whether an element, whose J_ENS is given, is bad. */
+/* Whether an element, whose J_ENS is given, is bad: not valid, or below the threshold. */
 bool tm_repair_is_bad(const tm_mixed_mesh *mesh, size_t e, double jens, double threshold);
+
+/* The J_ENS of an element, which is given; at most 0 of one that is not certified: all
+ * that is valid is better. */
+double tm_repair_quality(const tm_mixed_mesh *mesh, size_t e, double jens);
 
 /* Measures all elements. O(elements). */
 tm_repair_score tm_repair_measure(const tm_repair_state *state, double threshold);
 
-/* Fewer invalid elements, else fewer nodes that are off the surface, else fewer bad
- * elements, else a better worst one. */
+/* The rule of all steps: whether `a`, made from `b`, is to be kept. Its worst element has
+ * to reach the floor of `b`; and it has fewer invalid elements, else fewer nodes that are
+ * off the surface, else fewer bad elements, else a better worst one. */
 bool tm_repair_better(const tm_repair_score *a, const tm_repair_score *b);
 
 /* The octants that hold a bad element, or, with `held`, one at a node that is off the

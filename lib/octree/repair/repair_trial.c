@@ -115,8 +115,8 @@ static tm_status fill(tm_trial *t, tm_error *error)
     tm_repair_state *p = &t->part;
     p->mesh.nodes = t->nodes;
     p->mesh.elements = t->elements;
-    p->mesh.xyz = tm_new(t->nodes + 1, sizeof *p->mesh.xyz);
-    p->rule = tm_new(t->nodes + 1, sizeof *p->rule);
+    p->mesh.xyz = tm_new(t->nodes, sizeof *p->mesh.xyz);
+    p->rule = tm_new(t->nodes, sizeof *p->rule);
     p->mesh.start = tm_new(t->elements + TM_TRIAL_ROOM + 1, sizeof *p->mesh.start);
     p->mesh.item =
         tm_new((t->elements + TM_TRIAL_ROOM) * MOST_NODES, sizeof *p->mesh.item);

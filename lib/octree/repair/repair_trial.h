@@ -21,8 +21,7 @@ void tm_node_elements_free(tm_node_elements *around);
 typedef struct tm_trial {
     tm_repair_state *whole;
     const tm_node_elements *around;
-    tm_repair_state part;   /* mesh, rule, place and octant; room for elements and a node
-                               more */
+    tm_repair_state part;   /* mesh and rule; room for more elements */
     size_t nodes, elements; /* of the part as it was gathered */
     uint32_t *node;         /* [nodes]: of the whole */
     uint32_t *element;      /* [elements]: of the whole */
@@ -33,7 +32,7 @@ typedef struct tm_trial {
 
 /* Gathers the elements core[0 … cores), which come first, and all up to `rings` elements
  * away. Nodes with elements outside do not move. There is room for TM_TRIAL_ROOM elements
- * of eight nodes more, and for one node. */
+ * of eight nodes more. */
 enum { TM_TRIAL_ROOM = 64 };
 tm_status tm_trial_gather(tm_trial *trial, const uint32_t *core, size_t cores,
                           unsigned rings, tm_error *error);

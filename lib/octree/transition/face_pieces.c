@@ -69,8 +69,8 @@ unsigned tm_face_pieces(tm_leaf_state state, unsigned f, tm_piece piece[TM_FACE_
     for (unsigned p = 0; p < is->pieces; p++) {
         piece[p].k = is->piece[p].k;
         for (unsigned i = 0; i < is->piece[p].k; i++) {
-            const unsigned at = is->piece[p].place[i];
-            piece[p].place[i] = at == RING_CENTRE ? (uint8_t)(TM_LEAF_FACE + f)
+            const unsigned at = is->piece[p].point[i];
+            piece[p].point[i] = at == RING_CENTRE ? (uint8_t)(TM_LEAF_FACE + f)
                                                   : ring[(at + 2 * turn) % RING];
         }
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Looks up the table that lib/octree/generate/transitions.c wrote. */
+/* Looks up the table that generate/transitions.c wrote. */
 #include "transition.h"
 
 #include "../forest/octree.h"

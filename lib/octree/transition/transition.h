@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How a leaf with smaller neighbours is divided into hexahedra, wedges, pyramids and
- * tetrahedra. Neighbours agree because each face is divided by what is split on it alone
- * (octree.md). Places are those of octree.h. */
+ * tetrahedra. Neighbours agree because each face is divided by what is split on it alone.
+ * Points of a leaf are those of octree.h. */
 #ifndef TM_TRANSITION_TRANSITION_H
 #define TM_TRANSITION_TRANSITION_H
 
@@ -14,13 +14,13 @@ typedef uint32_t tm_leaf_state;
 
 enum { TM_LEAF_STATE_BITS = 18, TM_FACE_PIECES = 5 };
 
-/* An element or a face piece: k places. Elements in the order of .mix. */
+/* An element or a face piece: k points. Elements in the order of .mix. */
 typedef struct tm_piece {
     uint8_t k;
-    uint8_t place[8];
+    uint8_t point[8];
 } tm_piece;
 
-/* The division of a leaf; `centre`: it has a node at place TM_LEAF_CENTRE. */
+/* The division of a leaf; `centre`: it has a node at TM_LEAF_CENTRE. */
 typedef struct tm_transition {
     uint16_t pieces;
     bool centre;

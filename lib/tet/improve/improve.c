@@ -20,9 +20,22 @@ enum { PASSES_MAX = 8, KICKS_MAX = 1000, FEW = 100, MANY = 1000 };
 enum { CYCLE = 12, FAILS_MAX = 3 * CYCLE };
 static const double wider_by = 1.5;
 
-/* What a pass tries, in this order, on each tetrahedron until something is done. */
-enum { SWAP = 1, SMOOTH = 2, CONTRACT = 4, INSERT = 8 };
-enum { MOVE = SWAP | SMOOTH, SHRINK = MOVE | CONTRACT, ALL = SHRINK | INSERT };
+/* The table of operations, as far as it says when what is tried. */
+#define ROW(op, name, key, effect, phase, function)                                      \
+    {TM_PHASE_##phase, tm_improve_##function},
+static const struct {
+    tm_improve_phase phase;
+    bool (*try)(tm_improver *m, uint32_t t);
+} operation[TM_IMPROVE_OPS] = {TM_IMPROVE_TABLE(ROW)};
+
+/* Whether something begins with the phase. */
+static bool has_phase(const tm_improver *m, tm_improve_phase phase)
+{
+    for (int op = 0; op < TM_IMPROVE_OPS; op++)
+        if (operation[op].phase == phase && tm_improve_has(m, (tm_improve_op)op))
+            return true;
+    return false;
+}
 
 static bool is_bad(const tm_improver *m, uint32_t t)
 {
@@ -67,15 +80,19 @@ static bool find_targets(tm_improver *m)
     return done || tm_improve_no_memory(m);
 }
 
-static bool try_on(tm_improver *m, uint32_t t, int what)
+/* Tries the operations of a phase until something is done. */
+static bool try_on(tm_improver *m, uint32_t t, tm_improve_phase phase)
 {
-    return ((what & SWAP) && tm_improve_swap(m, t)) ||
-           ((what & SMOOTH) && tm_improve_has(m, TM_OP_SMOOTHING) &&
-            tm_improve_smooth(m, t)) ||
-           ((what & CONTRACT) && tm_improve_has(m, TM_OP_CONTRACTION) &&
-            tm_improve_contract(m, t)) ||
-           ((what & INSERT) && tm_improve_has(m, TM_OP_INSERTION) &&
-            tm_improve_insert(m, t));
+    bool (*tried)(tm_improver *, uint32_t) = NULL;
+    for (int op = 0; op < TM_IMPROVE_OPS; op++) {
+        if (operation[op].phase > phase || operation[op].try == tried ||
+            !tm_improve_has(m, (tm_improve_op)op))
+            continue;
+        tried = operation[op].try;
+        if (tried(m, t))
+            return true;
+    }
+    return false;
 }
 
 /* Whether no pass is left. */
@@ -86,13 +103,13 @@ static bool is_over(const tm_improver *m)
 }
 
 /* Tries all bad tetrahedra once. */
-static void run_pass(tm_improver *m, int what)
+static void run_pass(tm_improver *m, tm_improve_phase phase)
 {
     if (is_over(m) || !find_targets(m))
         return;
     for (size_t k = 0; k < m->targets && m->status == TM_OK; k++) {
         uint32_t t = m->target[k];
-        if (is_bad(m, t) && is_due(m, t) && !try_on(m, t, what))
+        if (is_bad(m, t) && is_due(m, t) && !try_on(m, t, phase))
             m->tried[t] = m->change + 1;
     }
     m->report->passes++;
@@ -105,13 +122,13 @@ static bool is_gain(size_t before, size_t after, double share)
 }
 
 /* Passes until one gains too little. */
-static void settle(tm_improver *m, int what, double price)
+static void settle(tm_improver *m, tm_improve_phase phase, double price)
 {
     size_t before, after = count_bad(m);
     tm_improve_set_price(m, price);
     for (int k = 0; k < PASSES_MAX && after > 0 && !is_over(m); k++) {
         before = after;
-        run_pass(m, what);
+        run_pass(m, phase);
         after = count_bad(m);
         if (!is_gain(before, after, enough_gain))
             break;
@@ -139,9 +156,9 @@ static void coarsen(tm_improver *m)
             break;
         tm_improve_set_price(m, price);
         coarsen_once(m);
-        run_pass(m, SHRINK);
+        run_pass(m, TM_PHASE_SHRINK);
     }
-    settle(m, SHRINK, 0);
+    settle(m, TM_PHASE_SHRINK, 0);
 }
 
 /* Keeps the mesh if it is the best so far, or goes back to that. Returns how many are
@@ -156,8 +173,9 @@ static size_t snapshot_best(tm_improver *m)
     return m->best.bad;
 }
 
-/* Growth that costs less than nothing. Where a cycle of kicks has failed, what is nearly
- * bad is kicked too; false where that is too many. */
+/* A pass at a price per tetrahedron that may be below 0: operations that add some are
+ * then done although nothing else gets better. Where a cycle of such passes has failed,
+ * what is nearly bad is worked on too; false where that is too many. */
 static bool kick_once(tm_improver *m, double price)
 {
     unsigned cycle = m->fails / CYCLE;
@@ -166,7 +184,7 @@ static bool kick_once(tm_improver *m, double price)
     m->cost.target = tm_improve_target(m, m->degrees + wider_by * cycle);
     bool cheap = cycle == 0 || m->options->converge || count_bad(m) <= MANY;
     if (cheap)
-        run_pass(m, ALL);
+        run_pass(m, TM_PHASE_ALL);
     m->cost.target = target;
     return cheap;
 }
@@ -183,8 +201,8 @@ static void kick(tm_improver *m)
         if (!kick_once(m, price))
             break;
         if (m->fails % 2 == 0)
-            settle(m, MOVE, 0);
-        settle(m, ALL, 0);
+            settle(m, TM_PHASE_MOVE, 0);
+        settle(m, TM_PHASE_ALL, 0);
         after = snapshot_best(m);
         m->report->kicks++;
         if (is_gain(before, after, converge ? least_gain : enough_gain)) {
@@ -204,13 +222,13 @@ static void reach(tm_improver *m)
     m->best.bad = SIZE_MAX;
     if (m->mesh->tets <= m->most_tets)
         snapshot_best(m);
-    settle(m, MOVE, 0);
-    settle(m, SHRINK, 0);
+    settle(m, TM_PHASE_MOVE, 0);
+    settle(m, TM_PHASE_SHRINK, 0);
     if (m->mesh->tets > m->most_tets)
         coarsen(m);
-    if (tm_improve_has(m, TM_OP_INSERTION)) {
-        settle(m, ALL, insertion_price);
-        settle(m, ALL, 0);
+    if (has_phase(m, TM_PHASE_ALL)) {
+        settle(m, TM_PHASE_ALL, insertion_price);
+        settle(m, TM_PHASE_ALL, 0);
         kick(m);
     }
     snapshot_best(m);

@@ -9,19 +9,45 @@
 #include "../../element/tet_measure.h"
 #include "../mesh.h"
 
-/* The palette. */
-typedef enum tm_improve_op {
-    TM_OP_EDGE_REMOVAL,  /* of an edge inside */
-    TM_OP_BOUNDARY_SWAP, /* of an edge in a flat facet: 2-2, 4-4 and larger ones */
-    TM_OP_FACE_REMOVAL,  /* 2-3, and of several faces side by side */
-    TM_OP_SMOOTHING,     /* moves a node: inside, in a flat facet, on a straight edge */
-    TM_OP_CONTRACTION,   /* of an edge: removes a node */
-    TM_OP_INSERTION,     /* of a node, at the best point of a cavity, or on an edge */
-    TM_IMPROVE_OPS
-} tm_improve_op;
+/* The palette, one row for each operation:
+ *
+ *   TM_OP_…, name (of --ops), key (in JSON), TM_EFFECT_… (what it is counted as),
+ *   TM_PHASE_… (from which on it is tried), tm_improve_…() (what tries it)
+ *
+ * In a phase they are tried in this order. Rows with the same function stand together: it
+ * does the best of those that are asked for. */
+#define TM_IMPROVE_TABLE(ROW)                                                            \
+    /* of an edge inside */                                                              \
+    ROW(EDGE_REMOVAL, "edge-removal", "edge_removals", EDGES_REMOVED, MOVE, swap)        \
+    /* of an edge in a flat facet: 2-2, 4-4 and larger ones */                           \
+    ROW(BOUNDARY_SWAP, "boundary-swap", "boundary_swaps", EDGES_REMOVED, MOVE, swap)     \
+    /* 2-3, and of several faces side by side */                                         \
+    ROW(FACE_REMOVAL, "face-removal", "face_removals", FACES_REMOVED, MOVE, swap)        \
+    /* moves a node: inside, in a flat facet, on a straight edge */                      \
+    ROW(SMOOTHING, "smoothing", "moves", NODES_MOVED, MOVE, smooth)                      \
+    /* of an edge: removes a node */                                                     \
+    ROW(CONTRACTION, "contraction", "contractions", NODES_REMOVED, SHRINK, contract)     \
+    /* of a node, at the best point of a cavity, or on an edge */                        \
+    ROW(INSERTION, "insertion", "insertions", POINTS_INSERTED, ALL, insert)
 
-/* "edge-removal" and so on. */
+#define TM_IMPROVE_ROW(op, name, key, effect, phase, function) TM_OP_##op,
+typedef enum tm_improve_op {
+    TM_IMPROVE_TABLE(TM_IMPROVE_ROW) TM_IMPROVE_OPS
+} tm_improve_op;
+#undef TM_IMPROVE_ROW
+
+/* The names. */
 extern const char *const tm_improve_op_name[TM_IMPROVE_OPS];
+
+/* What operations come to; those that insertions removed are among the nodes removed. */
+typedef enum tm_improve_effect {
+    TM_EFFECT_EDGES_REMOVED,
+    TM_EFFECT_FACES_REMOVED,
+    TM_EFFECT_NODES_MOVED,
+    TM_EFFECT_POINTS_INSERTED,
+    TM_EFFECT_NODES_REMOVED,
+    TM_IMPROVE_EFFECTS
+} tm_improve_effect;
 
 enum { TM_IMPROVE_ALL_OPS = (1 << TM_IMPROVE_OPS) - 1 };
 
@@ -63,5 +89,8 @@ void tm_improve_report_json(tm_json *json, const tm_improve_report *report);
 
 /* How many operations changed the mesh. */
 size_t tm_improve_operations(const tm_improve_report *report);
+
+/* How often they had an effect. */
+size_t tm_improve_effects(const tm_improve_report *report, tm_improve_effect effect);
 
 #endif

@@ -6,15 +6,11 @@
 /* Whether b is in a constrained face at the node of the ball. */
 static bool is_in_facet(const tm_tet_mesh *mesh, const tm_ball *ball, uint32_t b)
 {
-    for (size_t k = 0; k < ball->size; k++)
-        for (uint32_t i = 0; i < 4; i++) {
-            uint32_t across = mesh->neighbour[ball->tet[k]][i];
-            if (!(across & TM_FACE_BIT) || mesh->tet[ball->tet[k]][i] == ball->node)
-                continue;
-            const uint32_t *n = mesh->face[across & ~TM_FACE_BIT].node;
-            if (n[0] == b || n[1] == b || n[2] == b)
-                return true;
-        }
+    for (size_t k = 0; k < ball->constrained_count; k++) {
+        const uint32_t *n = mesh->face[ball->constrained[k]].node;
+        if (n[0] == b || n[1] == b || n[2] == b)
+            return true;
+    }
     return false;
 }
 
@@ -45,15 +41,11 @@ static uint32_t best_neighbour(tm_improver *m)
     uint32_t best = TM_NONE;
     double least, gain = TM_IMPROVE_GAIN;
     double old = tm_improve_old_cost(m, ball->tet, ball->size, &least);
-    m->stamp++;
     for (size_t k = 0; k < ball->size; k++)
         for (int i = 0; i < 3; i++) {
             size_t gone;
             uint32_t b = ball->face[k][i];
-            if (m->seen[b] == m->stamp)
-                continue;
-            m->seen[b] = m->stamp;
-            if (!may_go_to(m, b))
+            if (!tm_tet_mark(&m->seen, b) || !may_go_to(m, b))
                 continue;
             double most = old - gain + m->price * (double)ball->size;
             double cost =
@@ -73,7 +65,8 @@ bool tm_improve_contract_node(tm_improver *m, uint32_t t, uint32_t a)
         return false;
     m->contracted[a] = m->change + 1;
     m->report->tried[TM_OP_CONTRACTION]++;
-    if (!tm_ball_around(m->mesh, t, a, &m->marks, &m->ball))
+    if (!tm_ball_around(m->mesh, t, a, &m->marks, &m->ball) ||
+        !tm_tet_marks_clear(&m->seen, m->mesh->nodes))
         return tm_improve_no_memory(m);
     if (!tm_improve_reserve(m, m->ball.size, 0) || has_flat(m))
         return false;

@@ -34,7 +34,7 @@ static bool grow(void *array, size_t room, size_t needed, size_t size)
 static bool reserve_nodes(tm_improver *m, size_t needed)
 {
     size_t room = needed + needed / 2;
-    uint32_t **list[] = {&m->tet_at, &m->changed, &m->smoothed, &m->contracted, &m->seen};
+    uint32_t **list[] = {&m->tet_at, &m->changed, &m->smoothed, &m->contracted};
     if (needed > m->features.room && !tm_features_reserve(&m->features, needed))
         return false;
     if (needed <= m->node_room)
@@ -222,7 +222,7 @@ tm_status tm_improve_start(tm_improver *m, tm_tet_mesh *mesh,
 
 void tm_improve_finish(tm_improver *m)
 {
-    uint32_t *list[] = {m->tet_at,    m->changed, m->smoothed, m->contracted, m->seen,
+    uint32_t *list[] = {m->tet_at,    m->changed, m->smoothed, m->contracted,
                         m->swallowed, m->created, m->target,   m->tried};
     for (size_t k = 0; k < sizeof list / sizeof list[0]; k++)
         free(list[k]);
@@ -235,6 +235,7 @@ void tm_improve_finish(tm_improver *m)
     }
     tm_features_free(&m->features);
     tm_tet_marks_free(&m->marks);
+    tm_tet_marks_free(&m->seen);
     tm_star_free(&m->star);
     tm_ball_free(&m->ball);
     tm_cavity_free(&m->cavity);

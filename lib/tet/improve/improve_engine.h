@@ -45,10 +45,10 @@ typedef struct tm_improver {
     uint32_t *tried;
     size_t tet_room;
     /* By node: a tetrahedron that has it; the last change around it; the changes after
-     * which it was tried; a mark: == look. */
-    uint32_t *tet_at, *changed, *smoothed, *contracted, *seen;
+     * which it was tried. */
+    uint32_t *tet_at, *changed, *smoothed, *contracted;
     size_t node_room;
-    uint32_t change, stamp; /* counters */
+    uint32_t change; /* counts them */
 
     tm_improve_state best;    /* for this target, so far */
     tm_improve_state reached; /* the last target that left nothing bad */
@@ -56,7 +56,8 @@ typedef struct tm_improver {
 
     tm_space space; /* around the mesh */
     tm_features features;
-    tm_tet_marks marks;
+    tm_tet_marks marks; /* on tetrahedra */
+    tm_tet_marks seen;  /* on nodes */
     tm_star star;
     tm_ball ball;
     tm_cavity cavity;
@@ -96,12 +97,16 @@ void tm_improve_forbid(tm_improver *m, double degrees);
 /* The price of a tetrahedron; all may be tried again. */
 void tm_improve_set_price(tm_improver *m, double price);
 
-/* Try an operation on tetrahedron t, or at its nodes, if it is in the palette; whether
- * one was done. */
-bool tm_improve_swap(tm_improver *m, uint32_t t);
-bool tm_improve_smooth(tm_improver *m, uint32_t t);
-bool tm_improve_contract(tm_improver *m, uint32_t t);
-bool tm_improve_insert(tm_improver *m, uint32_t t);
+/* What a pass tries: what neither adds nor removes nodes; what makes the mesh smaller
+ * too; all. */
+typedef enum { TM_PHASE_MOVE, TM_PHASE_SHRINK, TM_PHASE_ALL } tm_improve_phase;
+
+/* The functions of the table: each tries its operations on tetrahedron t, or at its
+ * nodes; whether one was done. */
+#define TM_IMPROVE_ROW(op, name, key, effect, phase, function)                           \
+    bool tm_improve_##function(tm_improver *m, uint32_t t);
+TM_IMPROVE_TABLE(TM_IMPROVE_ROW)
+#undef TM_IMPROVE_ROW
 
 /* Tries to contract one of the edges of node a, a corner of t. */
 bool tm_improve_contract_node(tm_improver *m, uint32_t t, uint32_t a);

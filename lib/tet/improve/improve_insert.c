@@ -4,7 +4,6 @@
 #include "improve_engine.h"
 
 #include "../../geom/vector.h"
-#include "../operation/interpolation.h"
 #include "../operation/star_insertion.h"
 
 #include <string.h>
@@ -99,23 +98,23 @@ static bool has_marked_edge(const tm_improver *m)
 }
 
 /* Collects the nodes that are inside the cavity in m->swallowed; they go with it. False
- * where one has to stay. */
+ * where one has to stay, or memory is out. */
 static bool find_swallowed(tm_improver *m, size_t *count)
 {
     const tm_cavity *cavity = &m->cavity;
     *count = 0;
-    m->stamp++;
+    if (!tm_tet_marks_clear(&m->seen, m->mesh->nodes))
+        return tm_improve_no_memory(m);
     for (size_t f = 0; f < cavity->faces; f++)
         for (int i = 0; i < 3; i++)
-            m->seen[cavity->face[f][i]] = m->stamp;
+            tm_tet_mark(&m->seen, cavity->face[f][i]);
     for (size_t k = 0; k < cavity->size; k++)
         for (int i = 0; i < 4; i++) {
             uint32_t v = m->mesh->tet[cavity->tet[k]][i];
-            if (m->seen[v] == m->stamp)
+            if (!tm_tet_mark(&m->seen, v))
                 continue;
             if (m->features.dimension[v] != 3)
                 return false;
-            m->seen[v] = m->stamp;
             m->swallowed[(*count)++] = v;
         }
     return true;

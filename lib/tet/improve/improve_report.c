@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "improve.h"
 
-const char *const tm_improve_op_name[TM_IMPROVE_OPS] = {"edge-removal", "boundary-swap",
-                                                        "face-removal", "smoothing",
-                                                        "contraction",  "insertion"};
+#define NAME(op, name, key, effect, phase, function) name,
+const char *const tm_improve_op_name[TM_IMPROVE_OPS] = {TM_IMPROVE_TABLE(NAME)};
 
-static const char *const done_key[TM_IMPROVE_OPS] = {"edge_removals", "boundary_swaps",
-                                                     "face_removals", "moves",
-                                                     "contractions",  "insertions"};
+#define KEY(op, name, key, effect, phase, function) key,
+static const char *const done_key[TM_IMPROVE_OPS] = {TM_IMPROVE_TABLE(KEY)};
+
+#define EFFECT(op, name, key, effect, phase, function) TM_EFFECT_##effect,
+static const tm_improve_effect effect_of[TM_IMPROVE_OPS] = {TM_IMPROVE_TABLE(EFFECT)};
 
 void tm_improve_report_json(tm_json *json, const tm_improve_report *r)
 {
@@ -36,5 +37,13 @@ size_t tm_improve_operations(const tm_improve_report *report)
     size_t sum = 0;
     for (int op = 0; op < TM_IMPROVE_OPS; op++)
         sum += report->done.op[op];
+    return sum;
+}
+
+size_t tm_improve_effects(const tm_improve_report *report, tm_improve_effect effect)
+{
+    size_t sum = effect == TM_EFFECT_NODES_REMOVED ? report->done.swallowed : 0;
+    for (int op = 0; op < TM_IMPROVE_OPS; op++)
+        sum += effect_of[op] == effect ? report->done.op[op] : 0;
     return sum;
 }

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The improver's smoothing: a node goes to the mean of its neighbours, and from there or
- * from where it is to where the worst tetrahedron around it is best. */
+/* The improver's smoothing: a node goes to the mean of its neighbours, or, where that is
+ * no gain, from where it is towards the point where the worst tetrahedron around it is
+ * best. (To climb from the mean, too, is no better: of six meshes four had more bad
+ * tetrahedra then, 0.86 for 0.67 % on a knot, and one fewer.) */
 #include "improve_engine.h"
 
 #include "../../geom/vector.h"
-#include "../operation/interpolation.h"
 
 #include <string.h>
 
@@ -24,46 +25,28 @@ static void go_to_centre(const tm_cavity_boundary *boundary, const tm_freedom *f
         p[x] += way[x];
 }
 
-/* Moves the ball's node; attributes stay a field. */
-static void move(tm_improver *m, const double p[3])
+/* Whether the node costs less than `most` at p and sees all faces of its ball. */
+static bool is_gain(const tm_improver *m, const tm_cavity_boundary *boundary,
+                    double least, double most, const double p[3])
 {
-    tm_tet_mesh *mesh = m->mesh;
-    uint32_t v = m->ball.node;
-    size_t width = mesh->node_attributes;
-    if (width > 0) {
-        double *value = mesh->node_attribute + mesh->nodes * width; /* room of one more */
-        tm_tet_interpolate(mesh, m->ball.tet, m->ball.size, p, value);
-        memcpy(mesh->node_attribute + v * width, value, width * sizeof *value);
-    }
-    memcpy(mesh->xyz[v], p, sizeof mesh->xyz[v]);
-    tm_improve_note(m, m->ball.tet, m->ball.size);
-    m->report->done.op[TM_OP_SMOOTHING]++;
+    return tm_cavity_boundary_cost(boundary, &m->cost, p, least, most) < most &&
+           tm_cavity_boundary_sees(boundary, p);
 }
 
-/* The place with the least cost, below `most`; false where there is none. */
-static bool find_place(const tm_improver *m, const tm_cavity_boundary *boundary,
-                       const tm_freedom *freedom, double least, double most,
-                       double place[3])
+/* A point where the node costs less than `most`; false where none is found. */
+static bool find_point(const tm_improver *m, const tm_cavity_boundary *boundary,
+                       const tm_freedom *freedom, double least, double most, double p[3])
 {
     enum { STEPS = 2 };
-    double p[3], from[3];
-    bool found = false;
-    memcpy(from, m->mesh->xyz[m->ball.node], sizeof from);
-    for (int way = 0; way < 2 && !found; way++) {
-        memcpy(p, found ? place : from, sizeof p);
-        if (way == 0)
-            go_to_centre(boundary, freedom, p);
-        else
-            tm_cavity_boundary_climb(boundary, m->cost.measure, freedom,
-                                     m->cost.target * beyond_target, STEPS, p);
-        double cost = tm_cavity_boundary_cost(boundary, &m->cost, p, least, most);
-        if (!(cost < most) || !tm_cavity_boundary_sees(boundary, p))
-            continue;
-        most = cost;
-        memcpy(place, p, sizeof p);
-        found = true;
-    }
-    return found;
+    const double *from = m->mesh->xyz[m->ball.node];
+    memcpy(p, from, sizeof m->mesh->xyz[0]);
+    go_to_centre(boundary, freedom, p);
+    if (is_gain(m, boundary, least, most, p))
+        return true;
+    memcpy(p, from, sizeof m->mesh->xyz[0]);
+    tm_cavity_boundary_climb(boundary, m->cost.measure, freedom,
+                             m->cost.target * beyond_target, STEPS, p);
+    return is_gain(m, boundary, least, most, p);
 }
 
 static bool smooth_node(tm_improver *m, uint32_t t, uint32_t v)
@@ -78,12 +61,14 @@ static bool smooth_node(tm_improver *m, uint32_t t, uint32_t v)
         return false;
     tm_freedom freedom = tm_features_freedom(&m->features, m->mesh, &m->ball);
     tm_cavity_boundary boundary = tm_boundary_of_ball(&m->ball, m->mesh);
-    double least, place[3];
+    double least, p[3];
     double old = tm_improve_old_cost(m, m->ball.tet, m->ball.size, &least);
     if (freedom.dimension == 0 ||
-        !find_place(m, &boundary, &freedom, least, old - TM_IMPROVE_GAIN, place))
+        !find_point(m, &boundary, &freedom, least, old - TM_IMPROVE_GAIN, p))
         return false;
-    move(m, place);
+    tm_ball_move_node(m->mesh, &m->ball, p);
+    tm_improve_note(m, m->ball.tet, m->ball.size);
+    m->report->done.op[TM_OP_SMOOTHING]++;
     return true;
 }
 

@@ -96,26 +96,6 @@ static double plan_edge(tm_improver *m, uint32_t t, unsigned e, double needed)
     return old - sum > needed ? old - sum : 0;
 }
 
-/* The constrained faces at the ends of a part, abr and abs, which become rsb and ras.
- * They are renewed with the first part; the second one finds them so. */
-static void renew_faces(const tm_tet_mesh *mesh, const tm_star *part, bool first,
-                        tm_face_renewal renewal[2])
-{
-    size_t n = part->size;
-    uint32_t r = part->ring[0], s = part->ring[n];
-    for (int i = 0; i < 2; i++) {
-        uint32_t t = part->tet[i ? n - 1 : 0], opposite = part->ring[i ? n - 1 : 1];
-        uint32_t across = mesh->neighbour[t][tm_tet_corner(mesh, t, opposite)];
-        renewal[i].face = across & ~TM_FACE_BIT;
-        for (int k = 0; k < 3; k++) {
-            uint32_t v = mesh->face[renewal[i].face].node[k];
-            if (first && v == (i ? part->a : part->b))
-                v = i ? r : s;
-            renewal[i].node[k] = v;
-        }
-    }
-}
-
 /* Removes the edge as it was planned. */
 static bool remove_edge(tm_improver *m)
 {
@@ -130,7 +110,7 @@ static bool remove_edge(tm_improver *m)
     for (int k = 0; k < parts && m->status == TM_OK; k++) {
         tm_edge_removal_list(&part[k], &m->removal[k], m->node);
         if (!inside)
-            renew_faces(m->mesh, &part[k], k == 0, renewal);
+            tm_edge_removal_renewals(m->mesh, &part[k], k == 0, renewal);
         tm_replacement what = {.old = part[k].tet,
                                .old_count = part[k].size,
                                .node = (const uint32_t(*)[4])m->node,

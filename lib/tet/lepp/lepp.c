@@ -1,23 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "lepp.h"
+/* Targets and passes. */
+#include "lepp_engine.h"
 
 #include "../../base/array.h"
 #include "../../geom/space_order.h"
-#include "lepp_engine.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-bool tm_lepp_add_target(tm_lepp_engine *e, uint32_t t)
-{
-    uint32_t *target =
-        tm_grow(e->target, &e->target_room, e->targets + 1, sizeof *target);
-    if (!target)
-        return false;
-    e->target = target;
-    target[e->targets++] = t;
-    return true;
-}
 
 /* One pass over S, which may grow on the way. */
 static tm_status improve_all(tm_lepp_engine *e)
@@ -162,16 +151,18 @@ static tm_status run(tm_lepp_engine *e)
     return status == TM_OK ? improve_all(e) : status;
 }
 
-bool tm_lepp_reserve(tm_lepp_engine *e, size_t more)
+/* Finds the extreme angles of the mesh. */
+static void measure_angles(tm_lepp_engine *e)
 {
-    size_t slots = e->mesh->slots + more;
-    uint16_t *mark = tm_grow(e->mark, &e->mark_room, slots, sizeof *mark);
-    e->mark = mark ? mark : e->mark;
-    double *quality = tm_grow(e->quality, &e->quality_room, slots, sizeof *quality);
-    e->quality = quality ? quality : e->quality;
-    uint32_t *created = tm_grow(e->created, &e->created_room, more, sizeof *created);
-    e->created = created ? created : e->created;
-    return mark && quality && created;
+    const tm_tet_mesh *mesh = e->mesh;
+    const double(*x)[3] = (const double(*)[3])mesh->xyz;
+    e->sweeper.limits = tm_angle_limits_none();
+    for (uint32_t t = 0; t < mesh->slots; t++) {
+        const uint32_t *n = mesh->tet[t];
+        if (tm_tet_lives(mesh, t))
+            tm_angle_limits_include(&e->sweeper.limits, x[n[0]], x[n[1]], x[n[2]],
+                                    x[n[3]]);
+    }
 }
 
 static tm_status start(tm_lepp_engine *e)
@@ -196,7 +187,7 @@ static tm_status start(tm_lepp_engine *e)
         e->report->not_delaunay_before = tm_tet_mesh_not_delaunay(mesh);
     }
     if (e->options->sweeps)
-        tm_lepp_measure_angles(e);
+        measure_angles(e);
     return TM_OK;
 }
 
@@ -207,6 +198,17 @@ static void finish(tm_lepp_engine *e)
         e->report->not_delaunay_after = tm_tet_mesh_not_delaunay(e->mesh);
         e->report->delaunay = e->delaunay.cavity.report;
     }
+}
+
+static void free_sweeper(tm_lepp_sweeper *s)
+{
+    tm_features_free(&s->features);
+    tm_ball_free(&s->ball);
+    tm_tet_marks_free(&s->marks);
+    tm_star_free(&s->star);
+    tm_replacement_table_free(&s->table);
+    free(s->tet_at);
+    tm_tet_marks_free(&s->seen);
 }
 
 static void free_engine(tm_lepp_engine *e)
@@ -222,7 +224,7 @@ static void free_engine(tm_lepp_engine *e)
     free(e->target);
     free(e->created);
     tm_delaunay_free(&e->delaunay);
-    tm_lepp_sweeper_free(&e->sweeper);
+    free_sweeper(&e->sweeper);
 }
 
 tm_status tm_lepp_improve(tm_tet_mesh *mesh, const tm_lepp_options *options,
@@ -238,10 +240,10 @@ tm_status tm_lepp_improve(tm_tet_mesh *mesh, const tm_lepp_options *options,
         .gain = tm_gain_of(options->measure, fmax(options->factor, 1 + TM_LEPP_GAIN)),
         .most_tets = tm_tet_mesh_most(mesh, options->max_growth)};
     tm_status status = start(&e);
-    if (status == TM_OK) {
+    if (status == TM_OK)
         status = run(&e);
+    if (status == TM_OK)
         finish(&e);
-    }
     free_engine(&e);
     return status;
 }

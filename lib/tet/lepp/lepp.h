@@ -109,7 +109,8 @@ typedef struct tm_lepp_report {
 
 /* Improves the mesh. Every operation is exactly valid: boundary, regions, markers and
  * volume (but for the rounding of inserted points) stay. After an error the mesh is
- * still valid, improved as far as it got. Deterministic. */
+ * still valid, improved as far as it got, and the report has not what is counted at the
+ * end. Deterministic. */
 tm_status tm_lepp_improve(tm_tet_mesh *mesh, const tm_lepp_options *options,
                           tm_lepp_report *report, tm_error *error);
 

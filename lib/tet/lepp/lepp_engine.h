@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the files of LEPP share, for these only: lepp.c (targets and passes), lepp_path.c
- * (from a target to terminal stars), lepp_star.c (what is done with one of them),
- * lepp_block.c (where nothing is to be done), and the sweeps between passes,
- * lepp_smooth.c and lepp_swap.c. */
+/* What the files of LEPP share, for these only. Each calls those below it: lepp.c
+ * (targets and passes); lepp_path.c (from a target to terminal stars), and the sweeps
+ * between passes, lepp_smooth.c and lepp_swap.c; lepp_star.c (what is done with a
+ * terminal star); lepp_engine.c (what is known of the mesh). */
 #ifndef TM_LEPP_LEPP_ENGINE_H
 #define TM_LEPP_LEPP_ENGINE_H
 
@@ -56,11 +56,9 @@ typedef struct tm_lepp_sweeper {
     tm_tet_marks marks;
     tm_star star;
     tm_replacement_table table;
-    uint32_t *tet_at; /* [nodes]: a tetrahedron that has the node, or TM_NONE */
-    uint32_t *seen;   /* [nodes]: look, if met */
-    uint32_t stamp;
-    double *value; /* [node_attributes] */
-    size_t tet_at_room, seen_room, value_room;
+    uint32_t *tet_at;  /* [nodes]: a tetrahedron that has the node, or TM_NONE */
+    tm_tet_marks seen; /* nodes of a mean */
+    size_t tet_at_room;
 } tm_lepp_sweeper;
 
 typedef struct tm_lepp_engine {
@@ -135,10 +133,6 @@ tm_status tm_lepp_process_star(tm_lepp_engine *e, const tm_star *star, size_t vi
  * that makes the worst tetrahedron better. */
 tm_status tm_lepp_smooth(tm_lepp_engine *e);
 tm_status tm_lepp_swap(tm_lepp_engine *e);
-void tm_lepp_sweeper_free(tm_lepp_sweeper *s);
-
-/* Finds the extreme angles of the mesh. */
-void tm_lepp_measure_angles(tm_lepp_engine *e);
 
 /* Whether the mesh may have so many tetrahedra more. */
 static inline bool tm_lepp_may_grow(const tm_lepp_engine *e, size_t more)

@@ -1,75 +1,78 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "../../base/report.h"
 #include "lepp.h"
 
-static void histogram(tm_json *json, const char *key, const size_t *count, size_t bins)
-{
-    tm_json_open(json, key, '[');
-    for (size_t i = 0; i < bins; i++)
-        tm_json_integer(json, NULL, (int64_t)count[i]);
-    tm_json_close(json, ']');
-}
+#define ROW(key, member)   TM_REPORT_ROW(key, NULL, NULL, tm_lepp_report, member)
+#define SWEEP(key, member) TM_REPORT_ROW(key, NULL, NULL, tm_lepp_sweep_report, member)
 
-static void operations_json(tm_json *json, const tm_lepp_report *r)
-{
-    tm_json_open(json, "operations", '{');
-    tm_json_integer(json, "edge_removals", (int64_t)r->swaps);
-    tm_json_integer(json, "centroids", (int64_t)r->centroids);
-    tm_json_integer(json, "midpoints", (int64_t)r->midpoints);
-    tm_json_integer(json, "boundary_midpoints", (int64_t)r->open_midpoints);
-    tm_json_close(json, '}');
-}
+static const tm_report_row head[] = {ROW("passes", passes),
+                                     ROW("targets", targets),
+                                     TM_REPORT_OPEN_ROW("operations"),
+                                     ROW("edge_removals", swaps),
+                                     ROW("centroids", centroids),
+                                     ROW("midpoints", midpoints),
+                                     ROW("boundary_midpoints", open_midpoints),
+                                     TM_REPORT_CLOSE_ROW,
+                                     TM_REPORT_OPEN_ROW("stars"),
+                                     ROW("closed", closed),
+                                     ROW("open", open),
+                                     TM_REPORT_OPEN_ROW("refused"),
+                                     ROW("closed", refused_closed),
+                                     ROW("open", refused_open),
+                                     ROW("locked", locked),
+                                     ROW("above_max_star", above_max),
+                                     ROW("above_max_growth", no_room),
+                                     ROW("for_extreme_angles", angle_kept),
+                                     TM_REPORT_CLOSE_ROW,
+                                     TM_REPORT_OPEN_ROW("invalid_centroids"),
+                                     ROW("outside", outside),
+                                     ROW("tangled", tangled),
+                                     TM_REPORT_CLOSE_ROW,
+                                     {0}};
+static const tm_report_row invalid_swaps[] = {ROW("invalid_swaps", no_swap), {0}};
+static const tm_report_row sizes[] = {ROW("closed", closed_size),
+                                      ROW("open", open_size),
+                                      ROW("swapped", swap_size),
+                                      ROW("inserted", insertion_size),
+                                      ROW("inserted_open", open_insertion_size),
+                                      {0}};
+static const tm_report_row refused_sizes[] = {
+    ROW("refused", closed_size), ROW("refused_open", open_size), {0}};
+static const tm_report_row visits[] = {ROW("too_large_to_swap", too_large),
+                                       ROW("visited", visited),
+                                       ROW("visits", visits),
+                                       ROW("most_visited", most_visited),
+                                       {0}};
+static const tm_report_row branches[] = {ROW("branches", branches), {0}};
+static const tm_report_row paths[] = {
+    ROW("longest_path", longest), ROW("abandoned", abandoned), {0}};
 
-static void refused_json(tm_json *json, const tm_lepp_report *r)
-{
-    tm_json_open(json, "refused", '{');
-    tm_json_integer(json, "closed", (int64_t)r->refused_closed);
-    tm_json_integer(json, "open", (int64_t)r->refused_open);
-    tm_json_integer(json, "locked", (int64_t)r->locked);
-    tm_json_integer(json, "above_max_star", (int64_t)r->above_max);
-    tm_json_integer(json, "above_max_growth", (int64_t)r->no_room);
-    tm_json_integer(json, "for_extreme_angles", (int64_t)r->angle_kept);
-    tm_json_close(json, '}');
-}
+static const tm_report_row delaunay[] = {TM_REPORT_OPEN_ROW("delaunay"),
+                                         ROW("wrong_faces_before", not_delaunay_before),
+                                         ROW("wrong_faces_after", not_delaunay_after),
+                                         ROW("cavities", delaunay.insertions),
+                                         ROW("tets_removed", delaunay.removed),
+                                         ROW("facet_flips", delaunay.flipped),
+                                         ROW("stopped_at_faces", delaunay.stopped),
+                                         ROW("refused", delaunay.refused),
+                                         ROW("cut_back", delaunay.cut_back),
+                                         TM_REPORT_CLOSE_ROW,
+                                         {0}};
+
+static const tm_report_row sweep[] = {
+    SWEEP("sweeps", sweeps), SWEEP("tried", tried), SWEEP("invalid", invalid), {0}};
+static const tm_report_row by_sweep[] = {SWEEP("by_sweep", done), {0}};
 
 static void sizes_json(tm_json *json, const tm_lepp_report *r)
 {
-    size_t refused_closed[TM_LEPP_SIZES], refused_open[TM_LEPP_SIZES];
+    tm_lepp_report refused = *r;
     for (int i = 0; i < TM_LEPP_SIZES; i++) {
-        refused_closed[i] = r->closed_size[i] - r->swap_size[i] - r->insertion_size[i];
-        refused_open[i] = r->open_size[i] - r->open_insertion_size[i];
+        refused.closed_size[i] -= r->swap_size[i] + r->insertion_size[i];
+        refused.open_size[i] -= r->open_insertion_size[i];
     }
     tm_json_open(json, "sizes", '{');
-    histogram(json, "closed", r->closed_size, TM_LEPP_SIZES);
-    histogram(json, "open", r->open_size, TM_LEPP_SIZES);
-    histogram(json, "swapped", r->swap_size, TM_LEPP_SIZES);
-    histogram(json, "inserted", r->insertion_size, TM_LEPP_SIZES);
-    histogram(json, "inserted_open", r->open_insertion_size, TM_LEPP_SIZES);
-    histogram(json, "refused", refused_closed, TM_LEPP_SIZES);
-    histogram(json, "refused_open", refused_open, TM_LEPP_SIZES);
-    tm_json_close(json, '}');
-}
-
-static void stars_json(tm_json *json, const tm_lepp_options *o, const tm_lepp_report *r)
-{
-    tm_json_open(json, "stars", '{');
-    tm_json_integer(json, "closed", (int64_t)r->closed);
-    tm_json_integer(json, "open", (int64_t)r->open);
-    refused_json(json, r);
-    tm_json_open(json, "invalid_centroids", '{');
-    tm_json_integer(json, "outside", (int64_t)r->outside);
-    tm_json_integer(json, "tangled", (int64_t)r->tangled);
-    tm_json_close(json, '}');
-    if (o->count_invalid_swaps)
-        tm_json_integer(json, "invalid_swaps", (int64_t)r->no_swap);
-    sizes_json(json, r);
-    tm_json_integer(json, "too_large_to_swap", (int64_t)r->too_large);
-    histogram(json, "visited", r->visited, TM_LEPP_VISITS);
-    tm_json_integer(json, "visits", (int64_t)r->visits);
-    tm_json_integer(json, "most_visited", (int64_t)r->most_visited);
-    if (o->path == TM_LEPP_FULL)
-        histogram(json, "branches", r->branches, TM_LEPP_VISITS);
-    tm_json_integer(json, "longest_path", (int64_t)r->longest);
-    tm_json_integer(json, "abandoned", (int64_t)r->abandoned);
+    tm_report_json(json, sizes, r);
+    tm_report_json(json, refused_sizes, &refused);
     tm_json_close(json, '}');
 }
 
@@ -77,40 +80,29 @@ static void sweep_json(tm_json *json, const char *key, const tm_lepp_sweep_repor
                        const char *done, const char *on_surface)
 {
     tm_json_open(json, key, '{');
-    tm_json_integer(json, "sweeps", (int64_t)r->sweeps);
-    tm_json_integer(json, "tried", (int64_t)r->tried);
-    tm_json_integer(json, "invalid", (int64_t)r->invalid);
+    tm_report_json(json, sweep, r);
     tm_json_integer(json, done, (int64_t)tm_lepp_swept(r));
     tm_json_integer(json, on_surface, (int64_t)r->on_surface);
-    histogram(json, "by_sweep", r->done, TM_LEPP_SWEEPS);
-    tm_json_close(json, '}');
-}
-
-static void delaunay_json(tm_json *json, const tm_lepp_report *r)
-{
-    tm_json_open(json, "delaunay", '{');
-    tm_json_integer(json, "wrong_faces_before", (int64_t)r->not_delaunay_before);
-    tm_json_integer(json, "wrong_faces_after", (int64_t)r->not_delaunay_after);
-    tm_json_integer(json, "cavities", (int64_t)r->delaunay.insertions);
-    tm_json_integer(json, "tets_removed", (int64_t)r->delaunay.removed);
-    tm_json_integer(json, "facet_flips", (int64_t)r->delaunay.flipped);
-    tm_json_integer(json, "stopped_at_faces", (int64_t)r->delaunay.stopped);
-    tm_json_integer(json, "refused", (int64_t)r->delaunay.refused);
-    tm_json_integer(json, "cut_back", (int64_t)r->delaunay.cut_back);
+    tm_report_json(json, by_sweep, r);
     tm_json_close(json, '}');
 }
 
 void tm_lepp_report_json(tm_json *json, const tm_lepp_options *options,
                          const tm_lepp_report *report)
 {
-    tm_json_integer(json, "passes", (int64_t)report->passes);
-    tm_json_integer(json, "targets", (int64_t)report->targets);
-    operations_json(json, report);
-    stars_json(json, options, report);
+    tm_report_json(json, head, report);
+    if (options->count_invalid_swaps)
+        tm_report_json(json, invalid_swaps, report);
+    sizes_json(json, report);
+    tm_report_json(json, visits, report);
+    if (options->path == TM_LEPP_FULL)
+        tm_report_json(json, branches, report);
+    tm_report_json(json, paths, report);
+    tm_json_close(json, '}'); /* stars */
     if (options->sweeps & TM_SWEEP_SMOOTH)
         sweep_json(json, "smoothing", &report->smooth, "moved", "moved_on_surface");
     if (options->sweeps & TM_SWEEP_SWAP)
         sweep_json(json, "face_swaps", &report->swap, "swapped", "swapped_2_2");
     if (options->algorithm == TM_LEPP_DELAUNAY)
-        delaunay_json(json, report);
+        tm_report_json(json, delaunay, report);
 }

@@ -3,50 +3,18 @@
 #include "lepp_engine.h"
 
 #include "../../base/array.h"
-#include "../operation/interpolation.h"
 
-#include <stdlib.h>
 #include <string.h>
 
-void tm_lepp_sweeper_free(tm_lepp_sweeper *s)
-{
-    tm_features_free(&s->features);
-    tm_ball_free(&s->ball);
-    tm_tet_marks_free(&s->marks);
-    tm_star_free(&s->star);
-    tm_replacement_table_free(&s->table);
-    free(s->tet_at);
-    free(s->seen);
-    free(s->value);
-}
-
-void tm_lepp_measure_angles(tm_lepp_engine *e)
-{
-    const tm_tet_mesh *mesh = e->mesh;
-    const double(*x)[3] = (const double(*)[3])mesh->xyz;
-    e->sweeper.limits = tm_angle_limits_none();
-    for (uint32_t t = 0; t < mesh->slots; t++) {
-        const uint32_t *n = mesh->tet[t];
-        if (tm_tet_lives(mesh, t))
-            tm_angle_limits_include(&e->sweeper.limits, x[n[0]], x[n[1]], x[n[2]],
-                                    x[n[3]]);
-    }
-}
-
-/* A tetrahedron at each node, and marks for the nodes. */
+/* A tetrahedron at each node. */
 static bool start(tm_lepp_engine *e)
 {
     const tm_tet_mesh *mesh = e->mesh;
     tm_lepp_sweeper *s = &e->sweeper;
-    size_t room = s->seen_room;
     uint32_t *tet_at = tm_grow(s->tet_at, &s->tet_at_room, mesh->nodes, sizeof *tet_at);
-    s->tet_at = tet_at ? tet_at : s->tet_at;
-    uint32_t *seen = tm_grow(s->seen, &room, mesh->nodes, sizeof *seen);
-    if (!tet_at || !seen)
+    if (!tet_at)
         return false;
-    memset(seen + s->seen_room, 0, (room - s->seen_room) * sizeof *seen);
-    s->seen = seen;
-    s->seen_room = room;
+    s->tet_at = tet_at;
     for (size_t v = 0; v < mesh->nodes; v++)
         tet_at[v] = TM_NONE;
     for (uint32_t t = 0; t < mesh->slots; t++)
@@ -66,26 +34,11 @@ typedef struct mean {
 
 static void add_to_mean(tm_lepp_sweeper *s, mean *m, uint32_t v)
 {
-    if (s->seen[v] == s->stamp)
+    if (!tm_tet_mark(&s->seen, v))
         return;
-    s->seen[v] = s->stamp;
     for (int k = 0; k < 3; k++)
         m->sum[k] += m->mesh->xyz[v][k] - m->from[k];
     m->count++;
-}
-
-/* The nodes of the facet around the node of the ball. */
-static void add_facet(tm_lepp_sweeper *s, mean *m)
-{
-    const tm_tet_mesh *mesh = m->mesh;
-    for (size_t k = 0; k < s->ball.size; k++)
-        for (uint32_t i = 0; i < 4; i++) {
-            uint32_t t = s->ball.tet[k], f = mesh->neighbour[t][i];
-            if (!(f & TM_FACE_BIT) || mesh->tet[t][i] == s->ball.node)
-                continue;
-            for (int c = 0; c < 3; c++)
-                add_to_mean(s, m, mesh->face[f & ~TM_FACE_BIT].node[c]);
-        }
 }
 
 /* The mean of the neighbours of the ball's node: of all inside, of those in its facet, of
@@ -94,16 +47,14 @@ static void find_mean(tm_lepp_engine *e, int dimension, double p[3])
 {
     tm_lepp_sweeper *s = &e->sweeper;
     mean m = {.mesh = e->mesh, .from = e->mesh->xyz[s->ball.node]};
-    if (++s->stamp == 0) {
-        memset(s->seen, 0, s->seen_room * sizeof *s->seen);
-        s->stamp = 1;
-    }
-    s->seen[s->ball.node] = s->stamp;
+    tm_tet_mark(&s->seen, s->ball.node);
     if (dimension == 1) {
         add_to_mean(s, &m, s->features.line[s->ball.node][0]);
         add_to_mean(s, &m, s->features.line[s->ball.node][1]);
     } else if (dimension == 2) {
-        add_facet(s, &m);
+        for (size_t k = 0; k < s->ball.constrained_count; k++)
+            for (int i = 0; i < 3; i++)
+                add_to_mean(s, &m, e->mesh->face[s->ball.constrained[k]].node[i]);
     } else {
         for (size_t k = 0; k < s->ball.size; k++)
             for (int i = 0; i < 3; i++)
@@ -134,25 +85,6 @@ static bool is_better(const tm_lepp_engine *e, const tm_cavity_boundary *boundar
     return true;
 }
 
-/* Moves the node of the ball. */
-static bool move(tm_lepp_engine *e, const double p[3])
-{
-    tm_lepp_sweeper *s = &e->sweeper;
-    tm_tet_mesh *mesh = e->mesh;
-    size_t width = mesh->node_attributes;
-    if (width > 0) {
-        double *value = tm_grow(s->value, &s->value_room, width, sizeof *value);
-        if (!value)
-            return false;
-        s->value = value;
-        tm_tet_interpolate(mesh, s->ball.tet, s->ball.size, p, value);
-        memcpy(mesh->node_attribute + s->ball.node * width, value, width * sizeof *value);
-    }
-    memcpy(mesh->xyz[s->ball.node], p, sizeof mesh->xyz[0]);
-    return tm_lepp_note(e, s->ball.tet, s->ball.size) &&
-           tm_lepp_unblock(e, s->ball.tet, s->ball.size);
-}
-
 static tm_status smooth_node(tm_lepp_engine *e, uint32_t v, size_t sweep)
 {
     tm_lepp_sweep_report *report = &e->report->smooth;
@@ -161,7 +93,8 @@ static tm_status smooth_node(tm_lepp_engine *e, uint32_t v, size_t sweep)
     double p[3];
     if (s->tet_at[v] == TM_NONE || dimension == 0)
         return TM_OK;
-    if (!tm_ball_around(e->mesh, s->tet_at[v], v, &s->marks, &s->ball))
+    if (!tm_ball_around(e->mesh, s->tet_at[v], v, &s->marks, &s->ball) ||
+        !tm_tet_marks_clear(&s->seen, e->mesh->nodes))
         return tm_fail_memory(e->error);
     report->tried++;
     find_mean(e, dimension, p);
@@ -172,9 +105,16 @@ static tm_status smooth_node(tm_lepp_engine *e, uint32_t v, size_t sweep)
     }
     if (!is_better(e, &boundary, p))
         return TM_OK;
+    tm_status status = tm_tet_mesh_reserve(e->mesh, 1, 0, 0, 0, e->error);
+    if (status != TM_OK)
+        return status;
+    tm_ball_move_node(e->mesh, &s->ball, p);
     report->done[sweep]++;
     report->on_surface += dimension < 3;
-    return move(e, p) ? TM_OK : tm_fail_memory(e->error);
+    return tm_lepp_note(e, s->ball.tet, s->ball.size) &&
+                   tm_lepp_unblock(e, s->ball.tet, s->ball.size)
+               ? TM_OK
+               : tm_fail_memory(e->error);
 }
 
 tm_status tm_lepp_smooth(tm_lepp_engine *e)

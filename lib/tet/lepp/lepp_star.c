@@ -4,7 +4,6 @@
 
 #include "../../geom/predicates.h"
 #include "../../geom/vector.h"
-#include "../mesh_measure.h"
 #include "../operation/star_insertion.h"
 
 #include <float.h>
@@ -15,29 +14,6 @@ enum { SWAPS_PER_TARGET = 64 };
 
 /* What is to be done with a terminal star. */
 typedef enum { REFUSE, REMOVE_EDGE, INSERT_CENTROID, INSERT_MIDPOINT } operation;
-
-void tm_lepp_measure(tm_lepp_engine *e, const uint32_t *tet, size_t count)
-{
-    const tm_tet_mesh *mesh = e->mesh;
-    double sine2[TM_MEASURED_AT_ONCE];
-    uint8_t longest[TM_MEASURED_AT_ONCE];
-    for (size_t i = 0, some; i < count; i += some) {
-        some = count - i < TM_MEASURED_AT_ONCE ? count - i : TM_MEASURED_AT_ONCE;
-        tm_tet_mesh_measure(mesh, tet + i, some, sine2, longest);
-        for (size_t k = 0; k < some; k++) {
-            uint32_t t = tet[i + k];
-            e->quality[t] = sine2[k];
-            e->mark[t] =
-                (uint16_t)(longest[k] | (sine2[k] < e->bad_below ? TM_LEPP_BAD : 0));
-        }
-    }
-    for (size_t i = 0; i < count && e->options->measure != TM_MEASURE_DIHEDRAL; i++) {
-        const uint32_t *n = mesh->tet[tet[i]];
-        e->quality[tet[i]] =
-            tm_tet_measure_of(e->options->measure, mesh->xyz[n[0]], mesh->xyz[n[1]],
-                              mesh->xyz[n[2]], mesh->xyz[n[3]]);
-    }
-}
 
 static double worst_quality(const tm_lepp_engine *e, const tm_star *star)
 {
@@ -226,19 +202,6 @@ static void count_star(tm_lepp_engine *e, const tm_star *star, bool is_free,
     bool inserted = chosen == INSERT_CENTROID || chosen == INSERT_MIDPOINT;
     r->insertion_size[size] += star->closed && inserted;
     r->open_insertion_size[size] += !star->closed && inserted;
-}
-
-bool tm_lepp_note(tm_lepp_engine *e, const uint32_t *tet, size_t count)
-{
-    tm_lepp_measure(e, tet, count);
-    for (size_t i = 0; i < count; i++) {
-        uint32_t t = tet[i];
-        if (t < e->graph.room)
-            e->graph.stamp[t] = 0; /* another one than the path may have seen */
-        if (e->reintroduce && (e->mark[t] & TM_LEPP_BAD) && !tm_lepp_add_target(e, t))
-            return false;
-    }
-    return true;
 }
 
 /* Inserts the midpoint by its Delaunay cavity. */

@@ -93,29 +93,14 @@ static swap across_face(const tm_tet_mesh *mesh, uint32_t t, uint32_t i)
     return s;
 }
 
-/* The face of tetrahedron t opposite node v, with `to` in the place of `from`. */
-static tm_face_renewal renewed(const tm_tet_mesh *mesh, uint32_t t, uint32_t v,
-                               uint32_t from, uint32_t to)
+/* 2-2: the edge of an open star of two tetrahedra goes, and the ring's ends are joined in
+ * its facet. */
+static swap in_facet(tm_lepp_engine *e, const tm_star *star)
 {
-    uint32_t f = mesh->neighbour[t][tm_tet_corner(mesh, t, v)] & ~TM_FACE_BIT;
-    tm_face_renewal renewal = {.face = f};
-    for (int k = 0; k < 3; k++) {
-        uint32_t n = mesh->face[f].node[k];
-        renewal.node[k] = n == from ? to : n;
-    }
-    return renewal;
-}
-
-/* 2-2: the edge ab of an open star of two tetrahedra goes, and the ring's ends are joined
- * in its facet. */
-static swap in_facet(const tm_tet_mesh *mesh, const tm_star *star)
-{
-    const uint32_t *r = star->ring;
-    swap s = {.old = {star->tet[0], star->tet[1]}, .count = 2, .renewals = 2};
-    memcpy(s.node[0], (uint32_t[4]){r[0], r[1], r[2], star->b}, sizeof s.node[0]);
-    memcpy(s.node[1], (uint32_t[4]){r[0], r[2], r[1], star->a}, sizeof s.node[1]);
-    s.renewal[0] = renewed(mesh, star->tet[0], r[1], star->b, r[2]);
-    s.renewal[1] = renewed(mesh, star->tet[1], r[1], star->a, r[0]);
+    swap s = {.old = {star->tet[0], star->tet[1]}, .renewals = 2};
+    e->removal.apex[0][2] = 1; /* the ring is one triangle */
+    s.count = tm_edge_removal_list(star, &e->removal, s.node);
+    tm_edge_removal_renewals(e->mesh, star, true, s.renewal);
     return s;
 }
 
@@ -140,7 +125,7 @@ static tm_status swap_edges(tm_lepp_engine *e, uint32_t t, size_t sweep)
             tm_features_classify(&e->sweeper.features, e->mesh, star, kept) !=
                 TM_EDGE_IN_FACET)
             continue;
-        swap s = in_facet(e->mesh, star);
+        swap s = in_facet(e, star);
         tm_status status = consider(e, &s, sweep, &done);
         if (status != TM_OK || done)
             return status;

@@ -12,11 +12,11 @@ void tm_tet_marks_free(tm_tet_marks *marks)
     *marks = (tm_tet_marks){0};
 }
 
-bool tm_tet_marks_clear(tm_tet_marks *marks, size_t slots)
+bool tm_tet_marks_clear(tm_tet_marks *marks, size_t count)
 {
-    if (slots > marks->room) {
+    if (count > marks->room) {
         size_t room = marks->room;
-        uint32_t *stamp = tm_grow(marks->stamp, &room, slots, sizeof *stamp);
+        uint32_t *stamp = tm_grow(marks->stamp, &room, count, sizeof *stamp);
         if (!stamp)
             return false;
         memset(stamp + marks->room, 0, (room - marks->room) * sizeof *stamp);
@@ -34,6 +34,7 @@ void tm_ball_free(tm_ball *ball)
 {
     free(ball->tet);
     free(ball->face);
+    free(ball->constrained);
     *ball = (tm_ball){0};
 }
 
@@ -64,8 +65,7 @@ bool tm_ball_around(const tm_tet_mesh *mesh, uint32_t t, uint32_t v, tm_tet_mark
                     tm_ball *ball)
 {
     ball->node = v;
-    ball->size = 0;
-    ball->constrained_face = false;
+    ball->size = ball->constrained_count = 0;
     if (!tm_tet_marks_clear(marks, mesh->slots) || !reserve(ball, 1))
         return false;
     tm_tet_mark(marks, t);
@@ -79,7 +79,9 @@ bool tm_ball_around(const tm_tet_mesh *mesh, uint32_t t, uint32_t v, tm_tet_mark
                 continue;
             uint32_t across = mesh->neighbour[u][i];
             if (across & TM_FACE_BIT) {
-                ball->constrained_face = true;
+                if (!tm_append(&ball->constrained, &ball->constrained_count,
+                               &ball->constrained_room, across & ~TM_FACE_BIT))
+                    return false;
                 across = tm_tet_across(mesh, u, i);
                 if (across == TM_NONE)
                     continue;
@@ -89,4 +91,15 @@ bool tm_ball_around(const tm_tet_mesh *mesh, uint32_t t, uint32_t v, tm_tet_mark
         }
     }
     return true;
+}
+
+void tm_ball_move_node(tm_tet_mesh *mesh, const tm_ball *ball, const double p[3])
+{
+    size_t width = mesh->node_attributes;
+    if (width > 0) {
+        double *value = mesh->node_attribute + mesh->nodes * width;
+        tm_tet_interpolate(mesh, ball->tet, ball->size, p, value);
+        memcpy(mesh->node_attribute + ball->node * width, value, width * sizeof *value);
+    }
+    memcpy(mesh->xyz[ball->node], p, sizeof mesh->xyz[ball->node]);
 }

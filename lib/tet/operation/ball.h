@@ -6,7 +6,7 @@
 #include "cavity_boundary.h"
 #include "../mesh.h"
 
-/* Marks on tetrahedra that are all taken away at once. */
+/* Marks on tetrahedra, or on nodes, that are all taken away at once. */
 typedef struct tm_tet_marks {
     uint32_t *stamp; /* [room]; marked: == now */
     size_t room;
@@ -15,8 +15,8 @@ typedef struct tm_tet_marks {
 
 void tm_tet_marks_free(tm_tet_marks *marks);
 
-/* Takes all marks away; room for `slots` tetrahedra. False where memory is out. */
-bool tm_tet_marks_clear(tm_tet_marks *marks, size_t slots);
+/* Takes all marks away; room for so many. False where memory is out. */
+bool tm_tet_marks_clear(tm_tet_marks *marks, size_t count);
 
 /* Marks t; whether it was not marked before. */
 static inline bool tm_tet_mark(tm_tet_marks *marks, uint32_t t)
@@ -37,10 +37,12 @@ static inline bool tm_tet_is_marked(const tm_tet_marks *marks, uint32_t t)
 typedef struct tm_ball {
     uint32_t node;
     size_t size;
-    bool constrained_face; /* a face that has to stay is at the node */
     uint32_t *tet;
     uint32_t (*face)[3];
     size_t room;
+    /* The constrained faces at the node; those between two of the tetrahedra twice. */
+    uint32_t *constrained;
+    size_t constrained_count, constrained_room;
 } tm_ball;
 
 void tm_ball_free(tm_ball *ball);
@@ -49,6 +51,10 @@ void tm_ball_free(tm_ball *ball);
  * other marks are gone. False where memory is out. O(size). */
 bool tm_ball_around(const tm_tet_mesh *mesh, uint32_t t, uint32_t v, tm_tet_marks *marks,
                     tm_ball *ball);
+
+/* Moves the node of a ball to p; attributes stay a field. There must be room for one more
+ * node, whose attributes are written over. O(size). */
+void tm_ball_move_node(tm_tet_mesh *mesh, const tm_ball *ball, const double p[3]);
 
 /* The faces around the ball; they hold until the ball or the mesh is changed. */
 static inline tm_cavity_boundary tm_boundary_of_ball(const tm_ball *ball,

@@ -38,12 +38,8 @@ static bool add_face(tm_cavity *cavity, const tm_tet_mesh *mesh, uint32_t t, uin
 bool tm_cavity_add(tm_cavity *cavity, const tm_tet_mesh *mesh, tm_tet_marks *marks,
                    uint32_t t)
 {
-    uint32_t *tet =
-        tm_grow(cavity->tet, &cavity->tet_room, cavity->size + 1, sizeof *tet);
-    if (!tet)
+    if (!tm_append(&cavity->tet, &cavity->size, &cavity->tet_room, t))
         return false;
-    cavity->tet = tet;
-    tet[cavity->size++] = t;
     tm_tet_mark(marks, t);
     /* Faces that t shares with the cavity are inside now. */
     size_t kept = 0;

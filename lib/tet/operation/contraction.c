@@ -85,12 +85,8 @@ void tm_contract(tm_tet_mesh *mesh, const tm_ball *ball, uint32_t b, uint32_t *c
     for (size_t i = 0; i < ball->size; i++)
         for (int k = 0; k < 3 && mesh->edge_of.count > 0; k++)
             move_edge(mesh, a, ball->face[i][k], b);
-    for (size_t i = 0; i < ball->size && ball->constrained_face; i++)
-        for (uint32_t k = 0; k < 4; k++) {
-            uint32_t across = mesh->neighbour[ball->tet[i]][k];
-            if (across & TM_FACE_BIT && mesh->tet[ball->tet[i]][k] != a)
-                move_face(mesh, across & ~TM_FACE_BIT, a, b);
-        }
+    for (size_t k = 0; k < ball->constrained_count; k++)
+        move_face(mesh, ball->constrained[k], a, b);
     for (size_t i = 0; i < ball->size; i++) {
         uint32_t t = ball->tet[i];
         if (has_node(ball->face[i], b)) {

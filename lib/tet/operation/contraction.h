@@ -17,8 +17,9 @@
 double tm_contraction_cost(const tm_tet_mesh *mesh, const tm_ball *ball, uint32_t b,
                            const tm_cost *cost, double least, double most, size_t *gone);
 
-/* Contracts the ball's node into b. Kept faces and edges of .edge move along or go.
- * created[0 … ball->size - gone) are the tetrahedra that stay and are changed. O(size).
+/* Contracts the ball's node into b. Constrained faces and edges of .edge move along or
+ * go. created[0 … ball->size - gone) are the tetrahedra that stay and are changed.
+ * O(size).
  */
 void tm_contract(tm_tet_mesh *mesh, const tm_ball *ball, uint32_t b, uint32_t *created);
 

@@ -4,7 +4,7 @@
 #include "../../base/array.h"
 #include "../../geom/predicates.h"
 #include "../../geom/vector.h"
-#include "../facet.h"
+#include "../mesh_measure.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -17,9 +17,9 @@ void tm_delaunay_cavity_free(tm_delaunay_cavity *cavity)
     free(cavity->tet);
     free(cavity->face);
     free(cavity->constrained);
-    free(cavity->seen);
     tm_tet_marks_free(&cavity->inside);
     tm_tet_marks_free(&cavity->left_out);
+    tm_tet_marks_free(&cavity->seen);
     tm_edge_map_free(&cavity->side);
     *cavity = (tm_delaunay_cavity){0};
 }
@@ -38,12 +38,8 @@ static bool holds(const tm_delaunay_cavity *cavity, const tm_tet_mesh *mesh, uin
 
 static bool add_tet(tm_delaunay_cavity *cavity, uint32_t t)
 {
-    uint32_t *tet =
-        tm_grow(cavity->tet, &cavity->tet_room, cavity->size + 1, sizeof *tet);
-    if (!tet)
+    if (!tm_append(&cavity->tet, &cavity->size, &cavity->tet_room, t))
         return false;
-    cavity->tet = tet;
-    tet[cavity->size++] = t;
     tm_tet_mark(&cavity->inside, t);
     return true;
 }
@@ -310,23 +306,14 @@ static bool match_sides(tm_delaunay_cavity *cavity, const tm_tet_mesh *mesh)
 }
 
 /* Marks the nodes of the faces. */
-static bool look_at_nodes(tm_delaunay_cavity *cavity, const tm_tet_mesh *mesh)
+static bool mark_nodes(tm_delaunay_cavity *cavity, const tm_tet_mesh *mesh)
 {
-    size_t room = cavity->seen_room;
-    uint32_t *seen = tm_grow(cavity->seen, &room, mesh->nodes + 1, sizeof *seen);
-    if (!seen)
+    if (!tm_tet_marks_clear(&cavity->seen, mesh->nodes + 1))
         return false;
-    memset(seen + cavity->seen_room, 0, (room - cavity->seen_room) * sizeof *seen);
-    cavity->seen = seen;
-    cavity->seen_room = room;
-    if (++cavity->stamp == 0) {
-        memset(seen, 0, room * sizeof *seen);
-        cavity->stamp = 1;
-    }
     for (size_t k = 0; k < cavity->faces; k++)
         for (int i = 0; i < 3; i++)
-            seen[cavity->face[k].node[i]] = cavity->stamp;
-    seen[cavity->node] = cavity->stamp;
+            tm_tet_mark(&cavity->seen, cavity->face[k].node[i]);
+    tm_tet_mark(&cavity->seen, cavity->node);
     return true;
 }
 
@@ -335,7 +322,7 @@ static bool loses(const tm_delaunay_cavity *cavity, const tm_tet_mesh *mesh, uin
 {
     const uint32_t *n = mesh->tet[t];
     for (int i = 0; i < 4; i++) {
-        if (cavity->seen[n[i]] != cavity->stamp)
+        if (!tm_tet_is_marked(&cavity->seen, n[i]))
             return true;
         for (int j = 0; j < i && mesh->edge_of.count > 0; j++) {
             const tm_marked_edge *edge = tm_tet_mesh_edge(mesh, n[i], n[j]);
@@ -360,7 +347,7 @@ static bool try_cavity(tm_delaunay_cavity *cavity, const tm_tet_mesh *mesh, bool
         return false;
     if (!*fits)
         return true;
-    if (!clear_sides(cavity) || !look_at_nodes(cavity, mesh))
+    if (!clear_sides(cavity) || !mark_nodes(cavity, mesh))
         return false;
     if (!match_sides(cavity, mesh)) {
         cavity->only_ball = cavity->no_facets;
@@ -380,9 +367,9 @@ static bool find(tm_delaunay_cavity *cavity, const tm_tet_mesh *mesh,
                  const uint32_t *ball, size_t count)
 {
     uint32_t *tet = tm_grow(cavity->tet, &cavity->tet_room, count, sizeof *tet);
+    cavity->tet = tet ? tet : cavity->tet;
     if (!tet || !tm_tet_marks_clear(&cavity->left_out, mesh->slots))
         return false;
-    cavity->tet = tet;
     memcpy(tet, ball, count * sizeof *tet);
     cavity->ball = count;
     cavity->only_ball = cavity->no_facets = cavity->is_cut_back = false;

@@ -49,9 +49,8 @@ typedef struct tm_delaunay_cavity {
     tm_tet_marks inside, left_out;
     bool only_ball, no_facets; /* how a cavity that does not fit is tried again */
     tm_edge_map side;          /* edges of the faces: the first new side face there */
-    uint32_t *seen;            /* [nodes]: look, if on a face */
-    uint32_t stamp;
-    size_t tet_room, face_room, constrained_room, seen_room;
+    tm_tet_marks seen;         /* nodes of the faces */
+    size_t tet_room, face_room, constrained_room;
 } tm_delaunay_cavity;
 
 void tm_delaunay_cavity_free(tm_delaunay_cavity *cavity);

@@ -2,7 +2,7 @@
 #include "delaunay_insertion.h"
 
 #include "../../base/array.h"
-#include "../facet.h"
+#include "../mesh_measure.h"
 #include "star_insertion.h"
 
 #include <stdlib.h>
@@ -103,6 +103,7 @@ static void fill(tm_tet_mesh *mesh, tm_delaunay *d)
 tm_status tm_delaunay_foresee(tm_tet_mesh *mesh, const tm_star *star, const double p[3],
                               tm_delaunay *d, bool *is_whole, tm_error *error)
 {
+    *is_whole = false;
     tm_status status = tm_tet_mesh_reserve(mesh, 1, 0, 0, 0, error);
     if (status != TM_OK)
         return status;

@@ -10,6 +10,7 @@
 
 #include "../../element/tet_measure.h"
 #include "../star.h"
+#include "replacement.h"
 
 /* Larger stars are not tried: the thesis saw 14, the programme costs O(n³). */
 enum { TM_REMOVAL_MAX = 64 };
@@ -32,10 +33,6 @@ static inline bool tm_edge_is_removable(const tm_star *star)
 bool tm_edge_removal_plan(const tm_tet_mesh *mesh, const tm_star *star,
                           tm_tet_measure measure, double least, tm_edge_removal *plan);
 
-/* What that does without the exact signs, for TM_MEASURE_DIHEDRAL where tm_has_four(). */
-bool tm_edge_removal_plan_four(const tm_tet_mesh *mesh, const tm_star *star, double least,
-                               tm_edge_removal *plan);
-
 /* The same for a sum: finds the triangulation whose tetrahedra have the least
  * tm_cost_of() in all, below `most`, while each is at least `least` good and exactly
  * positive. plan->quality is that sum. The star may be open: its ring is triangulated
@@ -47,6 +44,12 @@ bool tm_edge_removal_plan_cheapest(const tm_tet_mesh *mesh, const tm_star *star,
 /* The tetrahedra that a plan makes, 2n - 4 for n nodes of the ring: their nodes. */
 size_t tm_edge_removal_list(const tm_star *star, const tm_edge_removal *plan,
                             uint32_t (*node)[4]);
+
+/* The constrained faces at the two ends of an open star, abr and abs: in a flat facet
+ * they become rsb and ras. Of the stars on the two sides of a facet only the first one
+ * renames them; the other one finds them so. */
+void tm_edge_removal_renewals(const tm_tet_mesh *mesh, const tm_star *star, bool first,
+                              tm_face_renewal renewal[2]);
 
 /* Does what was planned. created[0 … 2n-4) are the tetrahedra made; created has room for
  * them. TM_ERROR_SYSTEM, with nothing changed, where memory is out. O(n). */

@@ -3,7 +3,7 @@
 
 #include "../../base/array.h"
 #include "../../geom/vector.h"
-#include "../facet.h"
+#include "../mesh_measure.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -33,10 +33,8 @@ bool tm_features_reserve(tm_features *features, size_t nodes)
 
 bool tm_features_copy(tm_features *to, const tm_features *from)
 {
-    if (to->room < from->room && !tm_features_reserve(to, from->room)) {
-        tm_features_free(to);
+    if (to->room < from->room && !tm_features_reserve(to, from->room))
         return false;
-    }
     memcpy(to->dimension, from->dimension, from->room * sizeof *to->dimension);
     memcpy(to->line, from->line, from->room * sizeof *to->line);
     to->flatness = from->flatness;
@@ -237,19 +235,14 @@ tm_status tm_features_find(tm_features *features, const tm_tet_mesh *mesh,
 static void facet_normal(const tm_tet_mesh *mesh, const tm_ball *ball, double normal[3])
 {
     memset(normal, 0, 3 * sizeof *normal);
-    for (size_t k = 0; k < ball->size; k++)
-        for (uint32_t i = 0; i < 4; i++) {
-            uint32_t across = mesh->neighbour[ball->tet[k]][i];
-            if (!(across & TM_FACE_BIT) || mesh->tet[ball->tet[k]][i] == ball->node)
-                continue;
-            const uint32_t *n = mesh->face[across & ~TM_FACE_BIT].node;
-            double of_face[3];
-            tm_triangle_normal(of_face, mesh->xyz[n[0]], mesh->xyz[n[1]],
-                               mesh->xyz[n[2]]);
-            double sign = tm_dot(of_face, normal) < 0 ? -1 : 1;
-            for (int x = 0; x < 3; x++)
-                normal[x] += sign * of_face[x];
-        }
+    for (size_t k = 0; k < ball->constrained_count; k++) {
+        const uint32_t *n = mesh->face[ball->constrained[k]].node;
+        double of_face[3];
+        tm_triangle_normal(of_face, mesh->xyz[n[0]], mesh->xyz[n[1]], mesh->xyz[n[2]]);
+        double sign = tm_dot(of_face, normal) < 0 ? -1 : 1;
+        for (int x = 0; x < 3; x++)
+            normal[x] += sign * of_face[x];
+    }
     double length = tm_norm(normal);
     for (int x = 0; x < 3; x++)
         normal[x] /= length;

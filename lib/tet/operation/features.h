@@ -5,7 +5,6 @@
 #define TM_OPERATION_FEATURES_H
 
 #include "ball.h"
-#include "smoothing.h"
 #include "../star.h"
 
 typedef struct tm_features {
@@ -28,8 +27,8 @@ void tm_features_free(tm_features *features);
 /* Room for so many nodes in all; false where memory is out. */
 bool tm_features_reserve(tm_features *features, size_t nodes);
 
-/* Makes *to, which is {0} or was found, the same as *from; false, with *to empty, where
- * memory is out. */
+/* Makes *to, which is {0} or was found, the same as *from; false, with *to as it
+ * was, where memory is out. */
 bool tm_features_copy(tm_features *to, const tm_features *from);
 
 /* How the node of a ball may move. */

@@ -5,31 +5,33 @@
 #include <string.h>
 
 /* A face of the cavity, by its nodes. */
-typedef enum {
-    EMPTY,
-    OUTER, /* of an old tetrahedron, as `half`; `across` is what stood beside it */
-    INNER, /* between two old ones: free again */
-    FRESH  /* of a new tetrahedron, as `half` */
-} face_state;
-
 typedef struct tm_face_slot {
     uint32_t node[3]; /* ascending */
-    face_state state;
     uint32_t half;
     uint32_t across;
 } face_slot;
 
+/* What a slot is; in bytes of their own, so that few have to be cleared. */
+enum {
+    EMPTY,
+    OUTER, /* of an old tetrahedron, as `half`; `across` is what stood beside it */
+    INNER, /* between two old ones: free again */
+    FRESH  /* of a new tetrahedron, as `half` */
+};
+
 void tm_replacement_table_free(tm_replacement_table *table)
 {
     free(table->slot);
+    free(table->state);
     *table = (tm_replacement_table){0};
 }
 
-/* How many slots keep the table at most half full. */
+/* How many slots keep the table at most half full: two new tetrahedra share a face, or it
+ * is an outer one of an old tetrahedron, or a renewed one. */
 static size_t room_for(size_t old_count, size_t count)
 {
     enum { FIRST = 64, RENEWALS = 2 };
-    size_t room = FIRST, faces = 4 * old_count + 4 * count + RENEWALS;
+    size_t room = FIRST, faces = 4 * old_count + 2 * count + RENEWALS;
     while (room < 2 * faces)
         room *= 2;
     return room;
@@ -42,11 +44,14 @@ bool tm_replacement_table_reserve(tm_replacement_table *table, size_t old_count,
     if (room <= table->room)
         return true;
     face_slot *slot = malloc(room * sizeof *slot);
-    if (!slot)
+    uint8_t *state = malloc(room);
+    if (!slot || !state) {
+        free(slot);
+        free(state);
         return false;
-    free(table->slot);
-    table->slot = slot;
-    table->room = room;
+    }
+    tm_replacement_table_free(table);
+    *table = (tm_replacement_table){slot, state, room};
     return true;
 }
 
@@ -58,8 +63,8 @@ static void order(uint32_t *a, uint32_t *b)
 }
 
 /* The slot of a face, with its nodes set. */
-static face_slot *find(const tm_replacement_table *table, size_t used, uint32_t a,
-                       uint32_t b, uint32_t c)
+static inline size_t find(const tm_replacement_table *table, size_t used, uint32_t a,
+                          uint32_t b, uint32_t c)
 {
     const uint64_t golden = 0x9E3779B97F4A7C15u; /* 2^64 / golden ratio */
     order(&a, &b);
@@ -69,19 +74,19 @@ static face_slot *find(const tm_replacement_table *table, size_t used, uint32_t 
     size_t s = (size_t)((key * golden) >> 32) & (used - 1);
     for (;; s = (s + 1) & (used - 1)) {
         face_slot *slot = &table->slot[s];
-        if (slot->state == EMPTY) {
+        if (table->state[s] == EMPTY) {
             slot->node[0] = a;
             slot->node[1] = b;
             slot->node[2] = c;
-            return slot;
+            return s;
         }
         if (slot->node[0] == a && slot->node[1] == b && slot->node[2] == c)
-            return slot;
+            return s;
     }
 }
 
-static face_slot *find_half(const tm_replacement_table *table, size_t used,
-                            const uint32_t n[4], uint32_t i)
+static inline size_t find_half(const tm_replacement_table *table, size_t used,
+                               const uint32_t n[4], uint32_t i)
 {
     return find(table, used, n[(i + 1) & 3], n[(i + 2) & 3], n[(i + 3) & 3]);
 }
@@ -92,10 +97,10 @@ static void note_old_faces(const tm_tet_mesh *mesh, const tm_replacement *what,
     for (size_t k = 0; k < what->old_count; k++) {
         uint32_t t = what->old[k];
         for (uint32_t i = 0; i < 4; i++) {
-            face_slot *slot = find_half(table, used, mesh->tet[t], i);
-            slot->state = slot->state == EMPTY ? OUTER : INNER;
-            slot->half = 4 * t + i;
-            slot->across = mesh->neighbour[t][i];
+            size_t s = find_half(table, used, mesh->tet[t], i);
+            table->state[s] = table->state[s] == EMPTY ? OUTER : INNER;
+            table->slot[s].half = 4 * t + i;
+            table->slot[s].across = mesh->neighbour[t][i];
         }
     }
 }
@@ -108,17 +113,17 @@ static void renew_faces(tm_tet_mesh *mesh, const tm_replacement *what,
     uint32_t half[2] = {TM_NONE, TM_NONE};
     for (size_t k = 0; k < what->renewals; k++)
         for (size_t s = 0; s < used; s++)
-            if (table->slot[s].state == OUTER &&
+            if (table->state[s] == OUTER &&
                 table->slot[s].across == (what->renewal[k].face | TM_FACE_BIT))
                 half[k] = table->slot[s].half;
     for (size_t k = 0; k < what->renewals; k++) {
         const uint32_t *n = what->renewal[k].node;
         uint32_t f = what->renewal[k].face;
         memcpy(mesh->face[f].node, n, sizeof mesh->face[f].node);
-        face_slot *slot = find(table, used, n[0], n[1], n[2]);
-        slot->state = OUTER;
-        slot->half = half[k];
-        slot->across = f | TM_FACE_BIT;
+        size_t s = find(table, used, n[0], n[1], n[2]);
+        table->state[s] = OUTER;
+        table->slot[s].half = half[k];
+        table->slot[s].across = f | TM_FACE_BIT;
     }
 }
 
@@ -147,13 +152,14 @@ static void connect(tm_tet_mesh *mesh, const tm_replacement *what,
         uint32_t t = what->created[k];
         memcpy(mesh->tet[t], what->node[k], sizeof mesh->tet[t]);
         for (uint32_t i = 0; i < 4; i++) {
-            face_slot *slot = find_half(table, used, what->node[k], i);
+            size_t s = find_half(table, used, what->node[k], i);
+            face_slot *slot = &table->slot[s];
             uint32_t half = 4 * t + i;
-            if (slot->state == OUTER)
+            if (table->state[s] == OUTER)
                 tm_tet_replace_half(mesh, half, slot->half, slot->across);
-            else if (slot->state == FRESH)
+            else if (table->state[s] == FRESH)
                 tm_tet_join(mesh, half, slot->half);
-            slot->state = FRESH;
+            table->state[s] = FRESH;
             slot->half = half;
         }
     }
@@ -165,9 +171,12 @@ static bool has_edge(const uint32_t n[4], uint32_t a, uint32_t b)
            (n[0] == b || n[1] == b || n[2] == b || n[3] == b);
 }
 
-/* Forgets the edges of .edge that were in the cavity and are in no new tetrahedron. */
+/* Forgets the edges of .edge that were in the cavity and are in no new tetrahedron. They
+ * are inside the mesh, but where faces are renewed. */
 static void forget_edges(tm_tet_mesh *mesh, const tm_replacement *what)
 {
+    if (!mesh->inner_edges && what->renewals == 0)
+        return;
     for (size_t k = 0; k < what->old_count && mesh->edge_of.count > 0; k++) {
         const uint32_t *n = mesh->tet[what->old[k]];
         for (int i = 0; i < 4; i++)
@@ -193,8 +202,7 @@ tm_status tm_tet_replace(tm_tet_mesh *mesh, const tm_replacement *what,
         return status;
     if (!tm_replacement_table_reserve(table, what->old_count, what->count))
         return tm_fail_memory(error);
-    for (size_t s = 0; s < used; s++)
-        table->slot[s].state = EMPTY;
+    memset(table->state, EMPTY, used);
     note_old_faces(mesh, what, table, used);
     renew_faces(mesh, what, table, used);
     forget_edges(mesh, what);

@@ -27,6 +27,7 @@ typedef struct tm_replacement {
 /* Memory that replacements share; {0} is none. */
 typedef struct tm_replacement_table {
     struct tm_face_slot *slot;
+    uint8_t *state; /* of each slot */
     size_t room;
 } tm_replacement_table;
 

@@ -6,13 +6,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Plane convex quadrilaterals, the lowest place first, both ways round. */
+/* Plane convex quadrilaterals, the lowest point first, both ways round. */
 typedef struct quads {
     size_t n;
     uint8_t (*at)[4];
 } quads;
 
-static const uint8_t places = PLACES;
+static const uint8_t points = LEAF_POINTS;
 static const double rounding = 1e-12;
 
 /* Whether a face is on a side of the cube. */
@@ -20,7 +20,7 @@ static bool is_on_side(piece_face face)
 {
     for (unsigned f = 0; f < 6; f++) {
         bool all = true;
-        for (unsigned p = 0; p < PLACES; p++) {
+        for (unsigned p = 0; p < LEAF_POINTS; p++) {
             if ((face >> p & 1) != 0 && tm_leaf_point[p][f / 2] != 2 * (f % 2))
                 all = false;
         }
@@ -48,7 +48,7 @@ static bool add(candidates *all, double least, const tm_piece *piece)
     *c = (candidate){.piece = *piece, .quality = quality};
     c->faces = faces_of_piece(piece, c->face);
     c->volume = volume_of(piece);
-    c->points = points_in(piece);
+    c->samples = samples_in(piece);
     for (unsigned f = 0; f < c->faces; f++)
         c->on_side |= (uint8_t)(is_on_side(c->face[f]) << f);
     return true;
@@ -57,13 +57,14 @@ static bool add(candidates *all, double least, const tm_piece *piece)
 static bool all_quads(quads *q)
 {
     q->n = 0;
-    q->at = malloc(sizeof *q->at * PLACES * PLACES * PLACES * PLACES / 4);
+    q->at =
+        malloc(sizeof *q->at * LEAF_POINTS * LEAF_POINTS * LEAF_POINTS * LEAF_POINTS / 4);
     if (q->at == NULL)
         return false;
-    for (uint8_t a = 0; a < places; a++)
-        for (uint8_t b = a + 1; b < places; b++)
-            for (uint8_t c = a + 1; c < places; c++)
-                for (uint8_t d = a + 1; d < places; d++) {
+    for (uint8_t a = 0; a < points; a++)
+        for (uint8_t b = a + 1; b < points; b++)
+            for (uint8_t c = a + 1; c < points; c++)
+                for (uint8_t d = a + 1; d < points; d++) {
                     const uint8_t quad[4] = {a, b, c, d};
                     if (is_convex(quad))
                         memcpy(q->at[q->n++], quad, sizeof quad);
@@ -73,10 +74,10 @@ static bool all_quads(quads *q)
 
 static bool add_tetrahedra(candidates *all, double least)
 {
-    for (uint8_t a = 0; a < places; a++)
-        for (uint8_t b = a + 1; b < places; b++)
-            for (uint8_t c = b + 1; c < places; c++)
-                for (uint8_t d = c + 1; d < places; d++) {
+    for (uint8_t a = 0; a < points; a++)
+        for (uint8_t b = a + 1; b < points; b++)
+            for (uint8_t c = b + 1; c < points; c++)
+                for (uint8_t d = c + 1; d < points; d++) {
                     const bool turns = volume_of_four(a, b, c, d) < 0;
                     const tm_piece piece = {4, {a, turns ? c : b, turns ? b : c, d}};
                     if (!add(all, least, &piece))
@@ -89,7 +90,7 @@ static bool add_pyramids(candidates *all, double least, const quads *q)
 {
     for (size_t i = 0; i < q->n; i++) {
         const uint8_t *b = q->at[i];
-        for (uint8_t apex = 0; apex < places; apex++) {
+        for (uint8_t apex = 0; apex < points; apex++) {
             const tm_piece piece = {5, {b[0], b[1], b[2], b[3], apex}};
             if (volume_of_four(b[0], b[1], b[3], apex) > 0 && !add(all, least, &piece))
                 return false;
@@ -98,13 +99,13 @@ static bool add_pyramids(candidates *all, double least, const quads *q)
     return true;
 }
 
-/* A side of the wedge, and the edge opposite to it. The lowest place is corner 0. */
+/* A side of the wedge, and the edge opposite to it. The lowest point is corner 0. */
 static bool add_wedges(candidates *all, double least, const quads *q)
 {
     for (size_t i = 0; i < q->n; i++) {
         const uint8_t *s = q->at[i];
-        for (uint8_t c = s[0] + 1; c < places; c++)
-            for (uint8_t f = s[0] + 1; f < places; f++) {
+        for (uint8_t c = s[0] + 1; c < points; c++)
+            for (uint8_t f = s[0] + 1; f < points; f++) {
                 const tm_piece piece = {6, {s[0], s[3], c, s[1], s[2], f}};
                 if (volume_of_four(s[0], s[1], f, c) == 0 &&
                     volume_of_four(s[3], s[2], f, c) == 0 &&
@@ -115,7 +116,7 @@ static bool add_wedges(candidates *all, double least, const quads *q)
     return true;
 }
 
-/* Two opposite faces, the second of them turned to fit. The lowest place is corner 0, and
+/* Two opposite faces, the second of them turned to fit. The lowest point is corner 0, and
  * the lowest of its neighbours is corner 1. */
 static bool add_hexahedra(candidates *all, double least, const quads *q)
 {
@@ -148,14 +149,14 @@ static int compare(const void *p, const void *q)
         return a->quality > b->quality ? -1 : 1;
     if (a->piece.k != b->piece.k)
         return a->piece.k > b->piece.k ? -1 : 1;
-    return memcmp(a->piece.place, b->piece.place, a->piece.k);
+    return memcmp(a->piece.point, b->piece.point, a->piece.k);
 }
 
-static uint32_t places_of(const tm_piece *piece)
+static uint32_t points_of(const tm_piece *piece)
 {
     uint32_t set = 0;
     for (unsigned i = 0; i < piece->k; i++)
-        set |= 1U << piece->place[i];
+        set |= 1U << piece->point[i];
     return set;
 }
 
@@ -168,17 +169,17 @@ bool all_candidates(double least, candidates *all)
     const bool done = add_tetrahedra(all, least) && add_pyramids(all, least, &q) &&
                       add_wedges(all, least, &q) && add_hexahedra(all, least, &q);
     free(q.at);
-    all->places = done ? malloc(all->n * sizeof *all->places) : NULL;
-    if (all->places == NULL)
+    all->points = done ? malloc(all->n * sizeof *all->points) : NULL;
+    if (all->points == NULL)
         return false;
     qsort(all->at, all->n, sizeof *all->at, compare);
     for (size_t c = 0; c < all->n; c++)
-        all->places[c] = places_of(&all->at[c].piece);
+        all->points[c] = points_of(&all->at[c].piece);
     return true;
 }
 
 void free_candidates(candidates *all)
 {
     free(all->at);
-    free(all->places);
+    free(all->points);
 }

@@ -13,7 +13,7 @@ typedef struct candidate {
     unsigned faces;
     piece_face face[PIECE_FACES];
     uint8_t on_side; /* bit f: face f is on a side of the cube */
-    uint64_t points;
+    uint64_t samples;
     int volume;
     double quality;
 } candidate;
@@ -21,10 +21,10 @@ typedef struct candidate {
 typedef struct candidates {
     size_t n, room;
     candidate *at;
-    uint32_t *places; /* [n]: the set of places of each */
+    uint32_t *points; /* [n]: the set of points of each */
 } candidates;
 
-/* Every tetrahedron, pyramid, wedge and hexahedron on the 27 places that is convex with
+/* Every tetrahedron, pyramid, wedge and hexahedron on the 27 points that is convex with
  * plane faces and has at least this J_ENS, each once, large ones first. False: there is
  * not enough memory. */
 bool all_candidates(double least, candidates *all);

@@ -42,8 +42,8 @@ void star_of(tm_leaf_state state, division *star)
             tm_piece *piece = &star->piece[star->pieces++];
             piece->k = (uint8_t)(face[p].k + 1);
             for (unsigned i = 0; i < face[p].k; i++)
-                piece->place[i] = face[p].place[face[p].k - 1 - i];
-            piece->place[face[p].k] = TM_LEAF_CENTRE;
+                piece->point[i] = face[p].point[face[p].k - 1 - i];
+            piece->point[face[p].k] = TM_LEAF_CENTRE;
             const double quality = quality_of(piece);
             star->worst = quality < star->worst ? quality : star->worst;
         }
@@ -89,7 +89,7 @@ static void list_elements(search *s, uint32_t nodes)
     memset(s->first, 0, sizeof s->first);
     for (size_t c = s->all->n; c-- > 0;) {
         const candidate *is = &s->all->at[c];
-        if ((s->all->places[c] & ~nodes) != 0 || is->quality < s->least - rounding ||
+        if ((s->all->points[c] & ~nodes) != 0 || is->quality < s->least - rounding ||
             !keeps_sides(s, is))
             continue;
         s->largest = is->volume > s->largest ? is->volume : s->largest;
@@ -120,14 +120,14 @@ static bool close_faces(open_faces *open, const candidate *c)
 }
 
 /* The elements that fit to a face and what is there, up to `most`; returns how many there
- * are. Elements that have a point in common overlap. */
-static size_t fitting(const search *s, piece_face face, uint64_t points, int room,
+ * are. Elements that have a sample in common overlap. */
+static size_t fitting(const search *s, piece_face face, uint64_t samples, int room,
                       size_t most, const candidate **fit)
 {
     size_t n = 0;
     for (size_t i = s->first[slot_of(face)]; i != 0 && n < most; i = s->next[i - 1]) {
         const candidate *c = &s->all->at[(i - 1) / PIECE_FACES];
-        if (c->face[(i - 1) % PIECE_FACES] == face && (c->points & points) == 0 &&
+        if (c->face[(i - 1) % PIECE_FACES] == face && (c->samples & samples) == 0 &&
             c->volume <= room)
             fit[n++] = c;
     }
@@ -137,7 +137,7 @@ static size_t fitting(const search *s, piece_face face, uint64_t points, int roo
 static bool has_centre(const tm_piece *piece)
 {
     for (unsigned i = 0; i < piece->k; i++) {
-        if (piece->place[i] == TM_LEAF_CENTRE)
+        if (piece->point[i] == TM_LEAF_CENTRE)
             return true;
     }
     return false;
@@ -165,8 +165,8 @@ static bool is_hopeless(const search *s, const open_faces *open, int room)
     return s->now.pieces + more > s->best->pieces;
 }
 
-/* Tries all ways to go on from s->now, where `points` are covered and `room` is left. */
-static void divide(search *s, const open_faces *open, uint64_t points, int room)
+/* Tries all ways to go on from s->now, where `samples` are covered and `room` is left. */
+static void divide(search *s, const open_faces *open, uint64_t samples, int room)
 {
     if (open->n == 0 && room == 0)
         keep_better(s);
@@ -176,13 +176,13 @@ static void divide(search *s, const open_faces *open, uint64_t points, int room)
     size_t fewest = MOST_FITTING;
     piece_face face = open->face[0];
     for (unsigned i = 0; i < open->n && fewest > 0; i++) {
-        const size_t n = fitting(s, open->face[i], points, room, fewest, fit);
+        const size_t n = fitting(s, open->face[i], samples, room, fewest, fit);
         if (n < fewest) {
             fewest = n;
             face = open->face[i];
         }
     }
-    const size_t n = fitting(s, face, points, room, MOST_FITTING, fit);
+    const size_t n = fitting(s, face, samples, room, MOST_FITTING, fit);
     const division before = s->now;
     for (size_t i = 0; i < n; i++) {
         open_faces rest = *open;
@@ -191,7 +191,7 @@ static void divide(search *s, const open_faces *open, uint64_t points, int room)
         s->now.piece[s->now.pieces++] = fit[i]->piece;
         s->now.centre = before.centre || has_centre(&fit[i]->piece);
         s->now.worst = fit[i]->quality < before.worst ? fit[i]->quality : before.worst;
-        divide(s, &rest, points | fit[i]->points, room - fit[i]->volume);
+        divide(s, &rest, samples | fit[i]->samples, room - fit[i]->volume);
         s->now.pieces = before.pieces;
     }
     s->now.centre = before.centre;
@@ -209,7 +209,7 @@ void best_division(search *s, tm_leaf_state state, division *best)
         tm_piece face[TM_FACE_PIECES];
         const unsigned n = tm_face_pieces(state, f, face);
         for (unsigned p = 0; p < n; p++)
-            s->sides.face[s->sides.n++] = face_of(face[p].k, face[p].place);
+            s->sides.face[s->sides.n++] = face_of(face[p].k, face[p].point);
     }
     list_elements(s, 0xffU | state << TM_LEAF_EDGE | (uint32_t)1 << TM_LEAF_CENTRE);
     const open_faces open = s->sides;

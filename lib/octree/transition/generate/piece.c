@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stddef.h>
 
-enum { POINTS = 64 };
+enum { SAMPLES = 64 };
 
 /* The order of the faces of each kind, which decides between divisions that are as
  * good. */
@@ -24,11 +24,11 @@ static void edge_of(unsigned from, unsigned to, int edge[3])
         edge[i] = tm_leaf_point[to][i] - tm_leaf_point[from][i];
 }
 
-static void normal_of(const uint8_t place[3], int n[3])
+static void normal_of(const uint8_t point[3], int n[3])
 {
     int u[3], v[3];
-    edge_of(place[0], place[1], u);
-    edge_of(place[0], place[2], v);
+    edge_of(point[0], point[1], u);
+    edge_of(point[0], point[2], v);
     n[0] = u[1] * v[2] - u[2] * v[1];
     n[1] = u[2] * v[0] - u[0] * v[2];
     n[2] = u[0] * v[1] - u[1] * v[0];
@@ -42,28 +42,28 @@ int volume_of_four(unsigned a, unsigned b, unsigned c, unsigned d)
     return n[0] * w[0] + n[1] * w[1] + n[2] * w[2];
 }
 
-bool is_convex(const uint8_t place[4])
+bool is_convex(const uint8_t point[4])
 {
-    if (volume_of_four(place[0], place[1], place[2], place[3]) != 0)
+    if (volume_of_four(point[0], point[1], point[2], point[3]) != 0)
         return false;
     int first[3];
-    normal_of(place, first);
+    normal_of(point, first);
     for (unsigned i = 0; i < 4; i++) {
         int n[3];
-        normal_of((uint8_t[3]){place[i], place[(i + 1) % 4], place[(i + 2) % 4]}, n);
+        normal_of((uint8_t[3]){point[i], point[(i + 1) % 4], point[(i + 2) % 4]}, n);
         if (n[0] * first[0] + n[1] * first[1] + n[2] * first[2] <= 0)
             return false;
     }
     return true;
 }
 
-piece_face face_of(unsigned k, const uint8_t *place)
+piece_face face_of(unsigned k, const uint8_t *point)
 {
     piece_face face = 0;
     for (unsigned i = 0; i < k; i++)
-        face |= 1U << place[i];
+        face |= 1U << point[i];
     int n[3];
-    normal_of(place, n);
+    normal_of(point, n);
     const int sign = n[0] != 0 ? n[0] : n[1] != 0 ? n[1] : n[2];
     return sign > 0 ? face : face | FACE_TURNS;
 }
@@ -74,7 +74,7 @@ static tm_piece face_at(const tm_piece *piece, unsigned f)
     const uint8_t *corner = tm_element_shapes[piece->k].face[order[piece->k][f]];
     tm_piece face = {.k = (uint8_t)tm_mixed_face_nodes(corner)};
     for (unsigned i = 0; i < face.k; i++)
-        face.place[i] = piece->place[corner[i]];
+        face.point[i] = piece->point[corner[i]];
     return face;
 }
 
@@ -83,7 +83,7 @@ unsigned faces_of_piece(const tm_piece *piece, piece_face face[PIECE_FACES])
     const unsigned n = tm_element_shapes[piece->k].faces;
     for (unsigned f = 0; f < n; f++) {
         const tm_piece is = face_at(piece, f);
-        face[f] = face_of(is.k, is.place);
+        face[f] = face_of(is.k, is.point);
     }
     return n;
 }
@@ -92,11 +92,11 @@ bool is_convex_piece(const tm_piece *piece)
 {
     for (unsigned f = 0; f < tm_element_shapes[piece->k].faces; f++) {
         const tm_piece face = face_at(piece, f);
-        if (face.k == 4 && !is_convex(face.place))
+        if (face.k == 4 && !is_convex(face.point))
             return false;
         for (unsigned i = 0; i < piece->k; i++) {
-            if (volume_of_four(face.place[0], face.place[1], face.place[2],
-                               piece->place[i]) > 0)
+            if (volume_of_four(face.point[0], face.point[1], face.point[2],
+                               piece->point[i]) > 0)
                 return false;
         }
     }
@@ -109,15 +109,15 @@ int volume_of(const tm_piece *piece)
     for (unsigned f = 0; f < tm_element_shapes[piece->k].faces; f++) {
         const tm_piece face = face_at(piece, f);
         for (unsigned i = 2; i < face.k; i++)
-            volume -= volume_of_four(face.place[0], face.place[i - 1], face.place[i],
-                                     piece->place[0]);
+            volume -= volume_of_four(face.point[0], face.point[i - 1], face.point[i],
+                                     piece->point[0]);
     }
     return volume;
 }
 
-/* Points that are evenly spread, on no plane through places: multiples of a vector that
- * is far from rational (Roberts 2018, with the root of x^4 = x + 1). */
-static void point(unsigned i, double at[3])
+/* Samples that are evenly spread, on no plane through points of the leaf: multiples of a
+ * vector that is far from rational (Roberts 2018, with the root of x^4 = x + 1). */
+static void sample(unsigned i, double at[3])
 {
     static const double root = 1.2207440846057596;
     double step = 1;
@@ -127,17 +127,17 @@ static void point(unsigned i, double at[3])
     }
 }
 
-uint64_t points_in(const tm_piece *piece)
+uint64_t samples_in(const tm_piece *piece)
 {
     uint64_t in = UINT64_MAX;
     for (unsigned f = 0; f < tm_element_shapes[piece->k].faces; f++) {
         const tm_piece face = face_at(piece, f);
-        const unsigned char *origin = tm_leaf_point[face.place[0]];
+        const unsigned char *origin = tm_leaf_point[face.point[0]];
         int n[3];
-        normal_of(face.place, n);
-        for (unsigned i = 0; i < POINTS; i++) {
+        normal_of(face.point, n);
+        for (unsigned i = 0; i < SAMPLES; i++) {
             double at[3];
-            point(i, at);
+            sample(i, at);
             if (n[0] * (at[0] - origin[0]) + n[1] * (at[1] - origin[1]) +
                     n[2] * (at[2] - origin[2]) >
                 0)
@@ -158,16 +158,16 @@ double quality_of(const tm_piece *piece)
     double worst = 1;
     for (size_t c = 0; c < shape->corners; c++) {
         const unsigned char *corner = shape->corner[c];
-        const unsigned at = piece->place[corner[0]];
+        const unsigned at = piece->point[corner[0]];
         double length = 1;
         for (unsigned i = 1; i < 4; i++) {
             int u[3];
-            edge_of(at, piece->place[corner[i]], u);
+            edge_of(at, piece->point[corner[i]], u);
             length *= length_of(u);
         }
         const int volume =
-            volume_of_four(at, piece->place[corner[1]], piece->place[corner[2]],
-                           piece->place[corner[3]]);
+            volume_of_four(at, piece->point[corner[1]], piece->point[corner[2]],
+                           piece->point[corner[3]]);
         worst = fmin(worst, tm_jens_of(volume / length, shape->k[c]));
     }
     return worst;

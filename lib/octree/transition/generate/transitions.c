@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Prints transitions.h: the division of a leaf in each of the states that occur, for
- * lib/octree/transition.c. */
+ * transition.c. */
 #include "../../forest/octree.h"
 #include "division.h"
 
@@ -45,7 +45,7 @@ static void print_pieces(const division *d)
     for (unsigned p = 0; p < d->pieces; p++) {
         printf("{%u,{", d->piece[p].k);
         for (unsigned i = 0; i < d->piece[p].k; i++)
-            printf("%s%u", i > 0 ? "," : "", d->piece[p].place[i]);
+            printf("%s%u", i > 0 ? "," : "", d->piece[p].point[i]);
         printf("}},");
     }
     printf("\n");
@@ -118,7 +118,7 @@ int main(void)
         fprintf(stderr, "transitions: not enough memory\n");
         return EXIT_FAILURE;
     }
-    printf("/* Made by lib/octree/generate/transitions.c. */\n");
+    printf("/* Made by lib/octree/transition/generate/transitions.c. */\n");
     print_divisions(&all, s);
     print_table("uint16_t", "transition_first", all.first, 1U << EDGES);
     print_table("uint8_t", "transition_faces", all.faces, 1U << EDGES);

@@ -1,0 +1,188 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "plot.h"
+
+#include "../../../lib/base/file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <spawn.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+/* An unnamed file that holds the script, at its beginning; -1 with errno. A file and not
+ * a pipe, so that gnuplot and we never wait for each other. */
+static int script_file(const tm_text *script, tm_error *error)
+{
+    FILE *file = tmpfile();
+    if (!file) {
+        tm_fail(error, TM_ERROR_SYSTEM, "cannot make a temporary file: %s",
+                strerror(errno));
+        return -1;
+    }
+    const int fd = fcntl(fileno(file), F_DUPFD_CLOEXEC, 0);
+    const int reason = errno;
+    fclose(file);
+    if (fd < 0) {
+        tm_fail(error, TM_ERROR_SYSTEM, "cannot make a temporary file: %s",
+                strerror(reason));
+        return -1;
+    }
+    if (tm_write_all(fd, script->byte, script->size, error) != TM_OK ||
+        lseek(fd, 0, SEEK_SET) != 0) {
+        close(fd);
+        return -1;
+    }
+    return fd;
+}
+
+/* Starts gnuplot without the user's own settings. Returns 0 or what errno would say. */
+static int start(int input, int output, pid_t *child)
+{
+    char *const arguments[] = {"gnuplot", "-d", NULL};
+    /* In the C locale gnuplot complains that it cannot write a degree sign. */
+    if (setenv("LC_ALL", "C.UTF-8", 1) != 0)
+        return errno;
+    posix_spawn_file_actions_t actions;
+    int reason = posix_spawn_file_actions_init(&actions);
+    if (reason != 0)
+        return reason;
+    reason = posix_spawn_file_actions_adddup2(&actions, input, STDIN_FILENO);
+    if (reason == 0)
+        reason = posix_spawn_file_actions_adddup2(&actions, output, STDOUT_FILENO);
+    if (reason == 0)
+        reason = posix_spawnp(child, arguments[0], &actions, NULL, arguments, environ);
+    posix_spawn_file_actions_destroy(&actions);
+    return reason;
+}
+
+static bool wait_for(pid_t child)
+{
+    int status;
+    while (waitpid(child, &status, 0) < 0) {
+        if (errno != EINTR)
+            return false;
+    }
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+static tm_status run(int script, tm_text *figure, tm_error *error)
+{
+    int end[2];
+    if (pipe2(end, O_CLOEXEC) != 0)
+        return tm_fail(error, TM_ERROR_SYSTEM, "cannot run gnuplot: %s", strerror(errno));
+    pid_t child = -1;
+    const int reason = start(script, end[1], &child);
+    close(end[1]);
+    tm_status status = TM_OK;
+    if (reason == ENOENT)
+        status =
+            tm_fail(error, TM_ERROR_SYSTEM, "--plot needs gnuplot (package gnuplot-nox)");
+    else if (reason != 0)
+        status =
+            tm_fail(error, TM_ERROR_SYSTEM, "cannot run gnuplot: %s", strerror(reason));
+    else
+        status = tm_read_all(end[0], "gnuplot", figure, error);
+    close(end[0]);
+    if (reason == 0 && (!wait_for(child) || figure->size == 0) && status == TM_OK)
+        status = tm_fail(error, TM_ERROR_SYSTEM, "gnuplot failed");
+    return status;
+}
+
+static tm_status draw(const tm_text *script, const char *file, tm_error *error)
+{
+    if (script->failed || script->size == 0)
+        return tm_fail_memory(error);
+    const int fd = script_file(script, error);
+    if (fd < 0)
+        return TM_ERROR_SYSTEM;
+    tm_text figure = {0};
+    tm_status status = run(fd, &figure, error);
+    close(fd);
+    if (status == TM_OK)
+        status = output_file_write(file, &figure, error);
+    tm_text_free(&figure);
+    return status;
+}
+
+void plot_write(const filter *f, tm_text *script, const char *file)
+{
+    tm_error error;
+    if (draw(script, file, &error) != TM_OK)
+        filter_fail(f, &error);
+    tm_text_free(script);
+}
+
+void plot_begin(tm_text *script)
+{
+    tm_text_string(
+        script,
+        "set terminal svg size 1040,450 enhanced font 'Helvetica,15' background 'white'\n"
+        "set encoding utf8\n"
+        "set border 3 linecolor '#555555'\n"
+        "set tics nomirror out scale 0.6 textcolor '#333333'\n"
+        "set xtics offset 0,0.35\n"
+        "set grid ytics back linetype 1 linewidth 0.6 linecolor '#e4e4e4'\n"
+        "set tmargin screen 0.86\n"
+        "set bmargin screen 0.185\n"
+        "unset key\n"
+        "bad = '#fbe9e7'\n"
+        "grey = '#b4bac1'\n"
+        "blue = '#1f6fb2'\n"
+        "set multiplot\n");
+}
+
+void plot_end(tm_text *script)
+{
+    tm_text_string(script, "unset multiplot\n");
+}
+
+void plot_grouped(tm_text *script, size_t number)
+{
+    enum { GROUP = 3, DIGITS = 24 };
+    char digits[DIGITS];
+    const int length = snprintf(digits, sizeof digits, "%zu", number);
+    for (int i = 0; i < length; i++) {
+        if (i > 0 && (length - i) % GROUP == 0)
+            tm_text_string(script, "\u2009");
+        tm_text_append(script, &digits[i], 1);
+    }
+}
+
+void plot_outline(tm_text *script, const char *name, const size_t *histogram, size_t bins,
+                  double width, size_t whole)
+{
+    tm_text_format(script, "$%s << END\n0 0\n", name);
+    for (size_t i = 0; i < bins; i++) {
+        const double share = tm_percent(histogram[i], whole);
+        tm_text_format(script, "%.4g %.6g\n%.4g %.6g\n", width * (double)i, share,
+                       width * (double)(i + 1), share);
+    }
+    tm_text_format(script, "%.4g 0\nEND\n", width * (double)bins);
+}
+
+double plot_highest(const size_t *histogram, size_t bins, size_t whole)
+{
+    double highest = 0;
+    for (size_t i = 0; i < bins; i++)
+        highest = fmax(highest, tm_percent(histogram[i], whole));
+    return highest;
+}
+
+double plot_axis(double highest)
+{
+    const double headroom = 1.06, of_nothing = 10;
+    return headroom * (highest > 0 ? highest : of_nothing);
+}
+
+void plot_blue(tm_text *script, const char *name)
+{
+    tm_text_format(script,
+                   "$%s with filledcurves y=0 fillstyle transparent solid 0.3 noborder "
+                   "linecolor rgb blue, $%s with lines linewidth 2 linecolor rgb blue",
+                   name, name);
+}

@@ -1,0 +1,163 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "private.h"
+
+#include "../../../lib/base/file.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* Signals -------------------------------------------------------------------------- */
+
+static const int held[] = {SIGINT, SIGTERM, SIGHUP};
+enum { HELD = sizeof held / sizeof held[0] };
+
+static struct sigaction before[HELD];
+static int holds; /* that were not released yet */
+static volatile sig_atomic_t came;
+static volatile pid_t child_group;
+
+static void note(int signal_number)
+{
+    came = signal_number;
+    if (child_group > 0)
+        kill(-child_group, SIGKILL);
+}
+
+void private_signals_hold(void)
+{
+    if (holds++ > 0)
+        return;
+    struct sigaction action = {.sa_handler = note};
+    sigemptyset(&action.sa_mask);
+    came = 0;
+    for (size_t i = 0; i < HELD; i++) {
+        sigaction(held[i], NULL, &before[i]);
+        if (before[i].sa_handler != SIG_IGN)
+            sigaction(held[i], &action, NULL);
+    }
+}
+
+static void mask(int how)
+{
+    sigset_t set;
+    sigemptyset(&set);
+    for (size_t i = 0; i < HELD; i++)
+        sigaddset(&set, held[i]);
+    sigprocmask(how, &set, NULL);
+}
+
+void private_signals_block(void)
+{
+    mask(SIG_BLOCK);
+}
+
+void private_signals_unblock(void)
+{
+    mask(SIG_UNBLOCK);
+}
+
+void private_signals_kill(pid_t group)
+{
+    child_group = group;
+}
+
+bool private_signals_came(void)
+{
+    return came != 0;
+}
+
+void private_signals_release(void)
+{
+    if (--holds > 0)
+        return;
+    for (size_t i = 0; i < HELD; i++)
+        sigaction(held[i], &before[i], NULL);
+    if (came)
+        raise(came);
+}
+
+/* The folder ----------------------------------------------------------------------- */
+
+tm_status private_folder_open(private_folder *folder, const char *name, tm_error *error)
+{
+    const char *parent = getenv("TMPDIR");
+    if (!parent || !*parent)
+        parent = "/tmp";
+    int size = snprintf(folder->path, sizeof folder->path, "%s/%s.XXXXXX", parent, name);
+    if (size < 0 || (size_t)size >= sizeof folder->path)
+        return tm_fail(error, TM_ERROR_SYSTEM, "the path in TMPDIR is too long");
+    private_signals_hold();
+    if (mkdtemp(folder->path))
+        return TM_OK;
+    tm_status status = tm_fail(error, TM_ERROR_SYSTEM, "cannot make a folder in %s: %s",
+                               parent, strerror(errno));
+    folder->path[0] = '\0';
+    private_signals_release();
+    return status;
+}
+
+/* Opens a file of the folder; -1 with errno where that fails. */
+static int open_file(const private_folder *folder, const char *file, int flags)
+{
+    int parent = open(folder->path, O_DIRECTORY | O_RDONLY | O_CLOEXEC);
+    if (parent < 0)
+        return -1;
+    int fd = openat(parent, file, flags | O_CLOEXEC, S_IRUSR | S_IWUSR);
+    int cause = errno;
+    close(parent);
+    errno = cause;
+    return fd;
+}
+
+static tm_status fail_file(const char *file, const char *what, tm_error *error)
+{
+    return tm_fail_at(error, TM_ERROR_SYSTEM, file, 0, NULL, "%s: %s", what,
+                      strerror(errno));
+}
+
+tm_status private_folder_write(const private_folder *folder, const char *file,
+                               const tm_text *text, tm_error *error)
+{
+    if (text->failed)
+        return tm_fail_memory(error);
+    int fd = open_file(folder, file, O_WRONLY | O_CREAT | O_EXCL);
+    if (fd < 0)
+        return fail_file(file, "cannot make the file", error);
+    tm_status status = tm_write_all(fd, text->byte, text->size, error);
+    if (close(fd) != 0 && status == TM_OK)
+        status = fail_file(file, "cannot write", error);
+    return status;
+}
+
+tm_status private_folder_read(const private_folder *folder, const char *file,
+                              tm_text *text, bool *exists, tm_error *error)
+{
+    int fd = open_file(folder, file, O_RDONLY);
+    *exists = fd >= 0;
+    if (fd < 0)
+        return errno == ENOENT ? TM_OK : fail_file(file, "cannot open", error);
+    tm_status status = tm_read_all(fd, file, text, error);
+    close(fd);
+    return status;
+}
+
+void private_folder_close(private_folder *folder)
+{
+    DIR *listing = opendir(folder->path);
+    if (listing) {
+        for (struct dirent *entry; (entry = readdir(listing));)
+            if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0)
+                unlinkat(dirfd(listing), entry->d_name, 0);
+        closedir(listing);
+    }
+    rmdir(folder->path);
+    folder->path[0] = '\0';
+    private_signals_release();
+}

@@ -1,0 +1,144 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The formats of meshes that need no header of their own (see also oct.h, tetgen.h and
+ * visf.h). A writer appends the file to *text; `threads` format or compress, and the
+ * bytes are the same for any number of them. */
+#ifndef TM_FORMAT_MESH_FORMAT_H
+#define TM_FORMAT_MESH_FORMAT_H
+
+#include "../base/text.h"
+#include "../stream/stream.h"
+
+#include <stdbool.h>
+
+/* OFF ------------------------------------------------------------------------------ */
+
+/* Appends the boundary of a stream's main mesh to *text, in OFF of Geomview, as polygons
+ * that turn outward, or all its facets, each once: outward for the first of its two
+ * cells. A surface is all boundary. Only nodes that these polygons have are written, in
+ * their order. TM_ERROR_INPUT as tm_cell_faces_find(), or where there are no cells and no
+ * surface. Expected O(n). */
+tm_status tm_off_write(tm_text *text, const tm_stream *stream, bool all, tm_error *error);
+
+/* VTK ------------------------------------------------------------------------------ */
+
+/* VTK's legacy text file of an unstructured grid (.vtk), version 3.0. (VTK File Formats,
+ * in The VTK User's Guide, 11th edition, 2010, section 19.3; polyhedra are lists of faces
+ * as in vtkUnstructuredGrid.)
+ *
+ * Cells are what tm_content_of() says: vertices for points, triangles for a surface,
+ * tetrahedra, mixed elements, or polyhedra with their faces. Points keep their numbers,
+ * from 0. Point data are attribute_1 … and marker; cell data region (of polyhedra:
+ * tetrahedra), attribute_2 … and, of triangles, marker. */
+
+/* Appends the file to *text. `threads` format; the bytes are the same for any number.
+ * Fails where tm_cell_faces_find() fails for polyhedra, and where memory is out. O(n). */
+tm_status tm_vtk_write(tm_text *text, const tm_stream *stream, unsigned threads,
+                       tm_error *error);
+
+/* VTK's XML file of an unstructured grid (.vtu), version 1.0: arrays appended raw, little
+ * endian, in blocks that zlib has compressed, with 64-bit headers. (VTK File Formats, in
+ * The VTK User's Guide, 11th edition, 2010, section 19.3.)
+ *
+ * Cells are what tm_content_of() says: vertices for points, triangles for a surface,
+ * tetrahedra, mixed elements, or polyhedra with their faces. Points keep their numbers,
+ * from 0. Point data are attribute_1 … and marker, cell data region and attribute_2 … of
+ * cells, marker of triangles and, for .ele, dihedral_quality: min(α_min, 180° - α_max) of
+ * the dihedral angles, in degrees. */
+
+/* Appends the file to *text. `threads` compress; the bytes are the same for any number.
+ * Tetrahedra are written as they are, so they should be right-hand positive. Fails where
+ * tm_cell_faces_find() fails for polyhedra, and where memory is out. O(n). */
+tm_status tm_vtu_write(tm_text *text, const tm_stream *stream, unsigned threads,
+                       tm_error *error);
+
+/* GetFEM --------------------------------------------------------------------------- */
+
+/* The mesh file of the finite element library GetFEM (mesh::write_to_file() of version
+ * 5.4): points and convexes from 0, each convex with the name of its geometric
+ * transformation, then regions.
+ *
+ *     BEGIN POINTS LIST
+ *       POINT  i  x  y  z
+ *     END POINTS LIST
+ *     BEGIN MESH STRUCTURE DESCRIPTION
+ *       CONVEX i  'GT_PK(3,1)'  points
+ *     END MESH STRUCTURE DESCRIPTION
+ *     BEGIN REGION r
+ *     i i …  i/f …
+ *     END REGION r
+ *
+ * Nodes are in the order of the reference elements: GT_PK(3,1) and GT_PK(2,1) as in .ele
+ * and .face; of GT_QK(3,1) x runs fastest, then y, then z; GT_PYRAMID(1) has the apex
+ * last and its base in that order; GT_PRISM(3,1) the triangles 0 1 2 and 3 4 5, the first
+ * counter-clockwise seen from the second. */
+
+/* Regions of elements: number + this, so that they are none of the boundary's. */
+enum { TM_GETFEM_ELEMENTS = 1000000 };
+
+/* Appends the file to *text: mixed elements, tetrahedra or, where there are neither,
+ * triangles in space. Faces of elements that .face gives a marker m > 0 are the region m,
+ * elements whose first attribute is a whole number r >= 0 the region
+ * TM_GETFEM_ELEMENTS + r; triangles with a marker m > 0 the region m.
+ * A face between two elements is in the region as that of the first.
+ * TM_ERROR_INPUT for other contents, where a marker or attribute is TM_GETFEM_ELEMENTS or
+ * more, and where two nodes are in one place, which GetFEM refuses. `threads` format.
+ * Expected O(n), but for the regions, which are sorted: O(n log n). */
+tm_status tm_getfem_write(tm_text *text, const tm_stream *stream, unsigned threads,
+                          tm_error *error);
+
+/* The mixed-element octree mesher -------------------------------------------------- */
+
+/* The meshes of the mixed-element octree mesher (C. Lobos and others, 2013-2021), .m3d
+ * and .mvm, both of text with ids from 0:
+ *
+ *     [Nodes, ARRAY1<STRING>]                   MIXED
+ *     n, then n times 1 x y z                   n m, then n times x y z,
+ *     [Elements, ARRAY1<STRING>]                then m times an element
+ *     m, then m times an element, 1000.0 0.45 1.0
+ *
+ * An element is a letter and its nodes: T a tetrahedron, P a pyramid, R a wedge, H a
+ * hexahedron. They are ordered as in .mix, but the wedge's triangle 0 1 2 turns the other
+ * way: nodes 1 and 2 are swapped, and 4 and 5. The three numbers are constants of the
+ * material. */
+
+/* Reads a file of either form, which its first word tells, as the blocks .node and .mix,
+ * base 0. Sections come in any order, those of other names are skipped. The numbers
+ * before the coordinates are not looked at; *materials is how many elements have other
+ * constants than those above, which .mix does not keep. *stream must be empty; after an
+ * error it is again: TM_ERROR_INPUT with the line. O(size). */
+tm_status tm_m3d_read(tm_stream *stream, const char *bytes, size_t size, const char *name,
+                      size_t *materials, tm_error *error);
+
+/* Appends a file of that form to *text: the elements of .mix, or of .ele where that has
+ * none. TM_ERROR_INPUT where the stream has neither. `threads` format. O(n). */
+tm_status tm_m3d_write(tm_text *text, const tm_stream *stream, unsigned threads,
+                       tm_error *error);
+tm_status tm_mvm_write(tm_text *text, const tm_stream *stream, unsigned threads,
+                       tm_error *error);
+
+/* OpenFOAM ------------------------------------------------------------------------- */
+
+/* OpenFOAM's polyMesh: five text files (OpenFOAM User Guide, section Mesh description).
+ *
+ * Faces inside come first, in upper-triangular order: by their owner, the lesser of their
+ * two cells, then by the other one, their neighbour; their normals point to the
+ * neighbour. Then those of the boundary, outward, patch by patch. */
+
+enum { TM_OPENFOAM_FILES = 5 };
+
+/* points, faces, owner, neighbour, boundary */
+extern const char *const tm_openfoam_name[TM_OPENFOAM_FILES];
+
+typedef struct tm_openfoam_counts {
+    size_t points, cells, faces, patches;
+} tm_openfoam_counts;
+
+/* Appends the files of a stream's tetrahedra, mixed elements or polyhedra to file[i], in
+ * the order of tm_openfoam_name. Boundary facets with the same marker are a patch named
+ * marker_N, patches in the order of N; without markers there is one, marker_0. Nodes that
+ * no cell has are left out. TM_ERROR_INPUT as tm_cell_faces_find(), or where there are no
+ * cells. Expected O(n + b log b) for b facets of the boundary. */
+tm_status tm_openfoam_write(tm_text file[TM_OPENFOAM_FILES], const tm_stream *stream,
+                            tm_openfoam_counts *counts, tm_error *error);
+
+#endif

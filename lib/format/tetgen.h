@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* TetGen's files, as they are in the wild. */
+#ifndef TM_FORMAT_TETGEN_H
+#define TM_FORMAT_TETGEN_H
+
+#include "../base/text.h"
+#include "../stream/stream.h"
+#include "../surface/polygon_surface.h"
+
+/* The .node, .ele, .face and .edge files: numbered from 0 or 1, with comments anywhere,
+ * attributes, markers, CR LF, header fields left out. What such a file holds is what a
+ * block of the stream holds. */
+
+/* Reads a file into *block, whose name and kind are set and which is otherwise empty. Of
+ * kind TM_NODE, the first row tells *base (it stays as it was where there are no rows);
+ * other kinds need it: their indices must be in *base … *base + nodes - 1. Rows must be
+ * numbered without a gap, and nothing may follow them. The two tetrahedra that
+ * `tetgen -nn` adds to rows of .face, and the one to rows of .edge, are skipped.
+ * Second-order elements (-o2) are refused. After an error the block's arrays are freed.
+ * O(bytes). */
+tm_status tm_tetgen_read(tm_block *block, const char *bytes, size_t size,
+                         const char *name, unsigned *base, size_t nodes, tm_error *error);
+
+/* The same of the header and the rows at a scan (scan.h), which goes behind them. */
+struct tm_scan;
+tm_status tm_tetgen_read_rows(tm_block *block, struct tm_scan *scan, unsigned *base,
+                              size_t nodes, tm_error *error);
+
+/* TetGen accepts tetrahedra of either orientation; a stream has right-hand positive ones.
+ */
+typedef struct tm_turned {
+    size_t turned; /* negative tetrahedra, whose last two nodes were exchanged */
+    size_t flat;   /* without volume, exactly: left as they are */
+} tm_turned;
+
+/* Makes the tetrahedra of an .ele block right-hand positive; .node holds their nodes.
+ * The signs are exact. O(n). */
+tm_turned tm_tetgen_orient(const tm_block *node, tm_block *ele);
+
+/* The .poly and .smesh files, and .node files as surfaces of points alone: nodes,
+ * facets, holes, regions, numbered from 0 or 1, with comments, attributes and markers.
+ * A .smesh file is a .poly file whose facets are one polygon each. */
+typedef enum tm_plc_kind { TM_PLC_NODE, TM_PLC_POLY, TM_PLC_SMESH } tm_plc_kind;
+
+/* True where the text claims no nodes: they are in the .node file of the same name. */
+bool tm_plc_lacks_nodes(const char *bytes, size_t size);
+
+/* Of a numeric text, which of the three it looks like: TM_PLC_NODE where nothing
+ * follows the nodes. O(size). */
+tm_plc_kind tm_plc_kind_of(const char *bytes, size_t size);
+
+/* *surface must be empty; after an error it is again. Where the text has no nodes those
+ * that *surface holds already, from the .node file, are its nodes: it then need not be
+ * empty. O(size). */
+tm_status tm_plc_read(tm_polygon_surface *surface, tm_plc_kind kind, const char *bytes,
+                      size_t size, const char *name, tm_error *error);
+
+/* Appends the surface as a .poly file, numbered from surface->base. */
+void tm_plc_write(tm_text *text, const tm_polygon_surface *surface);
+
+/* Appends its nodes as a .node file. */
+void tm_plc_write_nodes(tm_text *text, const tm_polygon_surface *surface);
+
+#endif

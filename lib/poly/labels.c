@@ -1,0 +1,329 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* How tetrahedra are joined to regions: the modes of the partition. */
+#include "partition.h"
+
+#include "../base/array.h"
+#include "../base/disjoint_sets.h"
+#include "../geom/vector.h"
+#include "../tet/mesh_measure.h"
+#include "../tet/operation/ball.h"
+
+#include <stdlib.h>
+
+/* By longest edges ----------------------------------------------------------------- */
+
+/* A *fan* is a maximal set of tetrahedra around one edge, each reached from the next
+ * through a face, whose longest edge that is. At each of its two ends is a face, and
+ * beyond it a tetrahedron that has a longer edge; the one with the longest is the
+ * *outlet* of the fan. Edges become longer along outlets, so fans are the nodes of a
+ * forest; its trees are the regions. A root is a fan around a terminal edge.
+ */
+
+typedef struct {
+    const tm_tet_mesh *mesh;
+    uint8_t *longest; /* [tetrahedra]: an edge, 0 … 5 */
+    uint32_t *fan;    /* [tetrahedra] */
+    uint32_t *outlet; /* [fans]: a tetrahedron */
+    size_t fans;
+    size_t room;
+} forest;
+
+/* The nodes of the longest edge of t. */
+static uint64_t longest_key(const forest *s, uint32_t t)
+{
+    const uint32_t *n = s->mesh->tet[t];
+    const uint8_t *corner = tm_edge_corner[s->longest[t]];
+    return tm_edge_key(n[corner[0]], n[corner[1]]);
+}
+
+/* From tetrahedron t, which is in fan f around ab with that key, through the faces that
+ * have ab and are opposite corner `behind` first. Returns what is across the fan's end
+ * and sets its rank, or TM_NONE at a kept face or where the fan is closed. */
+static uint32_t walk_fan(forest *s, uint32_t t, uint32_t behind, uint64_t key, uint32_t f,
+                         tm_edge_rank *rank)
+{
+    const uint32_t corners = 0 + 1 + 2 + 3;
+    uint32_t a = (uint32_t)(key >> 32), b = (uint32_t)key;
+    for (uint32_t first = t;;) {
+        uint32_t across = s->mesh->neighbour[t][behind];
+        if (across & TM_FACE_BIT || across / 4 == first)
+            return TM_NONE;
+        t = across / 4;
+        if (s->fan[t] != f && longest_key(s, t) != key) {
+            tm_longest_edge(s->mesh, t, rank);
+            return t;
+        }
+        s->fan[t] = f;
+        behind = corners - across % 4 - tm_tet_corner(s->mesh, t, a) -
+                 tm_tet_corner(s->mesh, t, b);
+    }
+}
+
+static bool find_fan(forest *s, uint32_t t)
+{
+    uint32_t f = (uint32_t)s->fans, end[2];
+    tm_edge_rank rank[2];
+    const uint8_t *corner = tm_edge_corner[s->longest[t]];
+    uint32_t *outlet = tm_grow(s->outlet, &s->room, s->fans + 1, sizeof *outlet);
+    if (!outlet)
+        return false;
+    s->outlet = outlet;
+    s->fans++;
+    s->fan[t] = f;
+    for (int i = 0; i < 2; i++)
+        end[i] = walk_fan(s, t, corner[2 + i], longest_key(s, t), f, &rank[i]);
+    outlet[f] = end[0];
+    if (end[0] == TM_NONE || (end[1] != TM_NONE && tm_edge_is_longer(&rank[1], &rank[0])))
+        outlet[f] = end[1];
+    return true;
+}
+
+static bool find_fans(forest *s)
+{
+    tm_edge_rank rank;
+    s->longest = tm_new(s->mesh->slots, sizeof *s->longest);
+    if (!s->longest)
+        return false;
+    for (uint32_t t = 0; t < s->mesh->slots; t++) {
+        s->longest[t] = (uint8_t)tm_longest_edge(s->mesh, t, &rank);
+        s->fan[t] = TM_NONE;
+    }
+    for (uint32_t t = 0; t < s->mesh->slots; t++)
+        if (s->fan[t] == TM_NONE && !find_fan(s, t))
+            return false;
+    return true;
+}
+
+/* The tree of each fan in place of its outlet. Trees that are known have ROOT_BIT. */
+static size_t find_trees(forest *s)
+{
+    const uint32_t root_bit = TM_FACE_BIT; /* fans are as few as tetrahedra */
+    size_t trees = 0;
+    for (uint32_t f = 0; f < s->fans; f++) {
+        uint32_t r = f, tree;
+        while (s->outlet[r] != TM_NONE && !(s->outlet[r] & root_bit))
+            r = s->fan[s->outlet[r]];
+        tree = s->outlet[r] == TM_NONE ? (uint32_t)trees++ | root_bit : s->outlet[r];
+        for (uint32_t g = f; s->outlet[g] != tree;) {
+            uint32_t next = s->outlet[g];
+            s->outlet[g] = tree;
+            if (next == TM_NONE)
+                break;
+            g = s->fan[next];
+        }
+    }
+    return trees;
+}
+
+static tm_status label_terminal(const tm_tet_mesh *mesh, const tm_poly_options *options,
+                                uint32_t *label, size_t *regions, tm_error *error)
+{
+    (void)options;
+    forest s = {.mesh = mesh, .fan = label};
+    bool done = find_fans(&s);
+    if (done) {
+        *regions = find_trees(&s);
+        for (uint32_t t = 0; t < mesh->slots; t++)
+            label[t] = s.outlet[label[t]] & ~TM_FACE_BIT;
+    }
+    free(s.longest);
+    free(s.outlet);
+    return done ? TM_OK : tm_fail_memory(error);
+}
+
+static bool is_same_region(const tm_tet_mesh *mesh, uint32_t t, uint32_t u)
+{
+    for (size_t k = 0; k < mesh->regions; k++)
+        if (mesh->region[t * mesh->regions + k] != mesh->region[u * mesh->regions + k])
+            return false;
+    return true;
+}
+
+/* All fans around one edge are one region, as far as the mesh's regions allow. */
+static tm_status label_longest_edge(const tm_tet_mesh *mesh,
+                                    const tm_poly_options *options, uint32_t *label,
+                                    size_t *regions, tm_error *error)
+{
+    (void)options;
+    forest s = {.mesh = mesh, .fan = label};
+    tm_edge_map first = {0}; /* the first tetrahedron with this longest edge */
+    bool done = find_fans(&s) && tm_edge_map_reserve(&first, s.fans);
+    *regions = 0;
+    for (size_t f = 0; f < s.fans && done; f++)
+        s.outlet[f] = TM_NONE; /* from here on the label of the fan */
+    for (uint32_t t = 0; t < mesh->slots && done; t++) {
+        uint32_t *name = &s.outlet[label[t]];
+        if (*name != TM_NONE)
+            continue;
+        uint64_t key = longest_key(&s, t);
+        uint32_t a = (uint32_t)(key >> 32), b = (uint32_t)key;
+        uint32_t *other = tm_edge_map_get(&first, a, b);
+        if (other && is_same_region(mesh, *other, t)) {
+            *name = s.outlet[label[*other]];
+            continue;
+        }
+        *name = (uint32_t)(*regions)++;
+        if (!other)
+            tm_edge_map_put(&first, a, b, t);
+    }
+    for (uint32_t t = 0; t < mesh->slots && done; t++)
+        label[t] = s.outlet[label[t]];
+    tm_edge_map_free(&first);
+    free(s.longest);
+    free(s.outlet);
+    return done ? TM_OK : tm_fail_memory(error);
+}
+
+/* By faces ------------------------------------------------------------------------- */
+
+/* Each tetrahedron is joined to its neighbour across its best face, if that is not
+ * constrained; as POLYLLA does with the longest edges of triangles. */
+
+/* Squared: it is only compared. */
+static double metric_of(const tm_tet_mesh *mesh, uint32_t t, uint32_t i,
+                        tm_face_metric metric)
+{
+    uint32_t n[3];
+    tm_tet_face_below(mesh, t, i, n);
+    const double *a = mesh->xyz[n[0]], *b = mesh->xyz[n[1]], *c = mesh->xyz[n[2]];
+    double area = tm_triangle_area(a, b, c);
+    if (metric == TM_FACE_AREA)
+        return area;
+    double around =
+        sqrt(tm_distance2(a, b)) + sqrt(tm_distance2(b, c)) + sqrt(tm_distance2(c, a));
+    return around > 0 ? 2 * area / around : 0;
+}
+
+static uint32_t best_face(const tm_tet_mesh *mesh, uint32_t t, tm_face_metric metric)
+{
+    uint32_t best = 0;
+    double most = -1;
+    for (uint32_t i = 0; i < 4; i++) {
+        double value = metric_of(mesh, t, i, metric);
+        if (value <= most)
+            continue;
+        most = value;
+        best = i;
+    }
+    return best;
+}
+
+static tm_status label_best_face(const tm_tet_mesh *mesh, const tm_poly_options *options,
+                                 uint32_t *label, size_t *regions, tm_error *error)
+{
+    (void)error;
+    for (uint32_t t = 0; t < mesh->slots; t++)
+        label[t] = t;
+    for (uint32_t t = 0; t < mesh->slots; t++) {
+        uint32_t across = mesh->neighbour[t][best_face(mesh, t, options->face_metric)];
+        if (across & TM_FACE_BIT)
+            continue;
+        uint32_t r = tm_set_root(label, t), s = tm_set_root(label, across / 4);
+        /* The first tetrahedron is the root. */
+        if (r < s)
+            label[s] = r;
+        else
+            label[r] = s;
+    }
+    for (uint32_t t = 0; t < mesh->slots; t++)
+        label[t] = tm_set_root(label, t);
+    /* Roots come before the rest of their trees: number them on the way. */
+    *regions = 0;
+    for (uint32_t t = 0; t < mesh->slots; t++)
+        label[t] = label[t] == t ? (uint32_t)(*regions)++ : label[label[t]];
+    return TM_OK;
+}
+
+/* By circumscribed spheres --------------------------------------------------------- */
+
+/* From seeds by growing circumradius, tetrahedra are flooded whose circumcentre is in the
+ * sphere of the seed. */
+
+typedef struct {
+    double radius2;
+    uint32_t t;
+} seed;
+
+/* The circumcentre; false in a flat tetrahedron. */
+static bool circumcentre(const tm_tet_mesh *mesh, uint32_t t, double centre[3],
+                         double *radius2)
+{
+    const uint32_t *n = mesh->tet[t];
+    double u[3], v[3], w[3], vw[3], wu[3], uv[3];
+    tm_subtract(u, mesh->xyz[n[1]], mesh->xyz[n[0]]);
+    tm_subtract(v, mesh->xyz[n[2]], mesh->xyz[n[0]]);
+    tm_subtract(w, mesh->xyz[n[3]], mesh->xyz[n[0]]);
+    tm_cross(vw, v, w);
+    tm_cross(wu, w, u);
+    tm_cross(uv, u, v);
+    double determinant = 2 * tm_dot(u, vw);
+    *radius2 = 0;
+    for (int x = 0; x < 3; x++) {
+        double to = (tm_norm2(u) * vw[x] + tm_norm2(v) * wu[x] + tm_norm2(w) * uv[x]) /
+                    determinant;
+        centre[x] = mesh->xyz[n[0]][x] + to;
+        *radius2 += to * to;
+    }
+    return determinant > 0 && isfinite(*radius2);
+}
+
+static int by_radius(const void *a, const void *b)
+{
+    const seed *s = a, *r = b;
+    if (s->radius2 != r->radius2)
+        return s->radius2 < r->radius2 ? -1 : 1;
+    return (s->t > r->t) - (s->t < r->t);
+}
+
+/* Floods from one seed; `queue` has room for all tetrahedra. */
+static void flood(const tm_tet_mesh *mesh, uint32_t t, uint32_t name, uint32_t *label,
+                  uint32_t *queue)
+{
+    double centre[3], radius2, other[3], other2;
+    size_t count = 0;
+    bool has_sphere = circumcentre(mesh, t, centre, &radius2);
+    label[t] = name;
+    queue[count++] = t;
+    for (size_t next = 0; next < count && has_sphere; next++)
+        for (uint32_t i = 0; i < 4; i++) {
+            uint32_t across = mesh->neighbour[queue[next]][i];
+            if (across & TM_FACE_BIT || label[across / 4] != TM_NONE ||
+                !circumcentre(mesh, across / 4, other, &other2) ||
+                tm_distance2(centre, other) >= radius2)
+                continue;
+            label[across / 4] = name;
+            queue[count++] = across / 4;
+        }
+}
+
+static tm_status label_cavity(const tm_tet_mesh *mesh, const tm_poly_options *options,
+                              uint32_t *label, size_t *regions, tm_error *error)
+{
+    (void)options;
+    seed *seeds = tm_new(mesh->slots, sizeof *seeds);
+    uint32_t *queue = tm_new(mesh->slots, sizeof *queue);
+    bool done = seeds && queue;
+    for (uint32_t t = 0; t < mesh->slots && done; t++) {
+        double centre[3];
+        seeds[t].t = t;
+        if (!circumcentre(mesh, t, centre, &seeds[t].radius2))
+            seeds[t].radius2 = HUGE_VAL;
+        label[t] = TM_NONE;
+    }
+    if (done)
+        qsort(seeds, mesh->slots, sizeof *seeds, by_radius);
+    *regions = 0;
+    for (size_t k = 0; k < mesh->slots && done; k++)
+        if (label[seeds[k].t] == TM_NONE)
+            flood(mesh, seeds[k].t, (uint32_t)(*regions)++, label, queue);
+    free(seeds);
+    free(queue);
+    return done ? TM_OK : tm_fail_memory(error);
+}
+
+const tm_poly_mode_row tm_poly_modes[TM_POLY_MODES] = {
+    [TM_POLY_TERMINAL] = {"terminal", label_terminal},
+    [TM_POLY_EDGE] = {"edge", label_longest_edge},
+    [TM_POLY_FACE] = {"face", label_best_face},
+    [TM_POLY_CAVITY] = {"cavity", label_cavity},
+};
