@@ -16,7 +16,7 @@
 # Warnings of the compiler are errors with WERROR=1.
 
 # 0.1.0, and the number in the name of the shared library.
-VERSION := $(shell sed -n 's/^.define TM_VERSION "\(.*\)"/\1/p' lib/base/version.h)
+VERSION := $(shell sed -n 's/^.define TM_VERSION *"\(.*\)"/\1/p' lib/base/version.h)
 SOVERSION := $(basename $(VERSION))
 
 PREFIX = /usr/local

@@ -4,7 +4,11 @@
 #ifndef TM_BASE_ERROR_H
 #define TM_BASE_ERROR_H
 
+#include "extern_c.h"
+
 #include <stddef.h>
+
+TM_EXTERN_C_BEGIN
 
 /* What went wrong, as the exit status of a filter that meets it. */
 typedef enum tm_status {
@@ -37,5 +41,7 @@ tm_status tm_fail_as(tm_error *error, const tm_error *cause);
 
 /* "out of memory", as TM_ERROR_SYSTEM. */
 tm_status tm_fail_memory(tm_error *error);
+
+TM_EXTERN_C_END
 
 #endif

@@ -3,8 +3,11 @@
 #ifndef TM_BASE_FILE_H
 #define TM_BASE_FILE_H
 
+#include "extern_c.h"
 #include "error.h"
 #include "text.h"
+
+TM_EXTERN_C_BEGIN
 
 /* Reads at most size bytes, again after an interrupt. Returns how many, 0 at the end;
  * on failure -1 with errno. */
@@ -15,5 +18,7 @@ tm_status tm_read_all(int fd, const char *name, tm_text *text, tm_error *error);
 
 /* Writes all bytes. TM_ERROR_SYSTEM with errno's message where that fails. */
 tm_status tm_write_all(int fd, const char *bytes, size_t size, tm_error *error);
+
+TM_EXTERN_C_END
 
 #endif

@@ -10,10 +10,13 @@
 #ifndef TM_BASE_JSON_H
 #define TM_BASE_JSON_H
 
+#include "extern_c.h"
 #include "text.h"
 
 #include <stdbool.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 typedef struct tm_json {
     tm_text *text;
@@ -26,5 +29,7 @@ void tm_json_integer(tm_json *json, const char *key, int64_t value);
 void tm_json_double(tm_json *json, const char *key,
                     double value); /* null if not finite */
 void tm_json_string(tm_json *json, const char *key, const char *value);
+
+TM_EXTERN_C_END
 
 #endif

@@ -3,7 +3,11 @@
 #ifndef TM_BASE_NUMBER_H
 #define TM_BASE_NUMBER_H
 
+#include "extern_c.h"
+
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 /* Bytes that the writers below may need at most. They store whole words, so there must be
  * so much room whatever the number, and what is behind their text in it is lost. */
@@ -36,5 +40,7 @@ char *tm_write_rounded(char *text, double value, int most);
 /* Writes value in decimal; at most TM_INTEGER_CHARS bytes. */
 char *tm_write_int64(char *text, int64_t value);
 char *tm_write_uint32(char *text, uint32_t value);
+
+TM_EXTERN_C_END
 
 #endif

@@ -5,7 +5,11 @@
 #ifndef TM_BASE_PARALLEL_H
 #define TM_BASE_PARALLEL_H
 
+#include "extern_c.h"
+
 #include <stddef.h>
+
+TM_EXTERN_C_BEGIN
 
 /* Calls work(context, chunk) once for each chunk in 0 … chunks-1 and returns when all
  * are done. At most `threads` of them, this one included, run at a time; fewer where
@@ -13,5 +17,7 @@
  * on this thread. */
 void tm_parallel(unsigned threads, size_t chunks,
                  void (*work)(void *context, size_t chunk), void *context);
+
+TM_EXTERN_C_END
 
 #endif

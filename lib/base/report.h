@@ -12,10 +12,13 @@
 #ifndef TM_BASE_REPORT_H
 #define TM_BASE_REPORT_H
 
+#include "extern_c.h"
 #include "json.h"
 
 #include <stddef.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 typedef enum tm_report_type {
     TM_REPORT_END,
@@ -84,5 +87,7 @@ void tm_report_cells(tm_text *text, const char *label, const char *format,
 
 /* Appends a bar of so many stars, and the end of the line. */
 void tm_report_bar(tm_text *text, double stars);
+
+TM_EXTERN_C_END
 
 #endif

@@ -4,9 +4,13 @@
 #ifndef TM_BASE_TEXT_H
 #define TM_BASE_TEXT_H
 
+#include "extern_c.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 typedef struct tm_text {
     char *byte; /* size bytes, then a NUL; NULL while nothing was appended */
@@ -27,5 +31,7 @@ void tm_text_integer(tm_text *text, int64_t value);
 bool tm_text_room(tm_text *text, size_t size);
 
 void tm_text_free(tm_text *text);
+
+TM_EXTERN_C_END
 
 #endif

@@ -5,8 +5,12 @@
 #ifndef TM_ELEMENT_ASPECT_RATIO_H
 #define TM_ELEMENT_ASPECT_RATIO_H
 
+#include "../base/extern_c.h"
+
 #include <stddef.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 /* Of an element of so many nodes, 4, 5, 6 or 8, in the order of shape.h.
  * The lengths are:
@@ -21,5 +25,7 @@
  * the six squared edges: 1 for the regular one. In [0, 1], but for rounding; 0 where
  * all lengths are 0 or one overflows. O(1). */
 double tm_aspect_ratio(size_t nodes, const double (*xyz)[3], const uint32_t *item);
+
+TM_EXTERN_C_END
 
 #endif

@@ -23,8 +23,12 @@
 #ifndef TM_ELEMENT_CERTIFY_H
 #define TM_ELEMENT_CERTIFY_H
 
+#include "../base/extern_c.h"
+
 #include <stddef.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 typedef enum tm_certificate {
     TM_POSITIVE,     /* proved: everywhere in the element, its boundary included */
@@ -38,5 +42,7 @@ typedef enum tm_certificate {
 tm_certificate tm_certify(size_t nodes, const double (*xyz)[3], const uint32_t *item);
 
 enum { TM_CERTIFY_BOXES = 20000 };
+
+TM_EXTERN_C_END
 
 #endif

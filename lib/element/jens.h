@@ -20,11 +20,14 @@
 #ifndef TM_ELEMENT_JENS_H
 #define TM_ELEMENT_JENS_H
 
+#include "../base/extern_c.h"
 #include "shape.h"
 
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 /* J_ENS of a corner with that J_S. */
 static inline double tm_jens_of(double jacobian, double k)
@@ -54,5 +57,7 @@ double tm_scaled_jacobian(const double p[3], const double a[3], const double b[3
  * 0 where the value is no derivative of anything: an edge of length 0. */
 double tm_scaled_jacobian_slope(const double p[3], const double a[3], const double b[3],
                                 const double c[3], double slope[4][3]);
+
+TM_EXTERN_C_END
 
 #endif

@@ -9,8 +9,12 @@
 #ifndef TM_ELEMENT_SHAPE_H
 #define TM_ELEMENT_SHAPE_H
 
+#include "../base/extern_c.h"
+
 #include <stddef.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 /* The number of nodes tells which one it is. */
 enum {
@@ -105,9 +109,9 @@ extern const uint8_t tm_edge_corner[TM_TET_EDGES][4];
 /* VTK's number for a vertex, a triangle or an element, by how many nodes it has. */
 static inline uint8_t tm_vtk_cell_type(size_t nodes)
 {
-    return nodes == 1   ? TM_VTK_VERTEX
-           : nodes == 3 ? TM_VTK_TRIANGLE
-                        : tm_element_shapes[nodes].vtk_type;
+    if (nodes == 1)
+        return TM_VTK_VERTEX;
+    return nodes == 3 ? (uint8_t)TM_VTK_TRIANGLE : tm_element_shapes[nodes].vtk_type;
 }
 
 /* 3 or 4. */
@@ -127,5 +131,7 @@ static inline void tm_mixed_least(const tm_element_shape *shape, const uint32_t 
         least[i] = a < b ? a : b;
     }
 }
+
+TM_EXTERN_C_END
 
 #endif

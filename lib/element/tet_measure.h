@@ -6,11 +6,14 @@
 #ifndef TM_ELEMENT_TET_MEASURE_H
 #define TM_ELEMENT_TET_MEASURE_H
 
+#include "../base/extern_c.h"
 #include "tet_quality.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdbool.h>
+
+TM_EXTERN_C_BEGIN
 
 typedef enum tm_tet_measure { TM_MEASURE_DIHEDRAL, TM_MEASURE_VOLUME } tm_tet_measure;
 
@@ -122,5 +125,7 @@ static inline double tm_cost_of(const tm_cost *cost, double quality)
         return 0;
     return 1 + cost->weight * (1 - sqrt(quality / cost->target));
 }
+
+TM_EXTERN_C_END
 
 #endif

@@ -12,9 +12,12 @@
 #ifndef TM_ELEMENT_TET_QUALITY_H
 #define TM_ELEMENT_TET_QUALITY_H
 
+#include "../base/extern_c.h"
 #include "shape.h"
 
 #include <stdbool.h>
+
+TM_EXTERN_C_BEGIN
 
 #define TM_ANGLE_TOLERANCE          1e-7 /* degrees */
 #define TM_VOLUME_QUALITY_TOLERANCE 1e-9
@@ -70,20 +73,23 @@ typedef struct tm_vector_pair {
 static inline tm_vector_pair tm_pair_edges(const double a[3], const double b[3],
                                            const double c[3], const double d[3])
 {
-    return (tm_vector_pair){(tm_pair){b[0], d[0]} - (tm_pair){a[0], c[0]},
-                            (tm_pair){b[1], d[1]} - (tm_pair){a[1], c[1]},
-                            (tm_pair){b[2], d[2]} - (tm_pair){a[2], c[2]}};
+    const tm_vector_pair from = {{a[0], c[0]}, {a[1], c[1]}, {a[2], c[2]}};
+    const tm_vector_pair to = {{b[0], d[0]}, {b[1], d[1]}, {b[2], d[2]}};
+    const tm_vector_pair edges = {to.x - from.x, to.y - from.y, to.z - from.z};
+    return edges;
 }
 
 static inline tm_pair tm_pair_swap(tm_pair p)
 {
-    return (tm_pair){p[1], p[0]};
+    const tm_pair swapped = {p[1], p[0]};
+    return swapped;
 }
 
 static inline tm_vector_pair tm_pair_cross(tm_vector_pair p, tm_vector_pair q)
 {
-    return (tm_vector_pair){p.y * q.z - p.z * q.y, p.z * q.x - p.x * q.z,
-                            p.x * q.y - p.y * q.x};
+    const tm_vector_pair cross = {p.y * q.z - p.z * q.y, p.z * q.x - p.x * q.z,
+                                  p.x * q.y - p.y * q.x};
+    return cross;
 }
 
 static inline tm_pair tm_pair_norm2(tm_vector_pair p)
@@ -147,5 +153,7 @@ static inline double tm_tet_sine2(const double a[3], const double b[3], const do
     const double sine2 = tm_tet_sine2_measure(a, b, c, d, &measured);
     return measured ? sine2 : tm_tet_sine2_scaled(a, b, c, d);
 }
+
+TM_EXTERN_C_END
 
 #endif

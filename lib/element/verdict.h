@@ -11,8 +11,12 @@
 #ifndef TM_ELEMENT_VERDICT_H
 #define TM_ELEMENT_VERDICT_H
 
+#include "../base/extern_c.h"
+
 #include <stddef.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 /* The scaled Jacobian, of an element of 4, 5, 6 or 8 nodes in the order of
  * shape.h. With J_S of jens.h:
@@ -37,5 +41,7 @@ double tm_verdict_scaled_jacobian(size_t nodes, const double (*xyz)[3],
  * over 1/√2 of the longest edge, or that over it if it is less. (VTK to 9.3 may leave the
  * edge 0 1 out of the longest.) In [0, 1]. */
 double tm_verdict_shape(size_t nodes, const double (*xyz)[3], const uint32_t *item);
+
+TM_EXTERN_C_END
 
 #endif

@@ -5,8 +5,11 @@
 #define TM_EXAMINE_ELEMENT_EXAMINE_H
 
 #include "../base/error.h"
+#include "../base/extern_c.h"
 #include "../mesh/mesh_view.h"
 #include "examination.h"
+
+TM_EXTERN_C_BEGIN
 
 /* Fills *found, with `mixed` set where the view is not of tetrahedra alone. An element
  * that names a node twice is counted as degenerate and takes no part in anything else. An
@@ -30,5 +33,7 @@
  * tm_face_table_make() says so. Expected O(nodes + elements + rows). */
 tm_status tm_element_examine(tm_examination *found, const tm_mesh_view *mesh,
                              unsigned threads, tm_error *error);
+
+TM_EXTERN_C_END
 
 #endif

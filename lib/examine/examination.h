@@ -4,6 +4,7 @@
 #ifndef TM_EXAMINE_EXAMINATION_H
 #define TM_EXAMINE_EXAMINATION_H
 
+#include "../base/extern_c.h"
 #include "../element/shape.h"
 #include "../base/error.h"
 #include "../base/json.h"
@@ -13,6 +14,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 /* The kinds of defects, and the numbers (0-based) that say where one is. */
 typedef enum tm_defect {
@@ -91,5 +94,7 @@ void tm_examination_json(tm_json *json, const tm_examination *found);
 
 /* Writes the sizes as a table, then what is wrong; numbers count from `base`. */
 void tm_examination_text(tm_text *text, const tm_examination *found, unsigned base);
+
+TM_EXTERN_C_END
 
 #endif

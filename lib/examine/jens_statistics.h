@@ -6,6 +6,7 @@
 #ifndef TM_EXAMINE_JENS_STATISTICS_H
 #define TM_EXAMINE_JENS_STATISTICS_H
 
+#include "../base/extern_c.h"
 #include "../base/error.h"
 #include "../base/json.h"
 #include "../base/text.h"
@@ -15,6 +16,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 enum { TM_JENS_BUCKETS = 21, TM_CERTIFICATES = 3, TM_NAMED = 10 };
 
@@ -35,7 +38,7 @@ static inline const uint32_t *tm_element_at(const tm_elements *elements, size_t 
                                             size_t *nodes)
 {
     const size_t first = elements->start ? elements->start[e] : TM_TET_NODES * e;
-    *nodes = elements->start ? elements->start[e + 1] - first : TM_TET_NODES;
+    *nodes = elements->start ? elements->start[e + 1] - first : (size_t)TM_TET_NODES;
     return elements->item + first;
 }
 
@@ -107,5 +110,7 @@ void tm_jens_certified_table(tm_text *text, const tm_jens_statistics *statistics
  * not_positive undecided first[…]}. */
 void tm_jens_statistics_json(tm_json *json, const tm_jens_statistics *statistics,
                              const tm_jens_request *request, unsigned base);
+
+TM_EXTERN_C_END
 
 #endif

@@ -5,12 +5,15 @@
 #ifndef TM_EXAMINE_POLY_BOUNDARY_H
 #define TM_EXAMINE_POLY_BOUNDARY_H
 
+#include "../base/extern_c.h"
 #include "../base/error.h"
 #include "../mesh/poly_arrays.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 /* Faces that have the edge, and in which sense: from end[0] to end[1], or back. */
 typedef struct tm_poly_edge {
@@ -68,5 +71,7 @@ typedef enum tm_poly_cause {
 
 /* The causes as a set, bit 1 << cause for each; 0: the polyhedron is simple. */
 unsigned tm_poly_boundary_causes(const tm_poly_boundary *b);
+
+TM_EXTERN_C_END
 
 #endif

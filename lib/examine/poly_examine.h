@@ -3,9 +3,12 @@
 #ifndef TM_EXAMINE_POLY_EXAMINE_H
 #define TM_EXAMINE_POLY_EXAMINE_H
 
+#include "../base/extern_c.h"
 #include "../base/error.h"
 #include "examination.h"
 #include "../mesh/poly_arrays.h"
+
+TM_EXTERN_C_BEGIN
 
 /* Fills *found, with `polyhedra` set. What is combinatorial is exact: each facet is
  * listed once by each cell that it names and by no other (TM_UNMATCHED_FACE), no two
@@ -19,5 +22,7 @@
  * has 2^31 corners. Expected O(nodes + corners of facets). */
 tm_status tm_poly_examine(tm_examination *found, const tm_poly_arrays *mesh,
                           unsigned threads, tm_error *error);
+
+TM_EXTERN_C_END
 
 #endif

@@ -4,6 +4,7 @@
 #ifndef TM_EXAMINE_POLY_STATISTICS_H
 #define TM_EXAMINE_POLY_STATISTICS_H
 
+#include "../base/extern_c.h"
 #include "../base/error.h"
 #include "../base/json.h"
 #include "../base/text.h"
@@ -13,6 +14,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 enum {
     TM_COUNT_BINS = 64,       /* of counts: see tm_count_bin_begin() */
@@ -81,5 +84,7 @@ void tm_poly_statistics_json(tm_json *json, const tm_poly_statistics *statistics
 
 /* Writes the tables to read. */
 void tm_poly_statistics_table(tm_text *text, const tm_poly_statistics *statistics);
+
+TM_EXTERN_C_END
 
 #endif

@@ -7,12 +7,15 @@
 #ifndef TM_EXAMINE_TET_STATISTICS_H
 #define TM_EXAMINE_TET_STATISTICS_H
 
+#include "../base/extern_c.h"
 #include "../base/error.h"
 #include "../base/json.h"
 #include "../base/text.h"
 
 #include <stddef.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 enum {
     TM_DIHEDRAL_BINS = 36,       /* of 5 degrees */
@@ -62,5 +65,7 @@ void tm_tet_statistics_object(tm_json *json, const char *key,
  */
 void tm_tet_statistics_table(tm_text *text, const tm_tet_statistics *before,
                              const tm_tet_statistics *statistics);
+
+TM_EXTERN_C_END
 
 #endif

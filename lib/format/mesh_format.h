@@ -5,10 +5,13 @@
 #ifndef TM_FORMAT_MESH_FORMAT_H
 #define TM_FORMAT_MESH_FORMAT_H
 
+#include "../base/extern_c.h"
 #include "../base/text.h"
 #include "../stream/stream.h"
 
 #include <stdbool.h>
+
+TM_EXTERN_C_BEGIN
 
 /* OFF ------------------------------------------------------------------------------ */
 
@@ -140,5 +143,7 @@ typedef struct tm_openfoam_counts {
  * cells. Expected O(n + b log b) for b facets of the boundary. */
 tm_status tm_openfoam_write(tm_text file[TM_OPENFOAM_FILES], const tm_stream *stream,
                             tm_openfoam_counts *counts, tm_error *error);
+
+TM_EXTERN_C_END
 
 #endif

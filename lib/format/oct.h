@@ -20,7 +20,10 @@
 #ifndef TM_FORMAT_OCT_H
 #define TM_FORMAT_OCT_H
 
+#include "../base/extern_c.h"
 #include "../stream/stream.h"
+
+TM_EXTERN_C_BEGIN
 
 enum { TM_OCT_CORNERS = 8 };
 
@@ -58,5 +61,7 @@ tm_status tm_oct_to_stream(const tm_oct *oct, tm_stream *stream, const char *nam
  * `threads` format. O(n log n). */
 tm_status tm_oct_write(tm_text *text, const tm_stream *stream, unsigned threads,
                        tm_error *error);
+
+TM_EXTERN_C_END
 
 #endif

@@ -4,7 +4,10 @@
 #ifndef TM_FORMAT_SURFACE_FORMAT_H
 #define TM_FORMAT_SURFACE_FORMAT_H
 
+#include "../base/extern_c.h"
 #include "../surface/polygon_surface.h"
+
+TM_EXTERN_C_BEGIN
 
 typedef enum tm_format {
     TM_FORMAT_UNKNOWN,
@@ -70,5 +73,7 @@ bool tm_stl_is_binary(const char *bytes, size_t size);
  * are read, each known by its type, the other ones skipped. */
 tm_status tm_mdl_read(tm_polygon_surface *surface, const char *bytes, size_t size,
                       const char *name, tm_error *error);
+
+TM_EXTERN_C_END
 
 #endif

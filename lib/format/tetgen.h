@@ -3,9 +3,12 @@
 #ifndef TM_FORMAT_TETGEN_H
 #define TM_FORMAT_TETGEN_H
 
+#include "../base/extern_c.h"
 #include "../base/text.h"
 #include "../stream/stream.h"
 #include "../surface/polygon_surface.h"
+
+TM_EXTERN_C_BEGIN
 
 /* The .node, .ele, .face and .edge files: numbered from 0 or 1, with comments anywhere,
  * attributes, markers, CR LF, header fields left out. What such a file holds is what a
@@ -60,5 +63,7 @@ void tm_plc_write(tm_text *text, const tm_polygon_surface *surface);
 
 /* Appends its nodes as a .node file. */
 void tm_plc_write_nodes(tm_text *text, const tm_polygon_surface *surface);
+
+TM_EXTERN_C_END
 
 #endif

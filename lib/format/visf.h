@@ -16,10 +16,13 @@
 #ifndef TM_FORMAT_VISF_H
 #define TM_FORMAT_VISF_H
 
+#include "../base/extern_c.h"
 #include "../stream/stream.h"
 
 #include <stdbool.h>
 #include <stddef.h>
+
+TM_EXTERN_C_BEGIN
 
 typedef enum tm_visf_order { TM_VISF_BIG, TM_VISF_LITTLE, TM_VISF_TEXT } tm_visf_order;
 
@@ -56,5 +59,7 @@ typedef struct tm_visf_repairs {
  * After an error the stream is empty. Expected O(size). */
 tm_status tm_visf_read(tm_stream *stream, const char *bytes, size_t size,
                        const char *name, tm_visf_repairs *repairs, tm_error *error);
+
+TM_EXTERN_C_END
 
 #endif

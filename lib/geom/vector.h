@@ -4,9 +4,13 @@
 #ifndef TM_GEOM_VECTOR_H
 #define TM_GEOM_VECTOR_H
 
+#include "../base/extern_c.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
+
+TM_EXTERN_C_BEGIN
 
 /* out = a - b; out may be a or b. */
 static inline void tm_subtract(double out[3], const double a[3], const double b[3])
@@ -127,5 +131,7 @@ static inline bool tm_bring_into_range(double (*p)[3], size_t count)
             p[v][i] = ldexp(p[v][i], -exponent);
     return true;
 }
+
+TM_EXTERN_C_END
 
 #endif

@@ -4,11 +4,14 @@
 #ifndef TM_MESH_CELL_FACES_H
 #define TM_MESH_CELL_FACES_H
 
+#include "../base/extern_c.h"
 #include "../stream/stream.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 /* What a stream's main mesh is: the last of these of which it has a row. Rows of .facet
  * without .cell do not make polyhedra: they are facets of .mix. */
@@ -61,5 +64,7 @@ static inline bool tm_facet_is_outward(const tm_cell_faces *faces, size_t f, siz
 {
     return faces->side[f][0] == c;
 }
+
+TM_EXTERN_C_END
 
 #endif

@@ -4,9 +4,13 @@
 #ifndef TM_MESH_EDGE_MAP_H
 #define TM_MESH_EDGE_MAP_H
 
+#include "../base/extern_c.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 typedef struct tm_edge_slot {
     uint64_t key; /* 0: empty */
@@ -55,5 +59,7 @@ static inline uint32_t *tm_edge_map_get(const tm_edge_map *map, uint32_t a, uint
     tm_edge_slot *slot = tm_edge_map_slot(map, tm_edge_key(a, b));
     return slot->key != 0 ? &slot->value : NULL;
 }
+
+TM_EXTERN_C_END
 
 #endif

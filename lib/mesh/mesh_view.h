@@ -4,11 +4,14 @@
 #ifndef TM_MESH_MESH_VIEW_H
 #define TM_MESH_MESH_VIEW_H
 
+#include "../base/extern_c.h"
 #include "../element/shape.h"
 #include "../stream/stream.h"
 
 #include <stddef.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 /* Flat arrays, which belong to somebody else; all indices are below the counts. Arrays of
  * count 0 may be NULL. The nodes of an element are in the order of shape.h. */
@@ -47,5 +50,7 @@ static inline const uint32_t *tm_mesh_view_nodes(const tm_mesh_view *mesh, size_
     *count = mesh->start[e + 1] - mesh->start[e];
     return mesh->item + mesh->start[e];
 }
+
+TM_EXTERN_C_END
 
 #endif

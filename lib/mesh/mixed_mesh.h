@@ -3,10 +3,13 @@
 #ifndef TM_MESH_MIXED_MESH_H
 #define TM_MESH_MIXED_MESH_H
 
+#include "../base/extern_c.h"
 #include "../element/jens.h"
 
 #include <stddef.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 /* Element e has the nodes item[start[e]] … item[start[e + 1] - 1]: 4 of a tetrahedron, 5
  * of a pyramid, 6 of a wedge, 8 of a hexahedron, in the order of shape.h. */
@@ -24,5 +27,7 @@ static inline double tm_mixed_jens(const tm_mixed_mesh *mesh, size_t e)
     return tm_jens(mesh->start[e + 1] - mesh->start[e], (const double(*)[3])mesh->xyz,
                    mesh->item + mesh->start[e]);
 }
+
+TM_EXTERN_C_END
 
 #endif

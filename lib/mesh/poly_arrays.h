@@ -3,10 +3,13 @@
 #ifndef TM_MESH_POLY_ARRAYS_H
 #define TM_MESH_POLY_ARRAYS_H
 
+#include "../base/extern_c.h"
 #include "../stream/stream.h"
 
 #include <stddef.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 /* All indices are below the counts. Arrays of count 0 may be NULL; they belong to the
  * stream. The nodes of a facet turn counter-clockwise seen from its first cell, around
@@ -27,5 +30,7 @@ typedef struct tm_poly_arrays {
 
 /* The blocks .node, .facet and .cell of a stream; those that are not there are empty. */
 tm_poly_arrays tm_poly_arrays_of(const tm_stream *stream);
+
+TM_EXTERN_C_END
 
 #endif

@@ -4,12 +4,15 @@
 #ifndef TM_OPTIMISE_OPTIMISE_H
 #define TM_OPTIMISE_OPTIMISE_H
 
+#include "../base/extern_c.h"
 #include "../base/error.h"
 #include "../mesh/mixed_mesh.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 typedef enum tm_node_freedom {
     TM_MOVES_NOT,
@@ -100,5 +103,7 @@ tm_status tm_mixed_optimise(tm_mixed_mesh *mesh, tm_node_rule *rule,
                             const tm_boundary *boundary,
                             const tm_optimise_options *options,
                             tm_optimise_report *report, tm_error *error);
+
+TM_EXTERN_C_END
 
 #endif

@@ -3,8 +3,11 @@
 #ifndef TM_POLY_FACETS_H
 #define TM_POLY_FACETS_H
 
+#include "../base/extern_c.h"
 #include "../stream/stream.h"
 #include "partition.h"
+
+TM_EXTERN_C_BEGIN
 
 /* Fills the empty blocks .facet and .cell. Facets are triangles, ordered by their first
  * cell, which is the one with the smaller number; from there their nodes turn
@@ -33,5 +36,7 @@ typedef struct tm_coplanar {
 tm_status tm_merge_coplanar(const tm_tet_mesh *mesh, const tm_coplanar *plane,
                             tm_block *facet, tm_block *cell, size_t *joined,
                             tm_error *error);
+
+TM_EXTERN_C_END
 
 #endif

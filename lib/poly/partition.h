@@ -12,7 +12,10 @@
 #ifndef TM_POLY_PARTITION_H
 #define TM_POLY_PARTITION_H
 
+#include "../base/extern_c.h"
 #include "../tet/mesh.h"
+
+TM_EXTERN_C_BEGIN
 
 /* How regions are found: a row of tm_poly_modes. */
 typedef enum tm_poly_mode {
@@ -67,5 +70,7 @@ void tm_partition_free(tm_partition *partition);
 
 /* Marked faces inside of one region of the mesh are no longer kept. */
 void tm_ignore_markers(tm_tet_mesh *mesh);
+
+TM_EXTERN_C_END
 
 #endif

@@ -5,12 +5,15 @@
 #ifndef TM_STREAM_STREAM_H
 #define TM_STREAM_STREAM_H
 
+#include "../base/extern_c.h"
 #include "../base/error.h"
 #include "../base/text.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 typedef enum tm_block_kind {
     TM_NODE,   /* .node    real: x y z */
@@ -104,5 +107,7 @@ tm_status tm_block_allocate(tm_block *block, size_t count, size_t items, tm_erro
 
 /* Appends "# line\n" to the history; line breaks inside become blanks. */
 void tm_stream_add_history(tm_stream *stream, const char *line);
+
+TM_EXTERN_C_END
 
 #endif

@@ -5,11 +5,14 @@
 #ifndef TM_SURFACE_POLYGON_SURFACE_H
 #define TM_SURFACE_POLYGON_SURFACE_H
 
+#include "../base/extern_c.h"
 #include "../stream/stream.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 /* A region of a .poly or .smesh file: what the tetrahedra get that are joined to
  * `point` without crossing a facet. */
@@ -95,5 +98,7 @@ tm_status tm_polygon_surface_add_faces(tm_polygon_surface *surface, const tm_blo
 tm_status tm_polygon_surface_to_stream(const tm_polygon_surface *surface,
                                        tm_stream *stream, const char *part,
                                        tm_error *error);
+
+TM_EXTERN_C_END
 
 #endif

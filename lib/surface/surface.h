@@ -5,7 +5,10 @@
 #ifndef TM_SURFACE_SURFACE_H
 #define TM_SURFACE_SURFACE_H
 
+#include "../base/extern_c.h"
 #include "polygon_surface.h"
+
+TM_EXTERN_C_BEGIN
 
 /* Sharp edges are chained to curves that end at corners: nodes where another number than
  * two sharp edges meet, or where two meet at a sharp angle that the next node of the
@@ -139,5 +142,7 @@ bool tm_surface_meets_box(const tm_surface *surface, const double low[3],
  * in the same order, to kept, which may be list. Returns how many. O(count). */
 size_t tm_surface_cull(const tm_surface *surface, const uint32_t *list, size_t count,
                        const double low[3], const double high[3], uint32_t *kept);
+
+TM_EXTERN_C_END
 
 #endif

@@ -4,7 +4,10 @@
 #ifndef TM_SURFACE_SURFACE_DEFECTS_H
 #define TM_SURFACE_SURFACE_DEFECTS_H
 
+#include "../base/extern_c.h"
 #include "polygon_surface.h"
+
+TM_EXTERN_C_BEGIN
 
 typedef struct tm_surface_defects {
     size_t duplicate_nodes;  /* nodes where an earlier one is */
@@ -20,5 +23,7 @@ typedef struct tm_surface_defects {
  * or two have no edges. O(n log n) in the number of corners. */
 tm_status tm_surface_find_defects(const tm_polygon_surface *surface,
                                   tm_surface_defects *defects, tm_error *error);
+
+TM_EXTERN_C_END
 
 #endif

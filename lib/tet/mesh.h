@@ -8,6 +8,7 @@
 #ifndef TM_TET_MESH_H
 #define TM_TET_MESH_H
 
+#include "../base/extern_c.h"
 #include "../base/error.h"
 #include "../stream/stream.h"
 #include "../mesh/edge_map.h"
@@ -16,6 +17,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 /* A value of neighbour[t][i] with this bit is the number of a tm_constrained_face;
  * without it, the half face on the other side. So a mesh has fewer than 2^29 tetrahedra.
@@ -160,7 +163,9 @@ uint32_t tm_tet_mesh_new_node(tm_tet_mesh *mesh, const double p[3]);
 /* Removes a node that no tetrahedron has any more. */
 void tm_tet_mesh_delete_node(tm_tet_mesh *mesh, uint32_t v);
 
-/* Makes half faces h and g each other's neighbours, with no face kept between them. */
+/* Makes half faces h and g each other's neighbours, with no constrained face between
+ * them.
+ */
 static inline void tm_tet_join(tm_tet_mesh *mesh, uint32_t h, uint32_t g)
 {
     mesh->neighbour[h / 4][h % 4] = g;
@@ -192,5 +197,7 @@ void tm_tet_mesh_forget_edge(tm_tet_mesh *mesh, uint32_t a, uint32_t b);
  * p is deepest in. O(count). */
 void tm_tet_interpolate(const tm_tet_mesh *mesh, const uint32_t *tet, size_t count,
                         const double p[3], double *value);
+
+TM_EXTERN_C_END
 
 #endif

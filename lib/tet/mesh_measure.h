@@ -4,9 +4,12 @@
 #ifndef TM_TET_MESH_MEASURE_H
 #define TM_TET_MESH_MEASURE_H
 
+#include "../base/extern_c.h"
 #include "../geom/vector.h"
 #include "mesh.h"
 #include "star.h"
+
+TM_EXTERN_C_BEGIN
 
 /* Edges are compared by (squared length, larger node, smaller node), so that of two edges
  * one is always the longer. */
@@ -26,7 +29,8 @@ static inline unsigned tm_longest_edge(const tm_tet_mesh *mesh, uint32_t t,
 {
     const uint32_t *n = mesh->tet[t];
     unsigned longest = 0;
-    *rank = (tm_edge_rank){-1, 0};
+    rank->length2 = -1;
+    rank->key = 0;
     for (unsigned e = 0; e < 6; e++) {
         uint32_t a = n[tm_edge_corner[e][0]], b = n[tm_edge_corner[e][1]];
         tm_edge_rank other = {tm_distance2(mesh->xyz[a], mesh->xyz[b]),
@@ -60,5 +64,7 @@ double tm_facet_flatness(const tm_tet_mesh *mesh);
  * each other. The caller knows that no third constrained face is at the edge. O(1). */
 bool tm_facet_continues(const tm_tet_mesh *mesh, uint32_t f, uint32_t g, uint32_t a,
                         uint32_t b, uint32_t c, uint32_t d, double flatness);
+
+TM_EXTERN_C_END
 
 #endif

@@ -51,7 +51,7 @@ typedef struct {
 } star_end;
 
 /* The half face beyond the end; TM_NONE on the boundary. */
-static inline uint32_t look_beyond(const tm_tet_mesh *mesh, const star_end *end,
+static inline uint32_t half_beyond(const tm_tet_mesh *mesh, const star_end *end,
                                    bool *constrained_face)
 {
     uint32_t across = mesh->neighbour[end->t][end->behind];
@@ -122,12 +122,12 @@ bool tm_star_around(const tm_tet_mesh *mesh, uint32_t t, unsigned e, tm_star *st
     star->ring[1] = n[corner[3]];
     star_end front = {t, corner[2]}, rear = {t, corner[3]};
     size_t ahead = 1, back = 0;
-    bool kept = false, closed = false, front_ends = false, rear_ends = false;
+    bool constrained_face = false, closed = false, front_ends = false, rear_ends = false;
     while (!closed && !(front_ends && rear_ends)) {
         if (ahead + 2 * back + 4 > star->room && !widen(star, back))
             return false;
         if (!front_ends) {
-            uint32_t across = look_beyond(mesh, &front, &kept);
+            uint32_t across = half_beyond(mesh, &front, &constrained_face);
             front_ends = across == TM_NONE;
             closed = !front_ends && across / 4 == rear.t;
             if (!front_ends && !closed) {
@@ -136,7 +136,7 @@ bool tm_star_around(const tm_tet_mesh *mesh, uint32_t t, unsigned e, tm_star *st
             }
         }
         if (!closed && !rear_ends) {
-            uint32_t across = look_beyond(mesh, &rear, &kept);
+            uint32_t across = half_beyond(mesh, &rear, &constrained_face);
             rear_ends = across == TM_NONE;
             closed = !rear_ends && across / 4 == front.t;
             if (!rear_ends && !closed) {
@@ -146,7 +146,7 @@ bool tm_star_around(const tm_tet_mesh *mesh, uint32_t t, unsigned e, tm_star *st
             }
         }
     }
-    star->constrained_face = kept;
+    star->constrained_face = constrained_face;
     star->closed = closed;
     star->size = ahead + back;
     if (closed) {

@@ -3,8 +3,11 @@
 #ifndef TM_TET_STAR_H
 #define TM_TET_STAR_H
 
+#include "../base/extern_c.h"
 #include "../element/shape.h"
 #include "mesh.h"
+
+TM_EXTERN_C_BEGIN
 
 /* Tetrahedron i has the nodes a, b, ring[i], ring[i + 1], and (a, b, ring[i],
  * ring[i + 1]) is a positive order of them: seen from b the ring turns counter-clockwise
@@ -35,5 +38,7 @@ bool tm_star_is_free(const tm_tet_mesh *mesh, const tm_star *star);
 /* Whether the ring has no node twice, as flat tetrahedra on top of each other may make
  * it: such a star is not to be changed. */
 bool tm_star_is_simple(const tm_tet_mesh *mesh, const tm_star *star);
+
+TM_EXTERN_C_END
 
 #endif

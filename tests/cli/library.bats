@@ -48,7 +48,7 @@ all_headers() {
     all_headers >list
     [ "$(wc -l <list)" -gt 50 ]
     while read -r header; do
-        echo "#include <$header>" >one.c
+        printf '#include <%s>\nint one;\n' "$header" >one.c
         cc -std=c11 $strict -I"$headers/.." -fsyntax-only one.c
         c++ -std=c++17 $strict -I"$headers/.." -fsyntax-only -x c++ one.c
     done <list

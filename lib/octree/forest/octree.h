@@ -4,12 +4,15 @@
 #ifndef TM_FOREST_OCTREE_H
 #define TM_FOREST_OCTREE_H
 
+#include "../../base/extern_c.h"
 #include "../../base/error.h"
 #include "../../surface/surface.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 /* The 27 points of a leaf where a node can be. Corner c is at bit 0 of c in x, bit 1 in
  * y, bit 2 in z. Edges 0 … 3 run along x, 4 … 7 along y, 8 … 11 along z, and of each four
@@ -111,5 +114,7 @@ void tm_octree_free(tm_octree *octree);
  * tests: O(nodes log nodes), some 30 µs per leaf. */
 tm_status tm_octree_check(const tm_octree *octree, const tm_surface *surface,
                           tm_error *error);
+
+TM_EXTERN_C_END
 
 #endif

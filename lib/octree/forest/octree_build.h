@@ -4,7 +4,10 @@
 #ifndef TM_FOREST_OCTREE_BUILD_H
 #define TM_FOREST_OCTREE_BUILD_H
 
+#include "../../base/extern_c.h"
 #include "octree.h"
+
+TM_EXTERN_C_BEGIN
 
 /* The octree over a surface: root cubes as brick.h says; a leaf is split while its level
  * is below that of a rule that holds for it and some of it is inside the surface or meets
@@ -30,5 +33,7 @@ tm_status tm_octree_refine(tm_octree *octree, const tm_surface *surface,
 tm_status tm_octree_from_leaves(tm_octree *octree, const tm_leaf *leaf, size_t leaves,
                                 const tm_surface *surface, uint32_t *order,
                                 tm_error *error);
+
+TM_EXTERN_C_END
 
 #endif

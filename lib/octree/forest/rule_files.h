@@ -4,7 +4,10 @@
 #ifndef TM_FOREST_RULE_FILES_H
 #define TM_FOREST_RULE_FILES_H
 
+#include "../../base/extern_c.h"
 #include "octree.h"
+
+TM_EXTERN_C_BEGIN
 
 typedef struct tm_octree_rules {
     size_t count;
@@ -28,5 +31,7 @@ tm_status tm_reg_read(tm_octree_rules *rules, const char *bytes, size_t size,
  * Whether there are such leaves is not checked. */
 tm_status tm_ref_read(uint32_t **leaf, size_t *leaves, const char *bytes, size_t size,
                       const char *name, tm_error *error);
+
+TM_EXTERN_C_END
 
 #endif

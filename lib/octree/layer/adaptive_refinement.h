@@ -4,7 +4,10 @@
 #ifndef TM_LAYER_ADAPTIVE_REFINEMENT_H
 #define TM_LAYER_ADAPTIVE_REFINEMENT_H
 
+#include "../../base/extern_c.h"
 #include "octree_mesh.h"
+
+TM_EXTERN_C_BEGIN
 
 /* Makes the mesh, of an octree in which leaves are split while there are some (1) where a
  * part of the surface is lost (tm_interior_find_lost()), (2) at boundary nodes that had
@@ -14,5 +17,7 @@
 tm_status tm_octree_mesh_refine_lost(tm_octree_mesh *mesh, tm_octree *octree,
                                      tm_surface *surface, unsigned levels,
                                      tm_error *error);
+
+TM_EXTERN_C_END
 
 #endif

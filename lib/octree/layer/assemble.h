@@ -4,8 +4,11 @@
 #ifndef TM_LAYER_ASSEMBLE_H
 #define TM_LAYER_ASSEMBLE_H
 
+#include "../../base/extern_c.h"
 #include "../../mesh/mixed_mesh.h"
 #include "interior_boundary.h"
+
+TM_EXTERN_C_BEGIN
 
 /* The triangles of a cut face, as its corners. Indexed by tm_cut. */
 extern const uint8_t tm_cut_triangles[3][2][3];
@@ -37,5 +40,7 @@ tm_status tm_assemble(tm_assembly *assembly, const tm_octree *octree,
                       const tm_interior *interior, const tm_interior_boundary *boundary,
                       tm_error *error);
 void tm_assembly_free(tm_assembly *assembly);
+
+TM_EXTERN_C_END
 
 #endif

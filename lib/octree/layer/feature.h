@@ -4,7 +4,10 @@
 #ifndef TM_LAYER_FEATURE_H
 #define TM_LAYER_FEATURE_H
 
+#include "../../base/extern_c.h"
 #include "interior_boundary.h"
+
+TM_EXTERN_C_BEGIN
 
 typedef enum tm_feature_kind { TM_ON_PATCH, TM_ON_CURVE, TM_ON_CORNER } tm_feature_kind;
 
@@ -31,5 +34,7 @@ tm_status tm_feature_find(tm_feature *feature, tm_interior_boundary *boundary,
                           tm_surface *surface, const tm_surface_point *at,
                           tm_error *error);
 void tm_feature_free(tm_feature *feature);
+
+TM_EXTERN_C_END
 
 #endif

@@ -4,8 +4,11 @@
 #ifndef TM_LAYER_INTERIOR_BOUNDARY_H
 #define TM_LAYER_INTERIOR_BOUNDARY_H
 
+#include "../../base/extern_c.h"
 #include "interior_leaves.h"
 #include "../transition/transition.h"
+
+TM_EXTERN_C_BEGIN
 
 /* How a quadrilateral is cut into triangles, by the diagonal from its corner 0 or 1. */
 typedef enum tm_cut { TM_UNCUT, TM_CUT_02, TM_CUT_13 } tm_cut;
@@ -71,5 +74,7 @@ tm_status tm_interior_boundary_find(tm_interior_boundary *boundary,
                                     const tm_octree *octree, const tm_interior *interior,
                                     tm_error *error);
 void tm_interior_boundary_free(tm_interior_boundary *boundary);
+
+TM_EXTERN_C_END
 
 #endif

@@ -4,8 +4,11 @@
 #ifndef TM_LAYER_INTERIOR_LEAVES_H
 #define TM_LAYER_INTERIOR_LEAVES_H
 
+#include "../../base/extern_c.h"
 #include "octant_mask.h"
 #include "../forest/octree.h"
+
+TM_EXTERN_C_BEGIN
 
 typedef struct tm_interior {
     bool *chosen;           /* [leaves] */
@@ -36,5 +39,7 @@ void tm_interior_find_used(tm_interior *interior, const tm_octree *octree);
  * the inside is by the winding number: there surface may be within the interior. */
 size_t tm_interior_find_lost(const tm_interior *interior, const tm_octree *octree,
                              const tm_surface *surface, uint8_t *lost);
+
+TM_EXTERN_C_END
 
 #endif

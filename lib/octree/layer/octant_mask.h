@@ -3,8 +3,12 @@
 #ifndef TM_LAYER_OCTANT_MASK_H
 #define TM_LAYER_OCTANT_MASK_H
 
+#include "../../base/extern_c.h"
+
 #include <stdbool.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 /* Octant o lies in the positive direction of axis i where bit i of o is set. A mask has
  * bit o set where octant o is filled. */
@@ -27,5 +31,7 @@ bool tm_octant_mask_is_good(tm_octant_mask mask);
 /* The sum of the directions in which the boundary faces look, each once: every component
  * is -1, 0 or 1. Of a good mask it looks away from all of them. */
 void tm_octant_mask_outward(tm_octant_mask mask, int direction[3]);
+
+TM_EXTERN_C_END
 
 #endif

@@ -4,8 +4,11 @@
 #ifndef TM_LAYER_OCTREE_MESH_H
 #define TM_LAYER_OCTREE_MESH_H
 
+#include "../../base/extern_c.h"
 #include "assemble.h"
 #include "feature.h"
+
+TM_EXTERN_C_BEGIN
 
 /* What was made, and what could not be. Places are points. */
 typedef struct tm_octree_mesh_report {
@@ -42,5 +45,7 @@ tm_status tm_octree_mesh_make_of(tm_octree_mesh *mesh, const tm_octree *octree,
                                  tm_interior *interior, tm_surface *surface,
                                  tm_error *error);
 void tm_octree_mesh_free(tm_octree_mesh *mesh);
+
+TM_EXTERN_C_END
 
 #endif

@@ -3,8 +3,11 @@
 #ifndef TM_LAYER_OCTREE_MESH_STREAM_H
 #define TM_LAYER_OCTREE_MESH_STREAM_H
 
+#include "../../base/extern_c.h"
 #include "../../stream/stream.h"
 #include "octree_mesh.h"
+
+TM_EXTERN_C_BEGIN
 
 /* The attribute of a node in .node: where it is. Negative where it should be there, but
  * is off the surface. */
@@ -23,5 +26,7 @@ typedef enum tm_node_class {
 tm_status tm_octree_mesh_to_stream(tm_octree_mesh *mesh, const tm_octree *octree,
                                    tm_surface *surface, bool levels, tm_stream *stream,
                                    tm_error *error);
+
+TM_EXTERN_C_END
 
 #endif

@@ -4,8 +4,11 @@
 #ifndef TM_REPAIR_REPAIR_H
 #define TM_REPAIR_REPAIR_H
 
+#include "../../base/extern_c.h"
 #include "../../surface/surface.h"
 #include "repair_state.h"
+
+TM_EXTERN_C_BEGIN
 
 typedef enum tm_repair_method {
     TM_REPAIR_REFINE, /* octants that hold a bad element are split, and all is meshed
@@ -48,5 +51,7 @@ typedef struct tm_repair_report {
 tm_status tm_repair(tm_repair_state *state, tm_surface *surface,
                     const tm_repair_options *options, tm_repair_report *report,
                     tm_error *error);
+
+TM_EXTERN_C_END
 
 #endif

@@ -5,7 +5,7 @@
 #include "../../element/shape.h"
 #include "../../stream/stream.h"
 #include "repair_faces.h"
-#include "repair_vicinity.h"
+#include "element_division.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -14,7 +14,7 @@
 /* An element and its parts. */
 typedef struct {
     uint32_t element;
-    tm_star star;
+    tm_division parts;
 } division;
 
 typedef struct {
@@ -47,9 +47,9 @@ static tm_status add_division(divider *d, size_t e, double jens, unsigned open,
     d->division = grown;
     division *here = &grown[d->divisions];
     here->element = (uint32_t)e;
-    const tm_status status = tm_star_find(&here->star, &d->state->mesh, e, open,
-                                          fmax(d->threshold, TM_REPAIR_LEAST), error);
-    d->divisions += here->star.worst > tm_repair_quality(&d->state->mesh, e, jens);
+    const tm_status status = tm_division_find(&here->parts, &d->state->mesh, e, open,
+                                              fmax(d->threshold, TM_REPAIR_LEAST), error);
+    d->divisions += here->parts.worst > tm_repair_quality(&d->state->mesh, e, jens);
     return status;
 }
 
@@ -57,7 +57,7 @@ static tm_status find_divisions(divider *d, tm_error *error)
 {
     const tm_mixed_mesh *mesh = &d->state->mesh;
     size_t next = 0;
-    tm_status status = tm_boundary_faces(mesh, &d->face, &d->faces, error);
+    tm_status status = tm_mixed_boundary_faces(mesh, &d->face, &d->faces, error);
     for (size_t e = 0; status == TM_OK && e < mesh->elements; e++) {
         const double jens = tm_mixed_jens(mesh, e);
         if (mesh->start[e + 1] - mesh->start[e] > TM_TET_NODES &&
@@ -103,8 +103,8 @@ static tm_status apply(const divider *d, tm_repair_state *to, tm_error *error)
     to->mesh.nodes = mesh->nodes + d->divisions;
     to->mesh.elements = mesh->elements;
     for (size_t i = 0; i < d->divisions; i++) {
-        to->mesh.elements += d->division[i].star.parts;
-        items += d->division[i].star.start[d->division[i].star.parts];
+        to->mesh.elements += d->division[i].parts.parts;
+        items += d->division[i].parts.start[d->division[i].parts.parts];
     }
     if (to->mesh.nodes >= TM_NONE || to->mesh.elements >= TM_NONE)
         return tm_fail(error, TM_ERROR_SYSTEM, "the mesh has too many elements");
@@ -122,14 +122,14 @@ static tm_status apply(const divider *d, tm_repair_state *to, tm_error *error)
                         mesh->item + mesh->start[e], TM_NONE, from, e);
             continue;
         }
-        const tm_star *star = &d->division[i].star;
+        const tm_division *parts = &d->division[i].parts;
         const size_t middle = mesh->nodes + i++;
-        memcpy(to->mesh.xyz[middle], star->middle, sizeof star->middle);
+        memcpy(to->mesh.xyz[middle], parts->middle, sizeof parts->middle);
         to->rule[middle] = (tm_node_rule){.where = TM_NONE, .freedom = TM_MOVES_FREELY};
         to->place[middle] = 0;
-        for (size_t p = 0; p < star->parts; p++)
-            add_element(to, star->start[p + 1] - star->start[p],
-                        star->item + star->start[p], (uint32_t)middle, from, e);
+        for (size_t p = 0; p < parts->parts; p++)
+            add_element(to, parts->start[p + 1] - parts->start[p],
+                        parts->item + parts->start[p], (uint32_t)middle, from, e);
     }
     return TM_OK;
 }

@@ -10,7 +10,7 @@ enum { TM_FACE_SHIFT = 3 };
 
 /* *face = element << TM_FACE_SHIFT | its face (shape.h), ascending; malloc'ed.
  * TM_ERROR_SYSTEM: memory, or 2^28 elements. O(elements). */
-tm_status tm_boundary_faces(const tm_mixed_mesh *mesh, uint32_t **face, size_t *faces,
-                            tm_error *error);
+tm_status tm_mixed_boundary_faces(const tm_mixed_mesh *mesh, uint32_t **face,
+                                  size_t *faces, tm_error *error);
 
 #endif

@@ -62,7 +62,7 @@ static tm_status find_boundary(const tm_mixed_mesh *mesh, bool *where, tm_error 
 {
     uint32_t *face;
     size_t faces;
-    const tm_status status = tm_boundary_faces(mesh, &face, &faces, error);
+    const tm_status status = tm_mixed_boundary_faces(mesh, &face, &faces, error);
     for (size_t f = 0; status == TM_OK && f < faces; f++) {
         const size_t e = face[f] >> TM_FACE_SHIFT;
         const uint32_t *item = mesh->item + mesh->start[e];

@@ -4,8 +4,11 @@
 #ifndef TM_REPAIR_REPAIR_STATE_H
 #define TM_REPAIR_REPAIR_STATE_H
 
+#include "../../base/extern_c.h"
 #include "../../optimise/optimise.h"
 #include "../forest/octree.h"
+
+TM_EXTERN_C_BEGIN
 
 /* An element whose J_ENS is below is not taken for valid, whatever the threshold: it must
  * be so in other programs too. */
@@ -79,5 +82,7 @@ void tm_repair_restore(const tm_repair_points *places, tm_repair_state *state);
 void tm_repair_points_free(tm_repair_points *places);
 
 void tm_repair_state_free(tm_repair_state *state);
+
+TM_EXTERN_C_END
 
 #endif

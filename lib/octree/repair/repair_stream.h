@@ -3,9 +3,12 @@
 #ifndef TM_REPAIR_REPAIR_STREAM_H
 #define TM_REPAIR_REPAIR_STREAM_H
 
+#include "../../base/extern_c.h"
 #include "../../stream/stream.h"
 #include "../../surface/surface.h"
 #include "repair_state.h"
+
+TM_EXTERN_C_BEGIN
 
 /* What of the stream could be used, and what was left out. */
 typedef struct tm_repair_notes {
@@ -42,5 +45,7 @@ tm_status tm_repair_prepare(tm_repair_state *state, const tm_stream *stream,
 tm_status tm_repair_to_stream(tm_repair_state *state, tm_stream *stream,
                               const tm_surface *surface, tm_repair_notes *notes,
                               tm_error *error);
+
+TM_EXTERN_C_END
 
 #endif

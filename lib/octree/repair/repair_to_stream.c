@@ -211,7 +211,7 @@ static tm_status give_facets(const tm_repair_state *state, const tm_surface *sur
     const tm_mixed_mesh *mesh = &state->mesh;
     uint32_t *face;
     size_t faces;
-    tm_status status = tm_boundary_faces(mesh, &face, &faces, error);
+    tm_status status = tm_mixed_boundary_faces(mesh, &face, &faces, error);
     if (status == TM_OK)
         status = tm_block_allocate(facet, faces, 4 * faces, error);
     size_t items = 0;

@@ -5,8 +5,12 @@
 #ifndef TM_TRANSITION_TRANSITION_H
 #define TM_TRANSITION_TRANSITION_H
 
+#include "../../base/extern_c.h"
+
 #include <stdbool.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 /* The state of a leaf: bit e (0 … 11) where edge e has a node in its middle, bit 12 + f
  * where face f has one; then all four edges of the face have one too. */
@@ -33,5 +37,7 @@ tm_transition tm_transition_of(tm_leaf_state state);
 /* The triangles and quadrilaterals that face f becomes, at most TM_FACE_PIECES; seen from
  * outside the leaf they turn counter-clockwise. Returns how many. */
 unsigned tm_face_pieces(tm_leaf_state state, unsigned f, tm_piece piece[TM_FACE_PIECES]);
+
+TM_EXTERN_C_END
 
 #endif

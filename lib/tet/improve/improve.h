@@ -5,9 +5,12 @@
 #ifndef TM_IMPROVE_IMPROVE_H
 #define TM_IMPROVE_IMPROVE_H
 
+#include "../../base/extern_c.h"
 #include "../../base/json.h"
 #include "../../element/tet_measure.h"
 #include "../mesh.h"
+
+TM_EXTERN_C_BEGIN
 
 /* The palette, one row for each operation:
  *
@@ -92,5 +95,7 @@ size_t tm_improve_operations(const tm_improve_report *report);
 
 /* How often they had an effect. */
 size_t tm_improve_effects(const tm_improve_report *report, tm_improve_effect effect);
+
+TM_EXTERN_C_END
 
 #endif

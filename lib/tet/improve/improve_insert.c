@@ -180,9 +180,10 @@ static double plan_split(tm_improver *m, uint32_t t, unsigned e, double needed,
 /* Splits the edge as it was planned. */
 static bool split(tm_improver *m, const double p[3])
 {
-    size_t made = 2 * m->star.size, kept[2];
+    size_t made = 2 * m->star.size, constrained[2];
     uint32_t a = m->star.a, b = m->star.b;
-    tm_edge_class place = tm_features_classify(&m->features, m->mesh, &m->star, kept);
+    tm_edge_class place =
+        tm_features_classify(&m->features, m->mesh, &m->star, constrained);
     if (!tm_improve_reserve(m, made, 1))
         return false;
     uint32_t corner = tm_tet_corner(m->mesh, m->star.tet[0], b);

@@ -44,8 +44,8 @@ static void rotate(tm_star *star, size_t by)
 static int take_apart(tm_improver *m, tm_star part[2])
 {
     tm_star *star = &m->star;
-    size_t kept[2];
-    tm_edge_class place = tm_features_classify(&m->features, m->mesh, star, kept);
+    size_t constrained[2];
+    tm_edge_class place = tm_features_classify(&m->features, m->mesh, star, constrained);
     if (place == TM_EDGE_OF_FEATURE ||
         !tm_improve_has(m, place == TM_EDGE_INSIDE ? TM_OP_EDGE_REMOVAL
                                                    : TM_OP_BOUNDARY_SWAP) ||
@@ -57,8 +57,8 @@ static int take_apart(tm_improver *m, tm_star part[2])
         return star->size >= 3;
     if (!star->closed)
         return star->size >= 2;
-    size_t other = kept[1] - kept[0];
-    rotate(star, kept[0]);
+    size_t other = constrained[1] - constrained[0];
+    rotate(star, constrained[0]);
     part[0] = part_of(star, 0, other);
     part[1] = part_of(star, other, star->size);
     return part[0].size >= 2 && part[1].size >= 2 ? 2 : 0;

@@ -9,10 +9,13 @@
 #ifndef TM_LEPP_LEPP_H
 #define TM_LEPP_LEPP_H
 
+#include "../../base/extern_c.h"
 #include "../../base/json.h"
 #include "../../element/tet_measure.h"
 #include "../operation/delaunay.h"
 #include "../mesh.h"
+
+TM_EXTERN_C_BEGIN
 
 /* What is done with a terminal star. All but the last change every one. */
 typedef enum tm_lepp_algorithm {
@@ -139,5 +142,7 @@ static inline size_t tm_lepp_changes(const tm_lepp_report *report)
     return tm_lepp_operations(report) + tm_lepp_swept(&report->smooth) +
            tm_lepp_swept(&report->swap);
 }
+
+TM_EXTERN_C_END
 
 #endif

@@ -116,13 +116,13 @@ static bool is_at_boundary(const tm_tet_mesh *mesh, uint32_t t)
 static tm_status swap_edges(tm_lepp_engine *e, uint32_t t, size_t sweep)
 {
     tm_star *star = &e->sweeper.star;
-    size_t kept[2];
+    size_t constrained[2];
     for (unsigned i = 0; i < TM_TET_EDGES; i++) {
         bool done;
         if (!tm_star_around(e->mesh, t, i, star))
             return tm_fail_memory(e->error);
         if (star->closed || star->size != 2 || (star->tet[0] < t || star->tet[1] < t) ||
-            tm_features_classify(&e->sweeper.features, e->mesh, star, kept) !=
+            tm_features_classify(&e->sweeper.features, e->mesh, star, constrained) !=
                 TM_EDGE_IN_FACET)
             continue;
         swap s = in_facet(e, star);

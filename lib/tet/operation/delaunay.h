@@ -17,7 +17,10 @@
 #ifndef TM_OPERATION_DELAUNAY_H
 #define TM_OPERATION_DELAUNAY_H
 
+#include "../../base/extern_c.h"
 #include "../mesh.h"
+
+TM_EXTERN_C_BEGIN
 
 /* How many faces are not locally Delaunay, exactly. A flat tetrahedron has no sphere; its
  * faces are judged by the sphere on their other side. O(tetrahedra). */
@@ -33,5 +36,7 @@ typedef struct tm_delaunay_report {
     size_t cut_back; /* cavities that left a tetrahedron out whose sphere held the node,
                         because that did not see all of it, or it held what has to stay */
 } tm_delaunay_report;
+
+TM_EXTERN_C_END
 
 #endif

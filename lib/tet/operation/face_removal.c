@@ -38,7 +38,7 @@ static double new_cost(const search *s, uint32_t x, uint32_t y)
     return tm_cost_of(s->cost, quality);
 }
 
-/* The tetrahedron across face i of t; TM_NONE where that face is kept. */
+/* The tetrahedron across face i of t; TM_NONE where that face is constrained. */
 static uint32_t across(const tm_tet_mesh *mesh, uint32_t t, uint32_t i)
 {
     uint32_t g = mesh->neighbour[t][i];

@@ -274,7 +274,7 @@ static bool has_line_to(const tm_features *features, uint32_t a, uint32_t b)
 }
 
 tm_edge_class tm_features_classify(const tm_features *features, const tm_tet_mesh *mesh,
-                                   const tm_star *star, size_t kept[2])
+                                   const tm_star *star, size_t constrained[2])
 {
     uint32_t a = star->a, b = star->b, face[2] = {0, 0};
     size_t count = 0;
@@ -290,7 +290,7 @@ tm_edge_class tm_features_classify(const tm_features *features, const tm_tet_mes
             continue;
         if (count == 2)
             return TM_EDGE_OF_FEATURE;
-        kept[count] = i;
+        constrained[count] = i;
         face[count++] = across & ~TM_FACE_BIT;
     }
     if (count < 2 || has_line_to(features, a, b) || has_line_to(features, b, a))

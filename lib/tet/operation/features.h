@@ -42,10 +42,10 @@ typedef enum tm_edge_class {
     TM_EDGE_OF_FEATURE /* has to stay */
 } tm_edge_class;
 
-/* Where the edge of a star is. kept[0] and kept[1] are the two faces of TM_EDGE_IN_FACET,
- * as the places in the ring of their third nodes. */
+/* Where the edge of a star is. constrained[0] and constrained[1] are the two faces of
+ * TM_EDGE_IN_FACET, as the places in the ring of their third nodes. */
 tm_edge_class tm_features_classify(const tm_features *features, const tm_tet_mesh *mesh,
-                                   const tm_star *star, size_t kept[2]);
+                                   const tm_star *star, size_t constrained[2]);
 
 /* A new node was put inside, or on the edge ab, which was in the place. */
 void tm_features_classify_node(tm_features *features, uint32_t node, tm_edge_class place,

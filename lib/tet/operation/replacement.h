@@ -38,8 +38,8 @@ void tm_replacement_table_free(tm_replacement_table *table);
 bool tm_replacement_table_reserve(tm_replacement_table *table, size_t old_count,
                                   size_t count);
 
-/* Does it. No face inside the cavity may be kept. TM_ERROR_SYSTEM, with nothing changed,
- * where memory is out. Expected O(old_count + count). */
+/* Does it. No face inside the cavity may be constrained. TM_ERROR_SYSTEM, with nothing
+ * changed, where memory is out. Expected O(old_count + count). */
 tm_status tm_tet_replace(tm_tet_mesh *mesh, const tm_replacement *what,
                          tm_replacement_table *table, tm_error *error);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "repair_vicinity.h"
+#include "element_division.h"
 
 #include "../../element/shape.h"
 #include "../../optimise/optimise.h"
@@ -8,13 +8,13 @@
 
 #include <string.h>
 
-/* A star as a mesh of its own: the element's nodes, then the middle. */
+/* A division as a mesh of its own: the element's nodes, then the middle. */
 typedef struct {
     size_t k;
     double xyz[TM_ELEMENT_NODES + 1][3];
     size_t parts;
-    size_t start[TM_STAR_PARTS + 1];
-    uint32_t item[TM_STAR_ITEMS];
+    size_t start[TM_DIVISION_PARTS + 1];
+    uint32_t item[TM_DIVISION_ITEMS];
 } small;
 
 static void add_part(small *s, size_t corners, const uint8_t *face)
@@ -79,44 +79,45 @@ static tm_status place_middle(small *s, double threshold, tm_error *error)
     return tm_mixed_optimise(&mesh, rule, NULL, &options, &report, error);
 }
 
-/* Tries one way to cut the faces; it becomes *star if it is better. */
-static tm_status try_cut(tm_star *star, small *s, const uint8_t cut[TM_ELEMENT_FACES],
-                         const uint32_t *node, double threshold, tm_error *error)
+/* Tries one way to cut the faces; it becomes *parts if it is better. */
+static tm_status try_cut(tm_division *parts, small *s,
+                         const uint8_t cut[TM_ELEMENT_FACES], const uint32_t *node,
+                         double threshold, tm_error *error)
 {
     add_parts(s, cut);
     const tm_status status = place_middle(s, threshold, error);
     const double worst = measure(s);
-    if (status != TM_OK || (star->parts > 0 && worst <= star->worst))
+    if (status != TM_OK || (parts->parts > 0 && worst <= parts->worst))
         return status;
-    *star = (tm_star){.parts = s->parts, .worst = worst};
-    memcpy(star->start, s->start, sizeof star->start);
-    memcpy(star->middle, s->xyz[s->k], sizeof star->middle);
+    *parts = (tm_division){.parts = s->parts, .worst = worst};
+    memcpy(parts->start, s->start, sizeof parts->start);
+    memcpy(parts->middle, s->xyz[s->k], sizeof parts->middle);
     for (size_t i = 0; i < s->start[s->parts]; i++)
-        star->item[i] = s->item[i] == s->k ? TM_NONE : node[s->item[i]];
+        parts->item[i] = s->item[i] == s->k ? TM_NONE : node[s->item[i]];
     return TM_OK;
 }
 
-tm_status tm_star_find(tm_star *star, const tm_mixed_mesh *mesh, size_t e, unsigned open,
-                       double threshold, tm_error *error)
+tm_status tm_division_find(tm_division *parts, const tm_mixed_mesh *mesh, size_t e,
+                           unsigned open, double threshold, tm_error *error)
 {
     const uint32_t *node = mesh->item + mesh->start[e];
     small s = {.k = mesh->start[e + 1] - mesh->start[e]};
     const tm_element_shape *shape = &tm_element_shapes[s.k];
     for (size_t i = 0; i < s.k; i++)
         memcpy(s.xyz[i], mesh->xyz[node[i]], sizeof s.xyz[i]);
-    *star = (tm_star){.parts = 0};
+    *parts = (tm_division){.parts = 0};
     uint8_t best[TM_ELEMENT_FACES] = {0};
-    tm_status status = try_cut(star, &s, best, node, threshold, error);
+    tm_status status = try_cut(parts, &s, best, node, threshold, error);
     for (size_t f = 0; f < shape->faces; f++) {
         if (!(open >> f & 1) || tm_mixed_face_nodes(shape->face[f]) == 3)
             continue;
         uint8_t cut[TM_ELEMENT_FACES];
         memcpy(cut, best, sizeof cut);
         for (uint8_t way = 1; way <= 2 && status == TM_OK; way++) {
-            const double before = star->worst;
+            const double before = parts->worst;
             cut[f] = way;
-            status = try_cut(star, &s, cut, node, threshold, error);
-            if (star->worst > before)
+            status = try_cut(parts, &s, cut, node, threshold, error);
+            if (parts->worst > before)
                 best[f] = way;
         }
     }

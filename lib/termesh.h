@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* libtermesh: all that a program may use, floor by floor. These headers, and no others,
+ * are installed; each can be included alone. README.md beside this file is the map. */
+#ifndef TERMESH_H
+#define TERMESH_H
+
+/* base: errors, text, numbers, JSON */
+#include "base/error.h"
+#include "base/extern_c.h"
+#include "base/file.h"
+#include "base/json.h"
+#include "base/number.h"
+#include "base/parallel.h"
+#include "base/report.h"
+#include "base/text.h"
+#include "base/version.h"
+
+/* geom: predicates and kernels */
+#include "geom/vector.h"
+
+/* stream: the stream and its blocks */
+#include "stream/stream.h"
+
+/* element: shapes and measures of one element */
+#include "element/aspect_ratio.h"
+#include "element/certify.h"
+#include "element/jens.h"
+#include "element/shape.h"
+#include "element/tet_measure.h"
+#include "element/tet_quality.h"
+#include "element/verdict.h"
+
+/* mesh: views of flat arrays */
+#include "mesh/cell_faces.h"
+#include "mesh/edge_map.h"
+#include "mesh/mesh_view.h"
+#include "mesh/mixed_mesh.h"
+#include "mesh/poly_arrays.h"
+
+/* surface: triangulated surfaces */
+#include "surface/polygon_surface.h"
+#include "surface/surface.h"
+#include "surface/surface_defects.h"
+
+/* examine: what is wrong with a mesh, and how good it is */
+#include "examine/element_examine.h"
+#include "examine/examination.h"
+#include "examine/jens_statistics.h"
+#include "examine/poly_boundary.h"
+#include "examine/poly_examine.h"
+#include "examine/poly_statistics.h"
+#include "examine/tet_statistics.h"
+
+/* format: files of other programs */
+#include "format/mesh_format.h"
+#include "format/oct.h"
+#include "format/surface_format.h"
+#include "format/tetgen.h"
+#include "format/visf.h"
+
+/* optimise: node positions */
+#include "optimise/optimise.h"
+
+/* tet: tetrahedra, and what makes them better */
+#include "tet/mesh.h"
+#include "tet/mesh_measure.h"
+#include "tet/star.h"
+#include "tet/operation/delaunay.h"
+#include "tet/improve/improve.h"
+#include "tet/lepp/lepp.h"
+
+/* octree: octrees, and the elements made of them */
+#include "octree/forest/octree.h"
+#include "octree/forest/octree_build.h"
+#include "octree/forest/rule_files.h"
+#include "octree/transition/transition.h"
+#include "octree/layer/adaptive_refinement.h"
+#include "octree/layer/assemble.h"
+#include "octree/layer/feature.h"
+#include "octree/layer/interior_boundary.h"
+#include "octree/layer/interior_leaves.h"
+#include "octree/layer/octant_mask.h"
+#include "octree/layer/octree_mesh.h"
+#include "octree/layer/octree_mesh_stream.h"
+#include "octree/repair/repair.h"
+#include "octree/repair/repair_state.h"
+#include "octree/repair/repair_stream.h"
+#include "octree/repair/repair_trace.h"
+
+/* poly: polyhedra made of tetrahedra */
+#include "poly/facets.h"
+#include "poly/partition.h"
+
+#endif
