@@ -54,7 +54,8 @@ typedef struct tm_cell_faces {
  * three elements meet at a face, or two of which none is flat are on the same side of
  * one, an element has a node twice, or .facet and .cell contradict each other;
  * TM_ERROR_SYSTEM where memory is out or tm_face_table_make() says so. *faces is
- * to be freed, after an error too. For polyhedra the stream must outlive it. Expected O(n). */
+ * to be freed, after an error too. For polyhedra the stream must outlive it. Expected
+ * O(n). */
 tm_status tm_cell_faces_find(tm_cell_faces *faces, const tm_stream *stream,
                              tm_error *error);
 void tm_cell_faces_free(tm_cell_faces *faces);
