@@ -114,6 +114,27 @@ report() {
     run -0 mesh-check left.tm
 }
 
+@test "no gain elsewhere lets the worst fall below the threshold, or further below" {
+    cat >corner.off <<'END'
+OFF
+4 4 0
+0 0 0
+1 0 0
+0 1 0
+0 0 1
+3 0 2 1
+3 0 1 3
+3 0 3 2
+3 1 2 3
+END
+    octree-mesh --no-history -s 3 corner.off >corner.tm
+    octree-repair -q -t 0.2 -i 0 --json report.json -o left.tm corner.tm || [ $? -eq 1 ]
+    worst() { jens-stats "$1" | sed -n 's/^worst quality *//p'; }
+    awk -v a="$(worst left.tm)" -v b="$(worst corner.tm)" 'BEGIN { exit !(a >= b) }'
+    run -0 mesh-check left.tm
+    run -0 jens-stats --certify left.tm
+}
+
 @test "without a surface nodes of the boundary stay, and no octant is split" {
     { sed '/^surface.node/,$d' bad.tm; echo .end; } >alone.tm
     run -0 --separate-stderr octree-repair -o mended.tm alone.tm

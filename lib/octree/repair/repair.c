@@ -44,45 +44,48 @@ static bool is_done(const tm_repair_score *score)
 }
 
 /* Brings nodes to the surface that leave elements of such a share of the threshold
- * behind, but with `strict` nothing below the floor of the score. */
+ * behind, and nothing below a floor. */
 static tm_status bring_some(const repair *r, tm_repair_state *state, double share,
-                            bool strict, tm_repair_score *score, tm_error *error)
+                            double floor, tm_repair_score *score, tm_error *error)
 {
     const double t = r->options->threshold;
-    double left = fmax(share * t, TM_REPAIR_LEAST);
-    if (strict)
-        left = fmax(left, score->floor);
-    score->floor = fmin(score->floor, left);
-    return tm_repair_move(state, r->surface, t, left, 1, score, error);
+    const double left = fmax(fmax(share * t, TM_REPAIR_LEAST), floor);
+    tm_repair_score from = *score;
+    from.floor = fmin(from.floor, left);
+    tm_repair_score now = from;
+    const tm_status status = tm_repair_move(state, r->surface, t, left, 1, &now, error);
+    if (tm_repair_better(&now, &from))
+        *score = now;
+    return status;
 }
 
-static tm_status bring_all(const repair *r, tm_repair_state *state, bool strict,
+static tm_status bring_all(const repair *r, tm_repair_state *state, double floor,
                            tm_repair_score *score, tm_error *error)
 {
     tm_status status = TM_OK;
     for (size_t i = 0; i < HELD_SHARES && status == TM_OK && score->held > 0; i++)
-        status = bring_some(r, state, held_shares[i], strict, score, error);
+        status = bring_some(r, state, held_shares[i], floor, score, error);
     if (status != TM_OK || score->held == 0)
         return status;
     tm_repair_free_off_surface(state);
-    return bring_some(r, state, 0, strict, score, error);
+    return bring_some(r, state, 0, floor, score, error);
 }
 
-/* Brings nodes to the surface. Elements that they leave behind may become worse than all
- * that was, as they often become better again when the next nodes come; where they do
- * not, all is done again so that they cannot. */
-static tm_status bring(const repair *r, tm_repair_state *state, tm_repair_score *score,
-                       tm_error *error)
+/* Brings nodes to the surface. Elements that they leave behind may fall below the floor,
+ * as they often become better again when the next nodes come; where they do not, all is
+ * done again so that they cannot. */
+static tm_status bring(const repair *r, tm_repair_state *state, double floor,
+                       tm_repair_score *score, tm_error *error)
 {
     const tm_repair_score before = *score;
     tm_repair_points points = {0};
     tm_status status = tm_repair_save(&points, state, error);
     if (status == TM_OK)
-        status = bring_all(r, state, false, score, error);
-    if (status == TM_OK && score->worst < before.floor) {
+        status = bring_all(r, state, 0, score, error);
+    if (status == TM_OK && score->worst < floor) {
         tm_repair_restore(&points, state);
         *score = before;
-        status = bring_all(r, state, true, score, error);
+        status = bring_all(r, state, floor, score, error);
     }
     tm_repair_points_free(&points);
     return status;
@@ -95,13 +98,14 @@ static tm_status mend(const repair *r, tm_repair_state *state, tm_repair_score *
     const double t = r->options->threshold;
     tm_status status = TM_OK;
     const size_t held = score->held;
+    const double floor = score->floor; /* of all moves together */
     for (size_t i = 0; i < EFFORTS && status == TM_OK && !is_done(score); i++) {
         status = tm_repair_move(state, r->surface, t, t, efforts[i], score, error);
         if (score->held > FEW_HELD && (double)score->held > hopeless * (double)held)
             return status; /* it takes long and leads to nothing */
     }
     if (status == TM_OK && score->held > 0)
-        status = bring(r, state, score, error);
+        status = bring(r, state, floor, score, error);
     const bool some = score->bad > 0 && score->bad <= FEW_BAD;
     if (status == TM_OK && some)
         status = tm_repair_sharp_corners(state, r->surface, t, score, &r->report->corners,

@@ -1,0 +1,501 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Each step of the repair alone, on random solids: all that it promises, before and
+ * after; and the rule that decides what is kept. */
+#include "../../lib/octree/repair/repair_faces.h"
+#include "../../lib/octree/repair/repair_steps.h"
+#include "../../lib/octree/repair/repair_vicinity.h"
+#include "../../lib/octree/forest/mpi_start.h"
+#include "repair_fixture.h"
+
+enum { ROUNDS = 8 };
+
+static tm_repair_state copy_elements(const tm_repair_state *s)
+{
+    tm_repair_state copy = {
+        .mesh = {.nodes = s->mesh.nodes, .elements = s->mesh.elements}};
+    const size_t items = s->mesh.start[s->mesh.elements];
+    copy.mesh.xyz = malloc(s->mesh.nodes * sizeof *copy.mesh.xyz);
+    copy.mesh.start = malloc((s->mesh.elements + 1) * sizeof *copy.mesh.start);
+    copy.mesh.item = malloc(items * sizeof *copy.mesh.item);
+    copy.rule = malloc(s->mesh.nodes * sizeof *copy.rule);
+    copy.place = malloc(s->mesh.nodes);
+    memcpy(copy.mesh.xyz, s->mesh.xyz, s->mesh.nodes * sizeof *copy.mesh.xyz);
+    memcpy(copy.mesh.start, s->mesh.start,
+           (s->mesh.elements + 1) * sizeof *copy.mesh.start);
+    memcpy(copy.mesh.item, s->mesh.item, items * sizeof *copy.mesh.item);
+    memcpy(copy.rule, s->rule, s->mesh.nodes * sizeof *copy.rule);
+    memcpy(copy.place, s->place, s->mesh.nodes);
+    return copy;
+}
+
+/* Nodes that may not move have not; and no node has another place. */
+static void check_still(const tm_repair_state *old, const tm_repair_state *now)
+{
+    for (size_t v = 0; v < old->mesh.nodes; v++) {
+        assert_int_equal(old->place[v], now->place[v]);
+        if (old->rule[v].freedom == TM_MOVES_NOT)
+            assert_memory_equal(old->mesh.xyz[v], now->mesh.xyz[v], 3 * sizeof(double));
+    }
+}
+
+static void check_same_elements(const tm_repair_state *old, const tm_repair_state *now)
+{
+    assert_int_equal(old->mesh.nodes, now->mesh.nodes);
+    assert_int_equal(old->mesh.elements, now->mesh.elements);
+    assert_memory_equal(old->mesh.start, now->mesh.start,
+                        (old->mesh.elements + 1) * sizeof *old->mesh.start);
+    assert_memory_equal(old->mesh.item, now->mesh.item,
+                        old->mesh.start[old->mesh.elements] * sizeof *old->mesh.item);
+}
+
+static tm_repair_score measured(const tm_repair_state *s, double threshold)
+{
+    const tm_repair_score score = tm_repair_measure(s, threshold);
+    check_score(s, &score, threshold);
+    return score;
+}
+
+/* Nodes move: nothing else is other, and nothing is worse. */
+static void test_move(void **unused)
+{
+    (void)unused;
+    size_t mended = 0, brought = 0;
+    for (int round = 0; round < ROUNDS; round++) {
+        tm_error error;
+        repair_case c;
+        start_random_case(&c);
+        damage(&c, random_below(4), random_below(3));
+        const double threshold = random_below(2) ? 0 : random_between(0, 0.4);
+        const tm_examination first = examine_state(&c.state);
+        tm_repair_state old = copy_elements(&c.state);
+        const tm_repair_score before = measured(&c.state, threshold);
+        tm_repair_score after = before;
+        assert_ok(tm_repair_move(&c.state, &c.surface, threshold,
+                                 threshold / (1 << random_below(4)), random_below(3),
+                                 &after, &error),
+                  &error);
+        check_score(&c.state, &after, threshold);
+        check_not_worse(&before, &after);
+        check_same_elements(&old, &c.state);
+        check_still(&old, &c.state);
+        check_state(&c.state, &c.surface, &first);
+        mended += after.invalid < before.invalid;
+        brought += after.held < before.held;
+        tm_repair_state_free(&old);
+        end_case(&c);
+    }
+    assert_true(mended > 0);
+    assert_true(brought > 0);
+}
+
+/* Sharp corners: none lost, the solid is the same, and the worst is no worse. */
+static void check_sharp_corners(tm_polygon_surface *p, unsigned level, double threshold,
+                                size_t *made)
+{
+    tm_error error;
+    repair_case c;
+    size_t count = 0;
+    start_case(&c, p, level);
+    const tm_examination first = examine_state(&c.state);
+    const tm_repair_score before = measured(&c.state, threshold);
+    tm_repair_score after = before;
+    tm_repair_state old = copy_elements(&c.state);
+    assert_ok(
+        tm_repair_sharp_corners(&c.state, &c.surface, threshold, &after, &count, &error),
+        &error);
+    check_score(&c.state, &after, threshold);
+    check_not_worse(&before, &after);
+    check_still(&old, &c.state);
+    check_state(&c.state, &c.surface, &first);
+    assert_int_equal(c.state.divided, count > 0);
+    if (count == 0)
+        check_same_elements(&old, &c.state);
+    *made += count;
+    tm_repair_state_free(&old);
+    end_case(&c);
+}
+
+static void test_sharp_corners(void **unused)
+{
+    (void)unused;
+    static const struct {
+        double height; /* of a pyramid; 0: a wedge, whose corners cannot be better */
+        unsigned level;
+        double threshold;
+    } of[] = {{0.5, 2, 0.27}, {3, 2, 0.2}, {3, 2, 0.3}, {3, 3, 0.2}, {0, 2, 0.2}};
+    for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
+        tm_polygon_surface p;
+        size_t made = 0;
+        tm_polygon_surface_init(&p);
+        if (of[i].height > 0)
+            add_pyramid(&p, of[i].height);
+        else
+            add_wedge(&p, 2, 1);
+        check_sharp_corners(&p, of[i].level, of[i].threshold, &made);
+        assert_int_equal(made > 0, of[i].height > 0);
+    }
+}
+
+/* A case whose boundary may not move: what is bad is to be divided. */
+static void fix_boundary(repair_case *c)
+{
+    for (size_t v = 0; v < c->state.mesh.nodes; v++)
+        if (c->state.place[v] != TM_NODE_INSIDE)
+            c->state.rule[v] = (tm_node_rule){.where = TM_NONE, .freedom = TM_MOVES_NOT};
+}
+
+/* Parts of an element have its octant; together they are what it was. */
+static void check_parts(const tm_repair_state *old, const uint32_t *octant,
+                        const tm_repair_state *now)
+{
+    for (size_t e = 0; e < now->mesh.elements; e++) {
+        assert_true(now->origin[e] < old->mesh.elements);
+        assert_int_equal(now->octant[e], octant[now->origin[e]]);
+    }
+    for (size_t o = 0, e = 0; o < old->mesh.elements; o++) {
+        size_t parts = 0;
+        for (; e < now->mesh.elements && now->origin[e] == o; e++)
+            parts++;
+        assert_true(parts > 0);
+    }
+}
+
+static void test_divide(void **unused)
+{
+    (void)unused;
+    size_t divided = 0;
+    for (int round = 0; round < 2 * ROUNDS; round++) {
+        tm_error error;
+        repair_case c;
+        size_t count = 0;
+        start_random_case(&c);
+        const bool fixed = random_below(2) && tm_repair_measure(&c.state, 0).held == 0;
+        if (fixed)
+            fix_boundary(&c);
+        damage(&c, random_below(3), 0);
+        const double threshold = random_between(0, 0.5);
+        const tm_examination first = examine_state(&c.state);
+        tm_repair_state old = copy_elements(&c.state);
+        uint32_t *octant = malloc(old.mesh.elements * sizeof *octant);
+        memcpy(octant, c.state.octant, old.mesh.elements * sizeof *octant);
+        const tm_repair_score before = measured(&c.state, threshold);
+        tm_repair_score after = before;
+        assert_ok(tm_repair_divide(&c.state, fixed ? NULL : &c.surface, threshold, &after,
+                                   &count, &error),
+                  &error);
+        check_score(&c.state, &after, threshold);
+        check_not_worse(&before, &after);
+        check_still(&old, &c.state);
+        assert_int_equal(c.state.divided, count > 0);
+        assert_int_equal(c.state.mesh.nodes, old.mesh.nodes + count);
+        if (count == 0)
+            check_same_elements(&old, &c.state);
+        if (fixed) {
+            for (size_t v = 0; v < old.mesh.nodes; v++) /* for check_state() */
+                c.state.rule[v].freedom =
+                    old.place[v] == TM_NODE_INSIDE ? TM_MOVES_FREELY : TM_MOVES_NOT;
+        }
+        check_parts(&old, octant, &c.state);
+        check_state(&c.state, &c.surface, &first);
+        divided += count;
+        free(octant);
+        tm_repair_state_free(&old);
+        end_case(&c);
+    }
+    assert_true(divided > 0);
+}
+
+/* Octants around some: they, and those that share a node with one of their elements. */
+static void test_octants(void **unused)
+{
+    (void)unused;
+    tm_error error;
+    repair_case c;
+    start_random_case(&c);
+    damage(&c, 3, 2);
+    const tm_repair_state *s = &c.state;
+    for (int held = 0; held < 2; held++) {
+        uint32_t *octant;
+        size_t count, wide;
+        assert_ok(tm_repair_bad_octants(s, 0.2, held, &octant, &count, &error), &error);
+        uint8_t *is_listed = calloc(s->octree.leaves, 1);
+        bool *near = calloc(s->mesh.nodes, sizeof *near);
+        for (size_t i = 0; i < count; i++)
+            is_listed[octant[i]] = 1;
+        for (size_t e = 0; e < s->mesh.elements; e++) {
+            bool bad = tm_repair_is_bad(&s->mesh, e, tm_mixed_jens(&s->mesh, e), 0.2);
+            for (size_t i = s->mesh.start[e]; i < s->mesh.start[e + 1]; i++) {
+                bad |= held && s->rule[s->mesh.item[i]].held;
+                near[s->mesh.item[i]] |= is_listed[s->octant[e]];
+            }
+            assert_true(!bad || is_listed[s->octant[e]]);
+        }
+        wide = count;
+        assert_ok(tm_repair_widen(s, &octant, &wide, &error), &error);
+        assert_true(wide >= count);
+        memset(is_listed, 0, s->octree.leaves);
+        for (size_t i = 0; i < wide; i++) {
+            assert_true(i == 0 || octant[i] > octant[i - 1]);
+            is_listed[octant[i]] = 1;
+        }
+        for (size_t e = 0; e < s->mesh.elements; e++)
+            for (size_t i = s->mesh.start[e]; i < s->mesh.start[e + 1]; i++)
+                assert_true(!near[s->mesh.item[i]] || is_listed[s->octant[e]]);
+        free(is_listed);
+        free(near);
+        free(octant);
+    }
+    end_case(&c);
+}
+
+/* Octants are split, and the mesh is one of the finer octree. */
+static void test_remake(void **unused)
+{
+    (void)unused;
+    for (int round = 0; round < ROUNDS; round++) {
+        tm_error error;
+        repair_case c;
+        tm_repair_state made = {0};
+        uint32_t octant[1];
+        start_random_case(&c);
+        const size_t e = random_below((unsigned)c.state.mesh.elements);
+        octant[0] = c.state.octant[e];
+        const tm_examination first = examine_state(&c.state);
+        assert_ok(tm_repair_remake(&made, &c.state, &c.surface, octant, 1, &error),
+                  &error);
+        assert_true(made.remade);
+        assert_true(made.octree.leaves >= c.state.octree.leaves + 7);
+        for (size_t l = 0; l < made.octree.leaves; l++)
+            assert_int_equal(made.row[l], l);
+        for (size_t i = 0; i < made.mesh.elements; i++)
+            assert_int_equal(made.origin[i], i);
+        const tm_examination now = examine_state(&made);
+        check_state(&made, &c.surface, &now);
+        assert_int_equal(now.components, first.components);
+        check_state(&c.state, &c.surface, &first);
+        tm_repair_state_free(&made);
+        end_case(&c);
+    }
+}
+
+static void make_hexahedron(double xyz[8][3], double by)
+{
+    static const double cube[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
+                                      {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+    for (int v = 0; v < 8; v++)
+        for (int i = 0; i < 3; i++)
+            xyz[v][i] = cube[v][i] + by * (2 * random_unit() - 1);
+}
+
+/* A hexahedron whose corners are good, but that is inverted inside. */
+static void find_uncertified(tm_mixed_mesh *mesh)
+{
+    enum { TRIES = 10000000 };
+    for (int i = 0; i < TRIES; i++) {
+        make_hexahedron(mesh->xyz, 0.8);
+        if (tm_mixed_jens(mesh, 0) > 0.02 &&
+            tm_certify(8, (const double(*)[3])mesh->xyz, mesh->item) != TM_POSITIVE)
+            return;
+    }
+    fail_msg("no such hexahedron");
+}
+
+typedef struct {
+    double xyz[8][3];
+    size_t start[2];
+    uint32_t item[8];
+    tm_node_rule rule[8];
+    uint8_t place[8];
+    uint32_t octant[1], origin[1];
+} hexahedron;
+
+static tm_repair_state state_of(hexahedron *h)
+{
+    for (uint32_t i = 0; i < 8; i++) {
+        h->item[i] = i;
+        h->rule[i] = (tm_node_rule){.where = TM_NONE, .freedom = TM_MOVES_NOT};
+        h->place[i] = TM_NODE_ON_PATCH;
+    }
+    h->start[0] = 0;
+    h->start[1] = 8;
+    h->octant[0] = h->origin[0] = 0;
+    return (tm_repair_state){.mesh = {.nodes = 8,
+                                      .xyz = h->xyz,
+                                      .elements = 1,
+                                      .start = h->start,
+                                      .item = h->item},
+                             .rule = h->rule,
+                             .place = h->place,
+                             .octant = h->octant,
+                             .origin = h->origin};
+}
+
+/* An element that is not valid inside counts as 0: it may become lower ones that are. */
+static void test_uncertified(void **unused)
+{
+    (void)unused;
+    hexahedron h;
+    const tm_repair_state s = state_of(&h);
+    tm_mixed_mesh mesh = s.mesh;
+    find_uncertified(&mesh);
+    const tm_repair_score score = measured(&s, 0.01);
+    assert_int_equal(score.invalid, 1);
+    assert_int_equal(score.bad, 1);
+    assert_true(score.worst > 0.02);
+    assert_true(score.floor == 0);
+    const tm_repair_score valid = {.bad = 1, .worst = 0.001, .floor = 0.001};
+    assert_true(tm_repair_better(&valid, &score));
+    assert_false(tm_repair_better(&score, &valid));
+}
+
+/* Less than 1e-6 is not valid, whatever the threshold, in every function that says so. */
+static void test_least(void **unused)
+{
+    (void)unused;
+    for (int tenth = 0; tenth < 2; tenth++) {
+        hexahedron h;
+        tm_repair_state s = state_of(&h);
+        make_hexahedron(h.xyz, 0);
+        h.start[1] = 4; /* the tetrahedron of corners 0, 1, 3 and 4 */
+        h.item[2] = 3;
+        h.item[3] = 4;
+        h.xyz[4][2] = 1e-8;
+        const double threshold = tenth / 10.0;
+        const double jens = tm_mixed_jens(&s.mesh, 0);
+        assert_true(jens > 0 && jens < TM_REPAIR_LEAST);
+        assert_int_equal(measured(&s, threshold).invalid, 1);
+        assert_true(tm_repair_is_bad(&s.mesh, 0, jens, threshold));
+        h.xyz[4][2] = 1e-3;
+        assert_int_equal(measured(&s, threshold).invalid, 0);
+        assert_int_equal(
+            tm_repair_is_bad(&s.mesh, 0, tm_mixed_jens(&s.mesh, 0), threshold), tenth);
+    }
+}
+
+/* All pairs of scores: never better both ways, never below the floor. */
+static void test_better(void **unused)
+{
+    (void)unused;
+    enum { SCORES = 40 };
+    tm_repair_score s[SCORES];
+    const double threshold = 0.2;
+    for (int i = 0; i < SCORES; i++) {
+        s[i] = (tm_repair_score){.invalid = random_below(2),
+                                 .held = random_below(2),
+                                 .worst = random_between(0, 0.4)};
+        s[i].bad = s[i].invalid + random_below(2);
+        s[i].floor = s[i].invalid ? 0 : fmin(s[i].worst, threshold);
+    }
+    for (int i = 0; i < SCORES; i++)
+        for (int j = 0; j < SCORES; j++) {
+            const bool better = tm_repair_better(&s[i], &s[j]);
+            assert_false(better && tm_repair_better(&s[j], &s[i]));
+            if (better)
+                check_not_worse(&s[j], &s[i]);
+            if (s[i].invalid < s[j].invalid)
+                assert_int_equal(better, s[i].worst >= s[j].floor);
+        }
+    const tm_repair_score few = {.bad = 1, .worst = 1e-15, .floor = 1e-15};
+    const tm_repair_score many = {.bad = 9, .worst = 0.18, .floor = 0.18};
+    assert_false(tm_repair_better(&few, &many));
+}
+
+/* Parts of an element fill it, whichever faces may be cut. */
+static void test_star(void **unused)
+{
+    (void)unused;
+    size_t cut = 0;
+    for (int round = 0; round < 4 * ROUNDS; round++) {
+        hexahedron h;
+        const tm_repair_state s = state_of(&h);
+        tm_error error;
+        tm_star star;
+        make_hexahedron(h.xyz, random_between(0, 0.4));
+        const unsigned open = random_below(64);
+        assert_ok(tm_star_find(&star, &s.mesh, 0, open, 0.3, &error), &error);
+        assert_in_range(star.parts, 6, TM_STAR_PARTS);
+        double xyz[9][3];
+        memcpy(xyz, h.xyz, sizeof h.xyz);
+        memcpy(xyz[8], star.middle, sizeof star.middle);
+        double worst = 1;
+        for (size_t i = 0; i < star.start[star.parts]; i++)
+            if (star.item[i] == TM_NONE)
+                star.item[i] = 8;
+        for (size_t p = 0; p < star.parts; p++)
+            worst =
+                fmin(worst, tm_jens(star.start[p + 1] - star.start[p],
+                                    (const double(*)[3])xyz, star.item + star.start[p]));
+        assert_true(worst == star.worst);
+        const tm_mixed_arrays arrays = {.nodes = 9,
+                                        .xyz = (const double(*)[3])xyz,
+                                        .elements = star.parts,
+                                        .start = star.start,
+                                        .item = star.item};
+        tm_examination found;
+        assert_ok(tm_mixed_examine(&found, &arrays, 1, &error), &error);
+        assert_true(worst <= 0 || tm_examination_is_good(&found));
+        assert_int_equal(found.boundary_faces, star.parts);
+        cut += star.parts > 6;
+        assert_true(open != 0 || star.parts == 6);
+    }
+    assert_true(cut > 0);
+}
+
+/* Rules from coordinates alone are those from the attribute of nodes. */
+static void test_rules(void **unused)
+{
+    (void)unused;
+    for (int round = 0; round < ROUNDS; round++) {
+        tm_error error;
+        repair_case c;
+        start_random_case(&c);
+        tm_repair_state *s = &c.state;
+        bool *where = calloc(s->mesh.nodes, sizeof *where);
+        tm_node_rule *rule = calloc(s->mesh.nodes, sizeof *rule);
+        uint8_t *place = calloc(s->mesh.nodes, 1);
+        for (size_t v = 0; v < s->mesh.nodes; v++)
+            where[v] = s->place[v] != TM_NODE_INSIDE;
+        assert_ok(tm_repair_find_rules(&c.surface, s->mesh.nodes,
+                                       (const double(*)[3])s->mesh.xyz, NULL, where, rule,
+                                       place, &error),
+                  &error);
+        for (size_t v = 0; v < s->mesh.nodes; v++) {
+            if (s->rule[v].held)
+                continue;
+            assert_int_equal(place[v] == TM_NODE_INSIDE, s->place[v] == TM_NODE_INSIDE);
+            assert_true(place[v] >= s->place[v]);
+            assert_int_equal(rule[v].held, false);
+            if (place[v] == s->place[v])
+                assert_int_equal(rule[v].freedom, s->rule[v].freedom);
+        }
+        uint32_t *face;
+        size_t faces;
+        assert_ok(tm_boundary_faces(&s->mesh, &face, &faces, &error), &error);
+        assert_int_equal(faces, examine_state(s).boundary_faces);
+        free(face);
+        free(where);
+        free(rule);
+        free(place);
+        end_case(&c);
+    }
+}
+
+static int start_mpi(void **unused)
+{
+    (void)unused;
+    tm_error error;
+    return tm_mpi_start(&error) == TM_OK ? 0 : -1;
+}
+
+int main(void)
+{
+    random_start();
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_least),   cmocka_unit_test(test_uncertified),
+        cmocka_unit_test(test_better),  cmocka_unit_test(test_star),
+        cmocka_unit_test(test_rules),   cmocka_unit_test(test_move),
+        cmocka_unit_test(test_divide),  cmocka_unit_test(test_sharp_corners),
+        cmocka_unit_test(test_octants), cmocka_unit_test(test_remake),
+    };
+    return cmocka_run_group_tests(tests, start_mpi, NULL);
+}
