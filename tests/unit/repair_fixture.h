@@ -5,7 +5,7 @@
 #define TESTS_UNIT_REPAIR_FIXTURE_H
 
 #include "../../lib/element/certify.h"
-#include "../../lib/examine/mixed_examine.h"
+#include "../../lib/examine/element_examine.h"
 #include "../../lib/octree/layer/octree_mesh.h"
 #include "../../lib/octree/layer/octree_mesh_stream.h"
 #include "../../lib/octree/repair/repair_boundary.h"
@@ -195,12 +195,12 @@ static inline tm_examination examine_state(const tm_repair_state *s)
 {
     tm_error error;
     tm_examination found;
-    const tm_mixed_arrays arrays = {.nodes = s->mesh.nodes,
-                                    .xyz = (const double(*)[3])s->mesh.xyz,
-                                    .elements = s->mesh.elements,
-                                    .start = s->mesh.start,
-                                    .item = s->mesh.item};
-    assert_ok(tm_mixed_examine(&found, &arrays, 1, &error), &error);
+    const tm_mesh_view arrays = {.nodes = s->mesh.nodes,
+                                 .xyz = (const double(*)[3])s->mesh.xyz,
+                                 .elements = s->mesh.elements,
+                                 .start = s->mesh.start,
+                                 .item = s->mesh.item};
+    assert_ok(tm_element_examine(&found, &arrays, 1, &error), &error);
     return found;
 }
 

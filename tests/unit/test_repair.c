@@ -105,9 +105,9 @@ static tm_status visit(void *context, unsigned iteration, const tm_repair_state 
     assert_int_equal(tm_stream_find(&stream, ".mix")->count, state->mesh.elements);
     assert_int_equal(tm_stream_find(&stream, "surface.face")->count,
                      w->c->surface.triangles);
-    const tm_mixed_arrays arrays = tm_mixed_arrays_of(&stream);
+    const tm_mesh_view arrays = tm_mixed_arrays_of(&stream);
     tm_examination found;
-    assert_ok(tm_mixed_examine(&found, &arrays, 1, error), error);
+    assert_ok(tm_element_examine(&found, &arrays, 1, error), error);
     assert_int_equal(found.defect[TM_UNMATCHED_FACE].count, 0);
     check_attributes(&stream, score.held);
     tm_stream_free(&stream);
@@ -132,8 +132,8 @@ static void check_stream(repair_case *c, const tm_repair_report *report)
               &error);
     assert_string_equal(c->notes.dropped, "");
     assert_int_equal(tm_stream_find(&c->stream, ".mix")->count, elements);
-    const tm_mixed_arrays arrays = tm_mixed_arrays_of(&c->stream);
-    assert_ok(tm_mixed_examine(&found, &arrays, 1, &error), &error);
+    const tm_mesh_view arrays = tm_mixed_arrays_of(&c->stream);
+    assert_ok(tm_element_examine(&found, &arrays, 1, &error), &error);
     assert_int_equal(tm_examination_is_good(&found), report->after.invalid == 0);
     check_octants(&c->stream);
     check_facets(&c->stream, &found);
