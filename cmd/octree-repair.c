@@ -232,7 +232,7 @@ static void note_left(const program *p, const tm_repair_state *state,
         &p->f,
         "%zu elements are still bad (%zu of them invalid, the worst J_ENS %g) and "
         "%zu nodes not on the surface",
-        left->bad, left->invalid, left->worst, left->held);
+        left->bad, left->invalid, left->worst, left->off_surface);
 }
 
 /* Before the repair, or after it. */
@@ -254,7 +254,7 @@ static void write_json(filter *f, const mesh_state *before, const mesh_state *af
     static const tm_report_row rows[] = {
         TM_REPORT_ROW("bad", NULL, NULL, mesh_state, score.bad),
         TM_REPORT_ROW("invalid", NULL, NULL, mesh_state, score.invalid),
-        TM_REPORT_ROW("held", NULL, NULL, mesh_state, score.held),
+        TM_REPORT_ROW("held", NULL, NULL, mesh_state, score.off_surface),
         TM_REPORT_ROW("worst", NULL, NULL, mesh_state, score.worst),
         TM_REPORT_ROW("average", NULL, NULL, mesh_state, score.average),
         TM_REPORT_ROW("elements", NULL, NULL, mesh_state, elements),
@@ -312,7 +312,7 @@ static bool run(program *p, tm_stream *stream)
     mesh_state after = state_of(&state, stream);
     before.score = report.before;
     after.score = report.after;
-    const bool done = report.after.bad == 0 && report.after.held == 0;
+    const bool done = report.after.bad == 0 && report.after.off_surface == 0;
     if (!done)
         note_left(p, &state, &report.after, stream->base);
     if (tm_repair_to_stream(&state, stream, surface, &notes, &error) != TM_OK)

@@ -136,12 +136,12 @@ static inline void damage(repair_case *c, size_t inside, size_t off)
         const size_t v = random_below((unsigned)s->mesh.nodes);
         const bool free = s->rule[v].freedom == TM_MOVES_FREELY;
         if (free ? inside == 0
-                 : off == 0 || s->rule[v].held ||
+                 : off == 0 || s->rule[v].off_surface ||
                        s->rule[v].freedom != TM_MOVES_ON_SURFACE)
             continue;
         for (int i = 0; i < 3; i++)
             s->mesh.xyz[v][i] += size * (random_unit() - 0.5) * (free ? 1 : 0.2);
-        s->rule[v].held = !free;
+        s->rule[v].off_surface = !free;
         inside -= free;
         off -= !free;
     }
@@ -153,9 +153,9 @@ static inline void check_score(const tm_repair_state *s, const tm_repair_score *
 {
     const double least = 1e-6;
     double worst = 1, floor = fmax(threshold, least), sum = 0;
-    size_t invalid = 0, bad = 0, held = 0;
+    size_t invalid = 0, bad = 0, off_surface = 0;
     for (size_t v = 0; v < s->mesh.nodes; v++)
-        held += s->rule[v].held;
+        off_surface += s->rule[v].off_surface;
     for (size_t e = 0; e < s->mesh.elements; e++) {
         const double jens = tm_mixed_jens(&s->mesh, e);
         const bool certified = tm_certify(s->mesh.start[e + 1] - s->mesh.start[e],
@@ -167,7 +167,7 @@ static inline void check_score(const tm_repair_state *s, const tm_repair_score *
         floor = fmin(floor, certified ? jens : fmin(jens, 0));
         sum += jens;
     }
-    assert_int_equal(score->held, held);
+    assert_int_equal(score->off_surface, off_surface);
     assert_int_equal(score->invalid, invalid);
     assert_int_equal(score->bad, bad);
     assert_true(score->worst == worst);
@@ -183,8 +183,8 @@ static inline void check_not_worse(const tm_repair_score *before,
     assert_true(after->invalid <= before->invalid);
     if (after->invalid < before->invalid)
         return;
-    assert_true(after->held <= before->held);
-    if (after->held < before->held)
+    assert_true(after->off_surface <= before->off_surface);
+    if (after->off_surface < before->off_surface)
         return;
     assert_true(after->bad <= before->bad);
     if (after->bad == before->bad)
@@ -205,15 +205,15 @@ static inline tm_examination examine_state(const tm_repair_state *s)
 }
 
 /* Nodes that are not off the surface are where they belong. */
-static inline void check_places(const tm_repair_state *s, const tm_surface *surface)
+static inline void check_points(const tm_repair_state *s, const tm_surface *surface)
 {
     const double close = TM_ON_SURFACE * sqrt(tm_distance2(surface->low, surface->high));
     for (size_t v = 0; v < s->mesh.nodes; v++) {
         const double *at = s->mesh.xyz[v];
         tm_surface_point closest = {.triangle = TM_NONE};
-        assert_int_equal(s->place[v] == TM_NODE_INSIDE,
+        assert_int_equal(s->on[v] == TM_NODE_INSIDE,
                          s->rule[v].freedom == TM_MOVES_FREELY);
-        if (s->place[v] == TM_NODE_INSIDE || s->rule[v].held)
+        if (s->on[v] == TM_NODE_INSIDE || s->rule[v].off_surface)
             continue;
         tm_surface_closest(surface, at, TM_NONE, &closest);
         assert_true(closest.distance2 <= close * close);
@@ -223,7 +223,7 @@ static inline void check_places(const tm_repair_state *s, const tm_surface *surf
             tm_surface_closest_on_curve(surface, s->rule[v].where, at, place, &segment);
             assert_true(tm_distance2(at, place) <= close * close);
         }
-        bool corner = s->place[v] != TM_NODE_ON_CORNER;
+        bool corner = s->on[v] != TM_NODE_ON_CORNER;
         for (size_t i = 0; i < surface->corners && !corner; i++)
             corner = tm_distance2(at, surface->xyz[surface->corner[i]]) <= close * close;
         assert_true(corner);
@@ -254,7 +254,7 @@ static inline void check_state(const tm_repair_state *s, const tm_surface *surfa
     if (s->octree.leaves > 0)
         assert_ok(tm_octree_check(&s->octree, NULL, &error), &error);
     if (surface)
-        check_places(s, surface);
+        check_points(s, surface);
 }
 
 #endif

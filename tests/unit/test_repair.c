@@ -71,12 +71,12 @@ static void copy_facets(tm_block *to, const tm_block *from)
 }
 
 /* The attribute of a node says whether it is off the surface. */
-static void check_attributes(const tm_stream *stream, size_t held)
+static void check_attributes(const tm_stream *stream, size_t off_surface)
 {
     const tm_block *node = tm_stream_find(stream, ".node");
     for (size_t v = 0; v < node->count; v++)
-        held -= node->attribute[v] < 0;
-    assert_int_equal(held, 0);
+        off_surface -= node->attribute[v] < 0;
+    assert_int_equal(off_surface, 0);
 }
 
 typedef struct {
@@ -109,7 +109,7 @@ static tm_status visit(void *context, unsigned iteration, const tm_repair_state 
     tm_examination found;
     assert_ok(tm_element_examine(&found, &arrays, 1, error), error);
     assert_int_equal(found.defect[TM_UNMATCHED_FACE].count, 0);
-    check_attributes(&stream, score.held);
+    check_attributes(&stream, score.off_surface);
     tm_stream_free(&stream);
     w->visits++;
     w->iteration = iteration;
@@ -137,7 +137,7 @@ static void check_stream(repair_case *c, const tm_repair_report *report)
     assert_int_equal(tm_examination_is_good(&found), report->after.invalid == 0);
     check_octants(&c->stream);
     check_facets(&c->stream, &found);
-    check_attributes(&c->stream, report->after.held);
+    check_attributes(&c->stream, report->after.off_surface);
     if (only_divided)
         check_markers(facet, tm_stream_find(&c->stream, ".facet"));
     tm_stream_free(&old);
@@ -250,7 +250,7 @@ static void test_held(void **unused)
         const tm_repair_report report = repair(
             &c,
             (tm_repair_options){.method = TM_REPAIR_FULL, .threshold = 0.1, .growth = 1});
-        brought += report.before.held - report.after.held;
+        brought += report.before.off_surface - report.after.off_surface;
     }
     assert_true(brought > 0);
 }
@@ -288,10 +288,10 @@ static void test_divided(void **unused)
         if (round % 4 > 0)
             for (size_t v = 0; v < c.state.mesh.nodes; v++)
                 c.state.rule[v].freedom =
-                    c.state.place[v] == TM_NODE_INSIDE ? TM_MOVES_FREELY : TM_MOVES_NOT;
+                    c.state.on[v] == TM_NODE_INSIDE ? TM_MOVES_FREELY : TM_MOVES_NOT;
         const double threshold = round % 4 == 0 ? 0.2 : 0.3;
         size_t v = 0;
-        while (c.state.place[v] != TM_NODE_ON_PATCH)
+        while (c.state.on[v] != TM_NODE_ON_PATCH)
             v++;
         if (round % 4 > 0)
             for (int i = 0; i < 3; i++)
@@ -334,11 +334,11 @@ static void test_alone(void **unused)
     end_case(&c);
     start_random_case(&c);
     assert_false(tm_repair_is_needed(&c.state, &c.stream, 0) &&
-                 tm_repair_measure(&c.state, 0).held == 0);
+                 tm_repair_measure(&c.state, 0).off_surface == 0);
     tm_repair_notes notes;
     assert_ok(tm_repair_prepare(&c.state, &c.stream, NULL, &notes, &error), &error);
     for (size_t v = 0; v < c.state.mesh.nodes; v++)
-        assert_int_equal(c.state.rule[v].freedom, c.state.place[v] == TM_NODE_INSIDE
+        assert_int_equal(c.state.rule[v].freedom, c.state.on[v] == TM_NODE_INSIDE
                                                       ? TM_MOVES_FREELY
                                                       : TM_MOVES_NOT);
     end_case(&c);

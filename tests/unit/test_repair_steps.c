@@ -3,7 +3,7 @@
  * after; and the rule that decides what is kept. */
 #include "../../lib/octree/repair/repair_faces.h"
 #include "../../lib/octree/repair/repair_steps.h"
-#include "../../lib/octree/repair/repair_vicinity.h"
+#include "../../lib/octree/repair/element_division.h"
 #include "../../lib/octree/forest/mpi_start.h"
 #include "repair_fixture.h"
 
@@ -18,13 +18,13 @@ static tm_repair_state copy_elements(const tm_repair_state *s)
     copy.mesh.start = malloc((s->mesh.elements + 1) * sizeof *copy.mesh.start);
     copy.mesh.item = malloc(items * sizeof *copy.mesh.item);
     copy.rule = malloc(s->mesh.nodes * sizeof *copy.rule);
-    copy.place = malloc(s->mesh.nodes);
+    copy.on = malloc(s->mesh.nodes);
     memcpy(copy.mesh.xyz, s->mesh.xyz, s->mesh.nodes * sizeof *copy.mesh.xyz);
     memcpy(copy.mesh.start, s->mesh.start,
            (s->mesh.elements + 1) * sizeof *copy.mesh.start);
     memcpy(copy.mesh.item, s->mesh.item, items * sizeof *copy.mesh.item);
     memcpy(copy.rule, s->rule, s->mesh.nodes * sizeof *copy.rule);
-    memcpy(copy.place, s->place, s->mesh.nodes);
+    memcpy(copy.on, s->on, s->mesh.nodes);
     return copy;
 }
 
@@ -32,7 +32,7 @@ static tm_repair_state copy_elements(const tm_repair_state *s)
 static void check_still(const tm_repair_state *old, const tm_repair_state *now)
 {
     for (size_t v = 0; v < old->mesh.nodes; v++) {
-        assert_int_equal(old->place[v], now->place[v]);
+        assert_int_equal(old->on[v], now->on[v]);
         if (old->rule[v].freedom == TM_MOVES_NOT)
             assert_memory_equal(old->mesh.xyz[v], now->mesh.xyz[v], 3 * sizeof(double));
     }
@@ -80,7 +80,7 @@ static void test_move(void **unused)
         check_still(&old, &c.state);
         check_state(&c.state, &c.surface, &first);
         mended += after.invalid < before.invalid;
-        brought += after.held < before.held;
+        brought += after.off_surface < before.off_surface;
         tm_repair_state_free(&old);
         end_case(&c);
     }
@@ -140,7 +140,7 @@ static void test_sharp_corners(void **unused)
 static void fix_boundary(repair_case *c)
 {
     for (size_t v = 0; v < c->state.mesh.nodes; v++)
-        if (c->state.place[v] != TM_NODE_INSIDE)
+        if (c->state.on[v] != TM_NODE_INSIDE)
             c->state.rule[v] = (tm_node_rule){.where = TM_NONE, .freedom = TM_MOVES_NOT};
 }
 
@@ -169,7 +169,8 @@ static void test_divide(void **unused)
         repair_case c;
         size_t count = 0;
         start_random_case(&c);
-        const bool fixed = random_below(2) && tm_repair_measure(&c.state, 0).held == 0;
+        const bool fixed =
+            random_below(2) && tm_repair_measure(&c.state, 0).off_surface == 0;
         if (fixed)
             fix_boundary(&c);
         damage(&c, random_below(3), 0);
@@ -193,7 +194,7 @@ static void test_divide(void **unused)
         if (fixed) {
             for (size_t v = 0; v < old.mesh.nodes; v++) /* for check_state() */
                 c.state.rule[v].freedom =
-                    old.place[v] == TM_NODE_INSIDE ? TM_MOVES_FREELY : TM_MOVES_NOT;
+                    old.on[v] == TM_NODE_INSIDE ? TM_MOVES_FREELY : TM_MOVES_NOT;
         }
         check_parts(&old, octant, &c.state);
         check_state(&c.state, &c.surface, &first);
@@ -214,10 +215,11 @@ static void test_octants(void **unused)
     start_random_case(&c);
     damage(&c, 3, 2);
     const tm_repair_state *s = &c.state;
-    for (int held = 0; held < 2; held++) {
+    for (int off_surface = 0; off_surface < 2; off_surface++) {
         uint32_t *octant;
         size_t count, wide;
-        assert_ok(tm_repair_bad_octants(s, 0.2, held, &octant, &count, &error), &error);
+        assert_ok(tm_repair_bad_octants(s, 0.2, off_surface, &octant, &count, &error),
+                  &error);
         uint8_t *is_listed = calloc(s->octree.leaves, 1);
         bool *near = calloc(s->mesh.nodes, sizeof *near);
         for (size_t i = 0; i < count; i++)
@@ -225,7 +227,7 @@ static void test_octants(void **unused)
         for (size_t e = 0; e < s->mesh.elements; e++) {
             bool bad = tm_repair_is_bad(&s->mesh, e, tm_mixed_jens(&s->mesh, e), 0.2);
             for (size_t i = s->mesh.start[e]; i < s->mesh.start[e + 1]; i++) {
-                bad |= held && s->rule[s->mesh.item[i]].held;
+                bad |= off_surface && s->rule[s->mesh.item[i]].off_surface;
                 near[s->mesh.item[i]] |= is_listed[s->octant[e]];
             }
             assert_true(!bad || is_listed[s->octant[e]]);
@@ -305,7 +307,7 @@ typedef struct {
     size_t start[2];
     uint32_t item[8];
     tm_node_rule rule[8];
-    uint8_t place[8];
+    uint8_t on[8];
     uint32_t octant[1], origin[1];
 } hexahedron;
 
@@ -314,7 +316,7 @@ static tm_repair_state state_of(hexahedron *h)
     for (uint32_t i = 0; i < 8; i++) {
         h->item[i] = i;
         h->rule[i] = (tm_node_rule){.where = TM_NONE, .freedom = TM_MOVES_NOT};
-        h->place[i] = TM_NODE_ON_PATCH;
+        h->on[i] = TM_NODE_ON_PATCH;
     }
     h->start[0] = 0;
     h->start[1] = 8;
@@ -325,7 +327,7 @@ static tm_repair_state state_of(hexahedron *h)
                                       .start = h->start,
                                       .item = h->item},
                              .rule = h->rule,
-                             .place = h->place,
+                             .on = h->on,
                              .octant = h->octant,
                              .origin = h->origin};
 }
@@ -381,7 +383,7 @@ static void test_better(void **unused)
     const double threshold = 0.2;
     for (int i = 0; i < SCORES; i++) {
         s[i] = (tm_repair_score){.invalid = random_below(2),
-                                 .held = random_below(2),
+                                 .off_surface = random_below(2),
                                  .worst = random_between(0, 0.4)};
         s[i].bad = s[i].invalid + random_below(2);
         s[i].floor = s[i].invalid ? 0 : fmin(s[i].worst, threshold);
@@ -409,11 +411,11 @@ static void test_star(void **unused)
         hexahedron h;
         const tm_repair_state s = state_of(&h);
         tm_error error;
-        tm_star star;
+        tm_division star;
         make_hexahedron(h.xyz, random_between(0, 0.4));
         const unsigned open = random_below(64);
-        assert_ok(tm_star_find(&star, &s.mesh, 0, open, 0.3, &error), &error);
-        assert_in_range(star.parts, 6, TM_STAR_PARTS);
+        assert_ok(tm_division_find(&star, &s.mesh, 0, open, 0.3, &error), &error);
+        assert_in_range(star.parts, 6, TM_DIVISION_PARTS);
         double xyz[9][3];
         memcpy(xyz, h.xyz, sizeof h.xyz);
         memcpy(xyz[8], star.middle, sizeof star.middle);
@@ -452,30 +454,30 @@ static void test_rules(void **unused)
         tm_repair_state *s = &c.state;
         bool *where = calloc(s->mesh.nodes, sizeof *where);
         tm_node_rule *rule = calloc(s->mesh.nodes, sizeof *rule);
-        uint8_t *place = calloc(s->mesh.nodes, 1);
+        uint8_t *on = calloc(s->mesh.nodes, 1);
         for (size_t v = 0; v < s->mesh.nodes; v++)
-            where[v] = s->place[v] != TM_NODE_INSIDE;
+            where[v] = s->on[v] != TM_NODE_INSIDE;
         assert_ok(tm_repair_find_rules(&c.surface, s->mesh.nodes,
                                        (const double(*)[3])s->mesh.xyz, NULL, where, rule,
-                                       place, &error),
+                                       on, &error),
                   &error);
         for (size_t v = 0; v < s->mesh.nodes; v++) {
-            if (s->rule[v].held)
+            if (s->rule[v].off_surface)
                 continue;
-            assert_int_equal(place[v] == TM_NODE_INSIDE, s->place[v] == TM_NODE_INSIDE);
-            assert_true(place[v] >= s->place[v]);
-            assert_int_equal(rule[v].held, false);
-            if (place[v] == s->place[v])
+            assert_int_equal(on[v] == TM_NODE_INSIDE, s->on[v] == TM_NODE_INSIDE);
+            assert_true(on[v] >= s->on[v]);
+            assert_int_equal(rule[v].off_surface, false);
+            if (on[v] == s->on[v])
                 assert_int_equal(rule[v].freedom, s->rule[v].freedom);
         }
         uint32_t *face;
         size_t faces;
-        assert_ok(tm_boundary_faces(&s->mesh, &face, &faces, &error), &error);
+        assert_ok(tm_mixed_boundary_faces(&s->mesh, &face, &faces, &error), &error);
         assert_int_equal(faces, examine_state(s).boundary_faces);
         free(face);
         free(where);
         free(rule);
-        free(place);
+        free(on);
         end_case(&c);
     }
 }

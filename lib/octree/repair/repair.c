@@ -11,16 +11,16 @@
 /* With how much effort nodes are moved, one after the other; and by which share of the
  * threshold elements are measured that a node leaves behind that was off the surface. */
 static const unsigned efforts[] = {1, 3};
-static const double held_shares[] = {0x1p-2,  0x1p-4,  0x1p-6,  0x1p-8, 0x1p-10,
-                                     0x1p-12, 0x1p-14, 0x1p-16, 0};
+static const double off_surface_shares[] = {0x1p-2,  0x1p-4,  0x1p-6,  0x1p-8, 0x1p-10,
+                                            0x1p-12, 0x1p-14, 0x1p-16, 0};
 enum {
     EFFORTS = sizeof efforts / sizeof *efforts,
-    HELD_SHARES = sizeof held_shares / sizeof *held_shares
+    OFF_SURFACE_SHARES = sizeof off_surface_shares / sizeof *off_surface_shares
 };
 
 /* Where so many nodes are off the surface and such a part of them remains so, the octree
  * is too coarse for the surface. */
-enum { FEW_HELD = 500 };
+enum { FEW_OFF_SURFACE = 500 };
 static const double hopeless = 0.9;
 
 /* Elements become others only where so many are bad: each costs some milliseconds, and
@@ -40,7 +40,7 @@ typedef struct {
 
 static bool is_done(const tm_repair_score *score)
 {
-    return score->bad == 0 && score->held == 0;
+    return score->bad == 0 && score->off_surface == 0;
 }
 
 /* Brings nodes to the surface that leave elements of such a share of the threshold
@@ -63,9 +63,10 @@ static tm_status bring_all(const repair *r, tm_repair_state *state, double floor
                            tm_repair_score *score, tm_error *error)
 {
     tm_status status = TM_OK;
-    for (size_t i = 0; i < HELD_SHARES && status == TM_OK && score->held > 0; i++)
-        status = bring_some(r, state, held_shares[i], floor, score, error);
-    if (status != TM_OK || score->held == 0)
+    for (size_t i = 0;
+         i < OFF_SURFACE_SHARES && status == TM_OK && score->off_surface > 0; i++)
+        status = bring_some(r, state, off_surface_shares[i], floor, score, error);
+    if (status != TM_OK || score->off_surface == 0)
         return status;
     tm_repair_free_off_surface(state);
     return bring_some(r, state, 0, floor, score, error);
@@ -97,14 +98,15 @@ static tm_status mend(const repair *r, tm_repair_state *state, tm_repair_score *
 {
     const double t = r->options->threshold;
     tm_status status = TM_OK;
-    const size_t held = score->held;
+    const size_t off_surface = score->off_surface;
     const double floor = score->floor; /* of all moves together */
     for (size_t i = 0; i < EFFORTS && status == TM_OK && !is_done(score); i++) {
         status = tm_repair_move(state, r->surface, t, t, efforts[i], score, error);
-        if (score->held > FEW_HELD && (double)score->held > hopeless * (double)held)
+        if (score->off_surface > FEW_OFF_SURFACE &&
+            (double)score->off_surface > hopeless * (double)off_surface)
             return status; /* it takes long and leads to nothing */
     }
-    if (status == TM_OK && score->held > 0)
+    if (status == TM_OK && score->off_surface > 0)
         status = bring(r, state, floor, score, error);
     const bool some = score->bad > 0 && score->bad <= FEW_BAD;
     if (status == TM_OK && some)
@@ -159,7 +161,7 @@ static tm_status refine(const repair *r, const uint32_t *octant, size_t count,
 static tm_status refine_some(const repair *r, bool wide, bool *better, tm_error *error)
 {
     enum { HALVINGS = 5 };
-    const int halvings = r->report->after.held > FEW_HELD ? 1 : HALVINGS;
+    const int halvings = r->report->after.off_surface > FEW_OFF_SURFACE ? 1 : HALVINGS;
     uint32_t *octant;
     size_t count;
     outcome became = TOO_LARGE;
@@ -179,10 +181,10 @@ static tm_status refine_some(const repair *r, bool wide, bool *better, tm_error 
 }
 
 /* Tells the caller of a state. */
-static tm_status show(const repair *r, bool held, size_t *count, tm_error *error)
+static tm_status show(const repair *r, bool off_surface, size_t *count, tm_error *error)
 {
     uint32_t *octant;
-    tm_status status = tm_repair_bad_octants(r->state, r->options->threshold, held,
+    tm_status status = tm_repair_bad_octants(r->state, r->options->threshold, off_surface,
                                              &octant, count, error);
     if (status == TM_OK && r->options->visit)
         status = r->options->visit(r->options->context, r->report->iterations, r->state,

@@ -59,16 +59,16 @@ static void try_corner(const finder *f, uint32_t corner, const double xyz[3],
 
 static void try_curve(const finder *f, uint32_t curve, const double xyz[3], closest *best)
 {
-    double place[3];
+    double point[3];
     size_t segment;
-    tm_surface_closest_on_curve(f->surface, curve, xyz, place, &segment);
-    const double d = tm_distance2(place, xyz);
+    tm_surface_closest_on_curve(f->surface, curve, xyz, point, &segment);
+    const double d = tm_distance2(point, xyz);
     if (best->what == TM_NONE || d < best->distance2)
         *best = (closest){curve, d};
 }
 
-/* The corner closest to a place: of those at the triangle there, which is enough where
- * the place is on it, or of all. */
+/* The corner closest to a point: of those at the triangle there, which is enough where
+ * the point is on it, or of all. */
 static closest find_corner(const finder *f, const double xyz[3], uint32_t triangle,
                            bool all)
 {
@@ -98,9 +98,9 @@ static closest find_curve(const finder *f, const double xyz[3], uint32_t triangl
     return best;
 }
 
-static tm_node_rule on_patch(const finder *f, const tm_surface_point *at, uint8_t *place)
+static tm_node_rule on_patch(const finder *f, const tm_surface_point *at, uint8_t *on)
 {
-    *place = TM_NODE_ON_PATCH;
+    *on = TM_NODE_ON_PATCH;
     return (tm_node_rule){.where = f->surface->patch[at->triangle],
                           .freedom = TM_MOVES_ON_SURFACE,
                           .off_surface = at->distance2 > f->near2};
@@ -109,18 +109,18 @@ static tm_node_rule on_patch(const finder *f, const tm_surface_point *at, uint8_
 /* The rule of a node that is to be on a corner or a curve: that closest to it; of the
  * patch where there is none. */
 static tm_node_rule rule_given(const finder *f, const double xyz[3],
-                               const tm_surface_point *at, uint8_t *place)
+                               const tm_surface_point *at, uint8_t *on)
 {
-    const bool corner = *place == TM_NODE_ON_CORNER;
-    if (*place == TM_NODE_ON_PATCH)
-        return on_patch(f, at, place);
+    const bool corner = *on == TM_NODE_ON_CORNER;
+    if (*on == TM_NODE_ON_PATCH)
+        return on_patch(f, at, on);
     closest best = {.what = TM_NONE};
     for (int all = 0; all < 2 && (best.what == TM_NONE || best.distance2 > f->near2);
          all++)
         best = corner ? find_corner(f, xyz, at->triangle, all)
                       : find_curve(f, xyz, at->triangle, all);
     if (best.what == TM_NONE)
-        return on_patch(f, at, place);
+        return on_patch(f, at, on);
     const bool off_surface = best.distance2 > f->near2;
     if (corner && !off_surface)
         return (tm_node_rule){.where = TM_NONE, .freedom = TM_MOVES_NOT};
@@ -131,36 +131,36 @@ static tm_node_rule rule_given(const finder *f, const double xyz[3],
 
 /* The rule of a boundary node by its coordinates. */
 static tm_node_rule rule_found(const finder *f, const double xyz[3],
-                               const tm_surface_point *at, uint8_t *place)
+                               const tm_surface_point *at, uint8_t *on)
 {
     const closest corner = find_corner(f, xyz, at->triangle, false);
     const closest curve = find_curve(f, xyz, at->triangle, false);
-    *place = TM_NODE_ON_PATCH;
+    *on = TM_NODE_ON_PATCH;
     if (corner.what != TM_NONE && corner.distance2 <= f->near2)
-        *place = TM_NODE_ON_CORNER;
+        *on = TM_NODE_ON_CORNER;
     else if (curve.what != TM_NONE && curve.distance2 <= f->near2)
-        *place = TM_NODE_ON_CURVE;
-    return rule_given(f, xyz, at, place);
+        *on = TM_NODE_ON_CURVE;
+    return rule_given(f, xyz, at, on);
 }
 
 tm_status tm_repair_find_rules(const tm_surface *surface, size_t nodes,
                                const double (*xyz)[3], const double *given,
-                               const bool *where, tm_node_rule *rule, uint8_t *place,
+                               const bool *where, tm_node_rule *rule, uint8_t *on,
                                tm_error *error)
 {
     finder f = {.surface = surface};
     const tm_status status = start_finder(&f, error);
     tm_surface_point at = {.triangle = TM_NONE};
     for (size_t v = 0; status == TM_OK && v < nodes; v++) {
-        place[v] = TM_NODE_INSIDE;
+        on[v] = TM_NODE_INSIDE;
         rule[v] = (tm_node_rule){.where = TM_NONE, .freedom = TM_MOVES_FREELY};
         if (given ? given[v] == 0 : !where[v])
             continue;
         tm_surface_closest(surface, xyz[v], TM_NONE, &at);
         if (given)
-            place[v] = (uint8_t)(given[v] < 0 ? -given[v] : given[v]);
-        rule[v] = given ? rule_given(&f, xyz[v], &at, &place[v])
-                        : rule_found(&f, xyz[v], &at, &place[v]);
+            on[v] = (uint8_t)(given[v] < 0 ? -given[v] : given[v]);
+        rule[v] = given ? rule_given(&f, xyz[v], &at, &on[v])
+                        : rule_found(&f, xyz[v], &at, &on[v]);
     }
     free(f.start);
     free(f.curve);

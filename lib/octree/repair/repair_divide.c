@@ -71,12 +71,12 @@ static tm_status allocate(tm_repair_state *to, size_t items, tm_error *error)
 {
     to->mesh.xyz = tm_new(to->mesh.nodes, sizeof *to->mesh.xyz);
     to->rule = tm_new(to->mesh.nodes, sizeof *to->rule);
-    to->place = tm_new(to->mesh.nodes, sizeof *to->place);
+    to->on = tm_new(to->mesh.nodes, sizeof *to->on);
     to->mesh.start = tm_new(to->mesh.elements + 1, sizeof *to->mesh.start);
     to->mesh.item = tm_new(items, sizeof *to->mesh.item);
     to->octant = tm_new(to->mesh.elements, sizeof *to->octant);
     to->origin = tm_new(to->mesh.elements, sizeof *to->origin);
-    return to->mesh.xyz && to->rule && to->place && to->mesh.start && to->mesh.item &&
+    return to->mesh.xyz && to->rule && to->on && to->mesh.start && to->mesh.item &&
                    to->octant && to->origin
                ? TM_OK
                : tm_fail_memory(error);
@@ -113,7 +113,7 @@ static tm_status apply(const divider *d, tm_repair_state *to, tm_error *error)
         return status;
     memcpy(to->mesh.xyz, mesh->xyz, mesh->nodes * sizeof *mesh->xyz);
     memcpy(to->rule, from->rule, mesh->nodes * sizeof *from->rule);
-    memcpy(to->place, from->place, mesh->nodes * sizeof *from->place);
+    memcpy(to->on, from->on, mesh->nodes * sizeof *from->on);
     to->mesh.elements = 0;
     to->mesh.start[0] = 0;
     for (size_t e = 0, i = 0; e < mesh->elements; e++) {
@@ -126,7 +126,7 @@ static tm_status apply(const divider *d, tm_repair_state *to, tm_error *error)
         const size_t middle = mesh->nodes + i++;
         memcpy(to->mesh.xyz[middle], parts->middle, sizeof parts->middle);
         to->rule[middle] = (tm_node_rule){.where = TM_NONE, .freedom = TM_MOVES_FREELY};
-        to->place[middle] = 0;
+        to->on[middle] = 0;
         for (size_t p = 0; p < parts->parts; p++)
             add_element(to, parts->start[p + 1] - parts->start[p],
                         parts->item + parts->start[p], (uint32_t)middle, from, e);

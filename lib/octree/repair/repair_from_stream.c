@@ -18,10 +18,10 @@ static tm_status allocate(tm_repair_state *state, tm_error *error)
 {
     const size_t nodes = state->mesh.nodes, elements = state->mesh.elements;
     state->rule = calloc(nodes + 1, sizeof *state->rule);
-    state->place = calloc(nodes + 1, sizeof *state->place);
+    state->on = calloc(nodes + 1, sizeof *state->on);
     state->octant = tm_new(elements, sizeof *state->octant);
     state->origin = tm_new(elements, sizeof *state->origin);
-    if (!state->rule || !state->place || !state->octant || !state->origin)
+    if (!state->rule || !state->on || !state->octant || !state->origin)
         return tm_fail_memory(error);
     for (size_t e = 0; e < elements; e++) {
         state->octant[e] = TM_NONE;
@@ -98,7 +98,7 @@ static bool are_places(const tm_block *node, const bool *where)
 static void hold_all(tm_repair_state *state, const bool *where)
 {
     for (size_t v = 0; v < state->mesh.nodes; v++) {
-        state->place[v] = where[v] ? TM_NODE_ON_PATCH : TM_NODE_INSIDE;
+        state->on[v] = where[v] ? TM_NODE_ON_PATCH : TM_NODE_INSIDE;
         state->rule[v] = (tm_node_rule){
             .where = TM_NONE, .freedom = where[v] ? TM_MOVES_NOT : TM_MOVES_FREELY};
     }
@@ -118,7 +118,7 @@ static tm_status find_rules(tm_repair_state *state, const tm_block *node,
         status = tm_repair_find_rules(surface, state->mesh.nodes,
                                       (const double(*)[3])state->mesh.xyz,
                                       notes->attributed ? node->attribute : NULL, where,
-                                      state->rule, state->place, error);
+                                      state->rule, state->on, error);
     else
         hold_all(state, where);
     free(where);

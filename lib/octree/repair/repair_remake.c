@@ -31,12 +31,12 @@ static tm_status take_mesh(tm_repair_state *to, tm_octree_mesh *made,
     made->assembly.mesh = (tm_mixed_mesh){0};
     const size_t nodes = to->mesh.nodes, elements = to->mesh.elements;
     to->rule = tm_new(nodes, sizeof *to->rule);
-    to->place = calloc(nodes + 1, sizeof *to->place);
+    to->on = calloc(nodes + 1, sizeof *to->on);
     to->octant = tm_new(elements, sizeof *to->octant);
     to->origin = tm_new(elements, sizeof *to->origin);
     to->row = tm_new(to->octree.leaves, sizeof *to->row);
     double *given = calloc(nodes + 1, sizeof *given);
-    if (!to->rule || !to->place || !to->octant || !to->origin || !to->row || !given) {
+    if (!to->rule || !to->on || !to->octant || !to->origin || !to->row || !given) {
         free(given);
         return tm_fail_memory(error);
     }
@@ -53,7 +53,7 @@ static tm_status take_mesh(tm_repair_state *to, tm_octree_mesh *made,
     }
     const tm_status status =
         tm_repair_find_rules(surface, nodes, (const double(*)[3])to->mesh.xyz, given,
-                             NULL, to->rule, to->place, error);
+                             NULL, to->rule, to->on, error);
     free(given);
     return status;
 }

@@ -309,7 +309,7 @@ tm_status tm_repair_sharp_corners(tm_repair_state *state, const tm_surface *surf
     const size_t old = *count;
     tm_status status = begin(&t, error);
     for (uint32_t v = 0; status == TM_OK && v < state->mesh.nodes; v++) {
-        if (state->place[v] == 0 || !is_bad_at(&t, v))
+        if (state->on[v] == 0 || !is_bad_at(&t, v))
             continue;
         if (is_touched_near(&t, v))
             status = renew(&t, error);

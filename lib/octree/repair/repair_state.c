@@ -32,7 +32,7 @@ tm_repair_score tm_repair_measure(const tm_repair_state *state, double threshold
     tm_repair_score score = {.worst = 1, .floor = fmax(threshold, TM_REPAIR_LEAST)};
     double sum = 0;
     for (size_t v = 0; v < mesh->nodes; v++)
-        score.held += state->rule[v].off_surface;
+        score.off_surface += state->rule[v].off_surface;
     for (size_t e = 0; e < mesh->elements; e++) {
         const double jens = tm_mixed_jens(mesh, e);
         const double quality = tm_repair_quality(mesh, e, jens);
@@ -54,8 +54,8 @@ bool tm_repair_better(const tm_repair_score *a, const tm_repair_score *b)
         return false;
     if (a->invalid != b->invalid)
         return a->invalid < b->invalid;
-    if (a->held != b->held)
-        return a->held < b->held;
+    if (a->off_surface != b->off_surface)
+        return a->off_surface < b->off_surface;
     if (a->bad != b->bad)
         return a->bad < b->bad;
     return a->worst > b->worst;
@@ -79,7 +79,7 @@ static size_t sort_once(uint32_t *octant, size_t count)
     return kept;
 }
 
-static bool has_held(const tm_repair_state *state, size_t e)
+static bool has_off_surface(const tm_repair_state *state, size_t e)
 {
     for (size_t i = state->mesh.start[e]; i < state->mesh.start[e + 1]; i++)
         if (state->rule[state->mesh.item[i]].off_surface)
@@ -87,8 +87,9 @@ static bool has_held(const tm_repair_state *state, size_t e)
     return false;
 }
 
-tm_status tm_repair_bad_octants(const tm_repair_state *state, double threshold, bool held,
-                                uint32_t **octant, size_t *count, tm_error *error)
+tm_status tm_repair_bad_octants(const tm_repair_state *state, double threshold,
+                                bool off_surface, uint32_t **octant, size_t *count,
+                                tm_error *error)
 {
     const tm_mixed_mesh *mesh = &state->mesh;
     size_t room = 0;
@@ -96,8 +97,8 @@ tm_status tm_repair_bad_octants(const tm_repair_state *state, double threshold, 
     *count = 0;
     for (size_t e = 0; e < mesh->elements; e++) {
         const double jens = tm_mixed_jens(mesh, e);
-        if (state->octant[e] == TM_NONE ||
-            !(tm_repair_is_bad(mesh, e, jens, threshold) || (held && has_held(state, e))))
+        if (state->octant[e] == TM_NONE || !(tm_repair_is_bad(mesh, e, jens, threshold) ||
+                                             (off_surface && has_off_surface(state, e))))
             continue;
         uint32_t *grown = tm_grow(*octant, &room, *count + 1, sizeof *grown);
         if (!grown)
@@ -182,7 +183,7 @@ void tm_repair_state_free(tm_repair_state *state)
     free(state->mesh.start);
     free(state->mesh.item);
     free(state->rule);
-    free(state->place);
+    free(state->on);
     free(state->octant);
     free(state->origin);
     tm_octree_free(&state->octree);

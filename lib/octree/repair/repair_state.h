@@ -18,7 +18,7 @@ TM_EXTERN_C_BEGIN
 typedef struct tm_repair_state {
     tm_mixed_mesh mesh;
     tm_node_rule *rule; /* [nodes]; of repair_boundary.h */
-    uint8_t *place;     /* [nodes]: tm_node_class */
+    uint8_t *on;        /* [nodes]: tm_node_class */
     uint32_t *octant;   /* [elements]: TM_NONE where it is in none */
     uint32_t *origin;   /* [elements]: of which it is a part, ascending, until `remade` */
     tm_octree octree;   /* no leaves: there is none */
@@ -29,7 +29,7 @@ typedef struct tm_repair_state {
 
 /* How good it is. */
 typedef struct tm_repair_score {
-    size_t held; /* nodes that are not on the surface yet */
+    size_t off_surface; /* nodes that are not on the surface yet */
     size_t
         invalid; /* elements with J_ENS < TM_REPAIR_LEAST, or not certified (certify.h) */
     size_t bad;  /* these and all below the threshold */
@@ -54,10 +54,11 @@ tm_repair_score tm_repair_measure(const tm_repair_state *state, double threshold
  * off the surface, else fewer bad elements, else a better worst one. */
 bool tm_repair_better(const tm_repair_score *a, const tm_repair_score *b);
 
-/* The octants that hold a bad element, or, with `held`, one at a node that is off the
- * surface: ascending, malloc'ed. */
-tm_status tm_repair_bad_octants(const tm_repair_state *state, double threshold, bool held,
-                                uint32_t **octant, size_t *count, tm_error *error);
+/* The octants that hold a bad element, or, with `off_surface`, one at a node that is off
+ * the surface: ascending, malloc'ed. */
+tm_status tm_repair_bad_octants(const tm_repair_state *state, double threshold,
+                                bool off_surface, uint32_t **octant, size_t *count,
+                                tm_error *error);
 
 /* Adds the octants that have a node in common with the elements of those listed. */
 tm_status tm_repair_widen(const tm_repair_state *state, uint32_t **octant, size_t *count,

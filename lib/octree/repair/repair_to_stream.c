@@ -22,8 +22,8 @@ static void *renew(void **array, size_t count, size_t size)
 static void set_places(const tm_repair_state *state, tm_block *node)
 {
     for (size_t v = 0; v < node->count; v++)
-        node->attribute[v] = state->rule[v].off_surface ? -(double)state->place[v]
-                                                        : (double)state->place[v];
+        node->attribute[v] =
+            state->rule[v].off_surface ? -(double)state->on[v] : (double)state->on[v];
 }
 
 /* More rows of .node: nodes that were added are nothing special. */

@@ -18,8 +18,8 @@ static tm_status copy_nodes(const tm_repair_state *state, tm_stream *stream,
         return status;
     memcpy(node->real, state->mesh.xyz, state->mesh.nodes * sizeof *state->mesh.xyz);
     for (size_t v = 0; v < state->mesh.nodes; v++)
-        node->attribute[v] = state->rule[v].off_surface ? -(double)state->place[v]
-                                                        : (double)state->place[v];
+        node->attribute[v] =
+            state->rule[v].off_surface ? -(double)state->on[v] : (double)state->on[v];
     return TM_OK;
 }
 
