@@ -105,7 +105,7 @@ static tm_status visit(void *context, unsigned iteration, const tm_repair_state 
     assert_int_equal(tm_stream_find(&stream, ".mix")->count, state->mesh.elements);
     assert_int_equal(tm_stream_find(&stream, "surface.face")->count,
                      w->c->surface.triangles);
-    const tm_mesh_view arrays = tm_mixed_arrays_of(&stream);
+    const tm_mesh_view arrays = tm_mesh_view_of_mixed(&stream);
     tm_examination found;
     assert_ok(tm_element_examine(&found, &arrays, 1, error), error);
     assert_int_equal(found.defect[TM_UNMATCHED_FACE].count, 0);
@@ -132,7 +132,7 @@ static void check_stream(repair_case *c, const tm_repair_report *report)
               &error);
     assert_string_equal(c->notes.dropped, "");
     assert_int_equal(tm_stream_find(&c->stream, ".mix")->count, elements);
-    const tm_mesh_view arrays = tm_mixed_arrays_of(&c->stream);
+    const tm_mesh_view arrays = tm_mesh_view_of_mixed(&c->stream);
     assert_ok(tm_element_examine(&found, &arrays, 1, &error), &error);
     assert_int_equal(tm_examination_is_good(&found), report->after.invalid == 0);
     check_octants(&c->stream);

@@ -428,13 +428,13 @@ static void test_star(void **unused)
                 fmin(worst, tm_jens(star.start[p + 1] - star.start[p],
                                     (const double(*)[3])xyz, star.item + star.start[p]));
         assert_true(worst == star.worst);
-        const tm_mixed_arrays arrays = {.nodes = 9,
-                                        .xyz = (const double(*)[3])xyz,
-                                        .elements = star.parts,
-                                        .start = star.start,
-                                        .item = star.item};
+        const tm_mesh_view arrays = {.nodes = 9,
+                                     .xyz = (const double(*)[3])xyz,
+                                     .elements = star.parts,
+                                     .start = star.start,
+                                     .item = star.item};
         tm_examination found;
-        assert_ok(tm_mixed_examine(&found, &arrays, 1, &error), &error);
+        assert_ok(tm_element_examine(&found, &arrays, 1, &error), &error);
         assert_true(worst <= 0 || tm_examination_is_good(&found));
         assert_int_equal(found.boundary_faces, star.parts);
         cut += star.parts > 6;
