@@ -10,6 +10,7 @@ for name in sys.argv[1:]:
     text = open(name, encoding='utf-8').read()
     text = re.sub(r'/\*.*?\*/', ' ', text, flags=re.DOTALL)
     text = re.sub(r'^#(.*\\\n)*.*$', ' ', text, flags=re.MULTILINE)
+    text = re.sub(r'\bTM_EXTERN_C_\w+', ' ', text)
     for statement in re.split('[;{}]', text):
         declaration = ' '.join(statement.split())
         found = re.match(r'(.*?)\b(tm_\w+)\((.*\btm_error \*.*)', declaration)

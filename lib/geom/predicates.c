@@ -200,8 +200,8 @@ int tm_insphere_exact(const double a[3], const double b[3], const double c[3],
                       const double d[3], const double e[3])
 {
     enum { CORNERS = MAX_POINTS - 1 };
-    /* det of the rows (x, y, z, x² + y² + z²) expanded by the last column: the cofactor of
-     * row v has the other three rows in this order, which makes it count as +. */
+    /* det of the rows (x, y, z, x² + y² + z²) expanded by the last column: the cofactor
+     * of row v has the other three rows in this order, which makes it count as +. */
     static const size_t others[CORNERS][DIMENSIONS] = {
         {1, 2, 3}, {0, 3, 2}, {3, 0, 1}, {0, 2, 1}};
     const double *const point[MAX_POINTS] = {a, b, c, d, e};

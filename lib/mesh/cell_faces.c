@@ -111,19 +111,20 @@ static tm_status make_room(finder *find, size_t facets, size_t nodes, tm_error *
     return side && start && node ? TM_OK : tm_fail_memory(error);
 }
 
-/* Makes element e the other side of facet f, of which it has the polygon. */
+/* Makes element e the other side of facet f, of which it has the polygon; TM_NONE: of one
+ * that has both. */
 static tm_status meet(finder *find, uint32_t f, const uint32_t *polygon, size_t k,
                       uint32_t e, tm_error *error)
 {
-    uint32_t *side = find->faces->side[f];
     const char *block = find->block;
     unsigned base = find->base;
-    if (side[1] != TM_NONE || side[0] == e)
+    if (f == TM_NONE)
         return FAIL(block,
                     "element %zu: its face at nodes %u %u %u has two elements "
                     "already",
                     e + (size_t)base, polygon[0] + base, polygon[1] + base,
                     polygon[2] + base);
+    uint32_t *side = find->faces->side[f];
     const uint32_t *facet = find->faces->node + find->faces->start[f];
     if (tm_polygon_compare(facet, polygon, k) > 0 && sign_of(find, e) != 0 &&
         sign_of(find, side[0]) != 0)

@@ -335,10 +335,11 @@ tm_status tm_face_mates(uint32_t **mate, const tm_mesh_view *mesh, tm_error *err
     const size_t members = table.first_row + mesh->faces + mesh->facets;
     if (status == TM_OK) {
         *mate = tm_new(members, sizeof **mate);
-        status = *mate ? TM_OK : tm_fail_memory(error);
+        if (*mate)
+            memset(*mate, UINT8_MAX, members * sizeof **mate);
+        else
+            status = tm_fail_memory(error);
     }
-    if (status == TM_OK)
-        memset(*mate, UINT8_MAX, members * sizeof **mate);
     for (uint32_t v = 0; v < mesh->nodes && status == TM_OK; v++) {
         status = tm_face_table_at(&table, v, error);
         for (size_t f = 0; f < table.faces && status == TM_OK; f++)

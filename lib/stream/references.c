@@ -16,7 +16,7 @@ static const tm_block *sibling(const tm_block_names *names, const tm_block *bloc
 }
 
 static tm_status check_octants(const tm_block_names *names, const tm_block *block,
-                               const char *name, tm_error *error)
+                               const char *file, tm_error *error)
 {
     const tm_block *mix = sibling(names, block, ".mix");
     size_t limit = mix ? mix->count : 0, width = tm_block_integers(block->kind);
@@ -24,7 +24,7 @@ static tm_status check_octants(const tm_block_names *names, const tm_block *bloc
         const uint32_t *octant = block->integer + o * width;
         uint32_t first = octant[width - 2], past = octant[width - 1];
         if (first > past || past > limit)
-            return tm_fail_at(error, TM_ERROR_INPUT, name, 0, block->name,
+            return tm_fail_at(error, TM_ERROR_INPUT, file, 0, block->name,
                               "row %zu: elements %u…%u (of %zu in .mix)",
                               o + names->stream->base, first + names->stream->base,
                               past + names->stream->base, limit);
@@ -34,7 +34,7 @@ static tm_status check_octants(const tm_block_names *names, const tm_block *bloc
 
 /* The sides of facets are cells, or without .cell elements of .mix. */
 static tm_status check_facets(const tm_block_names *names, const tm_block *block,
-                              const char *name, tm_error *error)
+                              const char *file, tm_error *error)
 {
     const tm_block *cell = sibling(names, block, ".cell");
     const char *what = cell ? "cell" : "element";
@@ -44,7 +44,7 @@ static tm_status check_facets(const tm_block_names *names, const tm_block *block
         for (size_t side = 0; side < 2; side++) {
             uint32_t c = block->integer[2 * f + side];
             if (c != TM_NONE && c >= cell->count)
-                return tm_fail_at(error, TM_ERROR_INPUT, name, 0, block->name,
+                return tm_fail_at(error, TM_ERROR_INPUT, file, 0, block->name,
                                   "row %zu: %s %u is out of range (there are %zu)",
                                   f + names->stream->base, what, c + names->stream->base,
                                   cell->count);
@@ -53,21 +53,21 @@ static tm_status check_facets(const tm_block_names *names, const tm_block *block
 }
 
 static tm_status check_cells(const tm_block_names *names, const tm_block *block,
-                             const char *name, tm_error *error)
+                             const char *file, tm_error *error)
 {
     const tm_block *facet = sibling(names, block, ".facet");
     size_t limit = facet ? facet->count : 0;
     for (size_t c = 0; c < block->count; c++)
         for (size_t i = block->start[c]; i < block->start[c + 1]; i++)
             if (block->item[i] >= limit)
-                return tm_fail_at(error, TM_ERROR_INPUT, name, 0, block->name,
+                return tm_fail_at(error, TM_ERROR_INPUT, file, 0, block->name,
                                   "row %zu: facet %u is out of range (there are %zu)",
                                   c + names->stream->base,
                                   block->item[i] + names->stream->base, limit);
     return TM_OK;
 }
 
-tm_status tm_stream_check_references(const tm_block_names *names, const char *name,
+tm_status tm_stream_check_references(const tm_block_names *names, const char *file,
                                      tm_error *error)
 {
     const tm_stream *stream = names->stream;
@@ -75,11 +75,11 @@ tm_status tm_stream_check_references(const tm_block_names *names, const char *na
     for (size_t b = 0; b < stream->blocks && status == TM_OK; b++) {
         const tm_block *block = &stream->block[b];
         if (block->kind == TM_OCTANT)
-            status = check_octants(names, block, name, error);
+            status = check_octants(names, block, file, error);
         else if (block->kind == TM_FACET)
-            status = check_facets(names, block, name, error);
+            status = check_facets(names, block, file, error);
         else if (block->kind == TM_CELL)
-            status = check_cells(names, block, name, error);
+            status = check_cells(names, block, file, error);
     }
     return status;
 }

@@ -8,7 +8,8 @@ set -u
     echo "usage: same-bytes.sh OLD-BUILD NEW-BUILD" >&2
     exit 2
 }
-old=$(cd "$1" && pwd) new=$(cd "$2" && pwd) || exit 2
+old=$(cd "$1" && pwd) || exit 2
+new=$(cd "$2" && pwd) || exit 2
 work=$(mktemp -d) || exit 4
 trap 'rm -rf "$work"' EXIT
 mkdir "$work/in" "$work/old" "$work/new"
@@ -19,22 +20,25 @@ without_seconds() {
     find "$@" -type f -exec sed -i 's/"seconds": *[0-9.e+-]*//g' {} +
 }
 
+# run_in FOLDER BIN COMMAND
+run_in() {
+    (
+        cd "$1" || exit
+        PATH=$2:$PATH sh -c "$3" >stdout 2>stderr </dev/null
+        echo $? >status
+    )
+    without_seconds "$1"/*
+}
+
 # run NAME COMMAND… : in both builds, in folders of their own beside the input.
 run() {
     name=$1
     shift
     runs=$((runs + 1))
-    for build in old new; do
-        eval "path=\$$build/bin"
-        rm -rf "$work/$build"
-        mkdir "$work/$build"
-        (
-            cd "$work/$build" && PATH=$path:$PATH && export PATH
-            sh -c "$*" >stdout 2>stderr </dev/null
-            echo $? >status
-        )
-        without_seconds "$work/$build"/*
-    done
+    rm -rf "$work/old" "$work/new"
+    mkdir "$work/old" "$work/new"
+    run_in "$work/old" "$old/bin" "$*"
+    run_in "$work/new" "$new/bin" "$*"
     if diff -rq "$work/old" "$work/new" >"$work/diff"; then
         return
     fi
@@ -48,7 +52,7 @@ run() {
 make_input() {
     file=$1
     shift
-    (cd "$work/in" && PATH=$old/bin:$old/bench:$PATH && sh -c "$*" >"$file" 2>/dev/null)
+    (cd "$work/in" && PATH=$old/bin:$old/bench:$PATH sh -c "$*" >"$file" 2>/dev/null)
 }
 
 points() {

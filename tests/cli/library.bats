@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The library as another project meets it: installed headers in C and in C++, what it
 # exports, the example programs by pkg-config.
-# shellcheck disable=SC2046 # words of pkg-config
+# shellcheck disable=SC2046,SC2086 # words of pkg-config and of flags
 
 bats_require_minimum_version 1.5.0
 

@@ -330,7 +330,11 @@ END
     run -3 --separate-stderr visf-export three.tm
     [ "$stderr" = 'visf-export: three.tm: .ele: elements 0 and 1 are on the same side of '\
 'their face at nodes 0 3 1' ]
-    sed -i 's/^1 0 1 3 7/1 0 1 3 3/' three.tm
+    sed -i 's/^1 0 1 3 7/1 0 1 3 2/' three.tm
+    run -3 --separate-stderr visf-export three.tm
+    [ "$stderr" = 'visf-export: three.tm: .ele: element 2: its face at nodes 0 3 1 has '\
+'two elements already' ]
+    sed -i 's/^1 0 1 3 2/1 0 1 3 3/' three.tm
     run -3 --separate-stderr visf-export three.tm
     [ "$stderr" = 'visf-export: three.tm: .ele: element 1 has a node twice' ]
 }

@@ -244,10 +244,9 @@ static void check_polyhedra(const tm_stream *stream)
 static void check_mixed_elements(const tm_stream *stream)
 {
     tm_examination found, again;
-    tm_error error;
     const tm_mesh_view mesh = tm_mesh_view_of_mixed(stream);
-    require(tm_element_examine(&found, &mesh, 1, &error) == TM_OK &&
-                tm_element_examine(&again, &mesh, 2, &error) == TM_OK,
+    require(tm_element_examine(&found, &mesh, 1, NULL) == TM_OK &&
+                tm_element_examine(&again, &mesh, 2, NULL) == TM_OK,
             "mixed elements are not examined");
     require(memcmp(found.defect, again.defect, sizeof found.defect) == 0 &&
                 found.euler == again.euler && found.components <= mesh.elements &&

@@ -145,7 +145,8 @@ static void test_wrong_hub(void **state)
         number_nodes(number, kind);
         make_hub(&stream, number, 0, false);
         const tm_block *face = tm_stream_find(&stream, ".face");
-        memcpy(face->integer + 3, face->integer, 3 * sizeof *face->integer);
+        for (int i = 0; i < 3; i++)
+            face->integer[3 + i] = face->integer[i];
         assert_int_equal(tm_tet_mesh_from_stream(&mesh, &stream, &error), TM_ERROR_INPUT);
         assert_string_equal(error.block, ".face");
         tm_tet_mesh_free(&mesh);

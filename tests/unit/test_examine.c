@@ -30,7 +30,7 @@ static tm_examination examine(const tm_mesh_view *mesh)
 static tm_examination examine_points(const uint32_t (*tet)[4], size_t tets)
 {
     return examine(&(tm_mesh_view){
-        .nodes = POINTS, .xyz = points, .elements = tets, .item = tet[0]});
+        .nodes = POINTS, .xyz = points, .elements = tets, .item = tet ? tet[0] : NULL});
 }
 
 /* A kind of defects and how many of it there must be. */

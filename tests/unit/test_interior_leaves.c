@@ -372,10 +372,10 @@ static void check_elements(const tm_octree *octree, const tm_interior *interior,
     }
     tm_examination found;
     const tm_mesh_view arrays = {.nodes = mesh->nodes,
-                                    .xyz = (const double(*)[3])base,
-                                    .elements = mesh->elements,
-                                    .start = mesh->start,
-                                    .item = mesh->item};
+                                 .xyz = (const double(*)[3])base,
+                                 .elements = mesh->elements,
+                                 .start = mesh->start,
+                                 .item = mesh->item};
     assert_ok(tm_element_examine(&found, &arrays, 1, &error), &error);
     assert_true(tm_examination_is_good(&found));
     assert_int_equal(found.unused_nodes, 0);

@@ -7,6 +7,7 @@
 #include "../../lib/tet/lepp/lepp.h"
 #include "tet_fixture.h"
 
+/* The linker's names. NOLINTBEGIN(bugprone-reserved-identifier) */
 void *__real_malloc(size_t size);
 void *__real_calloc(size_t count, size_t size);
 void *__real_realloc(void *old, size_t size);
@@ -38,6 +39,8 @@ void *__wrap_realloc(void *old, size_t size)
 {
     return fails() ? NULL : __real_realloc(old, size);
 }
+
+/* NOLINTEND(bugprone-reserved-identifier) */
 
 typedef tm_status improver(tm_tet_mesh *mesh, tm_error *error);
 

@@ -21,10 +21,10 @@
 #include "null_error.h"
 
 #define main main_of_files
-#include "test_format_fuzz.c"
+#include "test_format_fuzz.c" /* NOLINT(bugprone-suspicious-include) */
 #undef main
 #define main main_of_streams
-#include "../fuzz/fuzz.c"
+#include "../fuzz/fuzz.c" /* NOLINT(bugprone-suspicious-include) */
 #undef main
 
 static void test_streams(void **state)

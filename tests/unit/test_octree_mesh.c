@@ -35,10 +35,10 @@ static void check_elements(const tm_octree_mesh *mesh)
                     0);
     assert_int_equal(mesh->report.invalid, 0);
     const tm_mesh_view arrays = {.nodes = m->nodes,
-                                    .xyz = xyz,
-                                    .elements = m->elements,
-                                    .start = m->start,
-                                    .item = m->item};
+                                 .xyz = xyz,
+                                 .elements = m->elements,
+                                 .start = m->start,
+                                 .item = m->item};
     assert_ok(tm_element_examine(&found, &arrays, 1, &error), &error);
     assert_true(tm_examination_is_good(&found));
     assert_int_equal(found.unused_nodes, 0);

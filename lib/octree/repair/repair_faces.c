@@ -6,8 +6,8 @@
 
 #include <stdlib.h>
 
-tm_status tm_mixed_boundary_faces(const tm_mixed_mesh *mesh, uint32_t **face, size_t *faces,
-                            tm_error *error)
+tm_status tm_mixed_boundary_faces(const tm_mixed_mesh *mesh, uint32_t **face,
+                                  size_t *faces, tm_error *error)
 {
     const tm_mesh_view view = {.nodes = mesh->nodes,
                                .elements = mesh->elements,

@@ -51,7 +51,9 @@ bool tm_replacement_table_reserve(tm_replacement_table *table, size_t old_count,
         return false;
     }
     tm_replacement_table_free(table);
-    *table = (tm_replacement_table){slot, state, room};
+    table->slot = slot;
+    table->state = state;
+    table->room = room;
     return true;
 }
 
