@@ -328,12 +328,23 @@ static bool have_same_nodes(const tm_face *f, const tm_face *g)
     return n[0] == m[0] && n[1] == m[1] && n[2] == m[2];
 }
 
+/* Whether all faces are triangles of two elements, and no row names one. */
+static bool is_plain(const tm_face_table *table)
+{
+    if (2 * table->faces != table->members)
+        return false;
+    for (size_t f = 0; f < table->faces; f++)
+        if (table->face[f].elements != 2 || table->face[f].opposite != TM_NONE)
+            return false;
+    return true;
+}
+
 /* Faces of the same nodes follow each other, whatever their cyclic order. */
 static bool take_faces(walk *w, uint32_t v)
 {
     const tm_face *before = NULL;
     bool enough = true;
-    if (!w->table.plain)
+    if (!is_plain(&w->table))
         tm_face_table_sort(&w->table);
     for (size_t f = 0; f < w->table.faces && enough; f++) {
         const tm_face *face = &w->table.face[f];

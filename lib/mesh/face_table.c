@@ -305,9 +305,6 @@ tm_status tm_face_table_at(tm_face_table *table, uint32_t v, tm_error *error)
             add_tet(table, v, item[i]);
         }
     }
-    table->plain = 2 * table->faces == table->members;
-    for (size_t f = 0; f < table->faces && table->plain; f++)
-        table->plain = table->face[f].elements == 2 && table->face[f].opposite == TM_NONE;
     return TM_OK;
 }
 

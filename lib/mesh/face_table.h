@@ -47,7 +47,6 @@ typedef struct tm_face_table {
     tm_face *face;
     size_t members;
     tm_face_member *member;
-    bool plain; /* all are triangles of two elements, and no row names one */
     tm_hash_table hash;
     size_t face_room, member_room, slot_room;
 } tm_face_table;

@@ -139,19 +139,26 @@ static bool is_folded(const tm_face_table *table, const tm_face *face)
     return face->elements == 2 && first->turned == table->member[first->next].turned;
 }
 
-/* Joins two tetrahedra at each face of a node; *folded as below. False, with the rest to
- * be forgotten, where they are of different regions. */
-static bool join_pairs(tm_tet_mesh *mesh, const tm_face_table *table, bool *folded)
+/* Joins the two tetrahedra of one region at each face of a node that no row names;
+ * *folded as below. Only the other faces are left in the table. */
+static void join_pairs(tm_tet_mesh *mesh, tm_face_table *table, bool *folded)
 {
+    size_t left = 0;
     for (size_t f = 0; f < table->faces; f++) {
-        const tm_face_member *first = &table->member[table->face[f].first];
-        const tm_face_member *second = &table->member[first->next];
-        if (mesh->regions > 0 && !same_region(mesh, first->id / 4, second->id / 4))
-            return false;
+        const tm_face *face = &table->face[f];
+        const tm_face_member *first = &table->member[face->first];
+        const tm_face_member *second = first;
+        if (face->elements == 2)
+            second = &table->member[first->next];
+        if (face->elements != 2 || second->next != TM_FACE_END ||
+            !same_region(mesh, first->id / 4, second->id / 4)) {
+            table->face[left++] = *face;
+            continue;
+        }
         *folded |= first->turned == second->turned;
         tm_tet_join(mesh, first->id, second->id);
     }
-    return true;
+    table->faces = left;
 }
 
 /* *folded: there are tetrahedra on the same side of a face, or flat ones. */
@@ -168,8 +175,9 @@ static tm_status connect_faces(tm_tet_mesh *mesh, const uint32_t (*listed)[3],
     tm_status status = tm_face_table_make(&table, &view, error);
     for (uint32_t v = 0; v < mesh->nodes && status == TM_OK; v++) {
         status = tm_face_table_at(&table, v, error);
-        if (status != TM_OK || (table.plain && join_pairs(mesh, &table, folded)))
-            continue;
+        if (status != TM_OK)
+            break;
+        join_pairs(mesh, &table, folded);
         tm_face_table_sort(&table);
         for (size_t f = 0; f < table.faces && status == TM_OK; f++) {
             *folded |= is_folded(&table, &table.face[f]);
