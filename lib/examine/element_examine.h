@@ -6,7 +6,6 @@
 
 #include "../base/extern_c.h"
 #include "../base/error.h"
-#include "../base/extern_c.h"
 #include "../mesh/mesh_view.h"
 #include "examination.h"
 
