@@ -6,8 +6,7 @@
 #include "../base/sum.h"
 #include "../geom/vector.h"
 #include "poly_boundary.h"
-#include "poly_examine_facets.h"
-#include "poly_measure.h"
+#include "poly_parts.h"
 
 #include <stdlib.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "poly_examine_facets.h"
+#include "poly_parts.h"
 
 #include "../base/array.h"
 #include "../base/disjoint_sets.h"

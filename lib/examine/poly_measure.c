@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "poly_measure.h"
+#include "poly_parts.h"
 
 #include "../base/sum.h"
 #include "../geom/predicates.h"

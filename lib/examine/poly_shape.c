@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "poly_shape.h"
+#include "poly_parts.h"
 
 #include "../base/array.h"
 #include "../geom/vector.h"
-#include "poly_measure.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -4,8 +4,7 @@
 #include "../base/array.h"
 #include "../base/parallel.h"
 #include "../base/sum.h"
-#include "poly_examine_facets.h"
-#include "poly_shape.h"
+#include "poly_parts.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -56,7 +56,7 @@ typedef struct tm_poly_statistics {
     double min_dihedral; /* degrees, up to 360 */
     double max_dihedral;
     tm_poly_range edge_ratio;    /* shortest edge over diameter */
-    tm_poly_range kernel_radius; /* see poly_shape.h */
+    tm_poly_range kernel_radius; /* see poly_parts.h */
     tm_poly_range kernel_ratio;
     size_t faces[TM_COUNT_BINS]; /* polyhedra by their facets, and */
     size_t tets[TM_COUNT_BINS];  /* by their tetrahedra, if input.elements > 0 */

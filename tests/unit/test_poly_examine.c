@@ -3,7 +3,7 @@
  * polyhedra. */
 #include "../../lib/examine/poly_boundary.h"
 #include "../../lib/examine/poly_examine.h"
-#include "../../lib/examine/poly_measure.h"
+#include "../../lib/examine/poly_parts.h"
 #include "random.h"
 #include "voxels.h"
 

@@ -1,15 +1,44 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The shape of one polyhedron: the indicators by which virtual element methods tell good
- * ones (T. Sorgente et al., Polyhedral mesh quality indicator for the virtual element
- * method, arXiv 2112.11365, 2021). */
-#ifndef TM_EXAMINE_POLY_SHAPE_H
-#define TM_EXAMINE_POLY_SHAPE_H
+/* What the examination and the statistics of polyhedra are made of, a file each. */
+#ifndef TM_EXAMINE_POLY_PARTS_H
+#define TM_EXAMINE_POLY_PARTS_H
 
-#include "../geom/kernel.h"
+#include "poly_examine.h"
 #include "poly_boundary.h"
+#include "../geom/kernel.h"
 
 #include <stdbool.h>
 #include <stddef.h>
+
+/* poly_examine_facets.c: how facets and cells fit together; a part of tm_poly_examine().
+ */
+
+/* Finds in *found: unmatched and repeated facets, those with a node twice, components,
+ * unused nodes, Euler number. Expected O(nodes + corners). */
+tm_status tm_poly_examine_facets(tm_examination *found, const tm_poly_arrays *mesh,
+                                 tm_error *error);
+
+/* poly_measure.c: volume and areas of a polyhedron by its boundary. */
+
+/* The vector area of a polygon, ½ Σ (x_i - x_0) × (x_(i+1) - x_0): normal to it, as long
+ * as its area where it is plane. O(count). */
+void tm_polygon_area(const double (*xyz)[3], const uint32_t *node, size_t count,
+                     double area[3]);
+
+/* The volume that the faces enclose, positive if their normals point outward: the sum of
+ * the tetrahedra of a node and the triangles into which each facet falls around its
+ * first node, which are the same for both its cells. *uncertain is what rounding may
+ * have made of it: 16 units of rounding of the sum of all magnitudes. O(corners). */
+double tm_poly_volume(const tm_poly_boundary *b, const double (*xyz)[3],
+                      double *uncertain);
+
+/* The sign of the volume: 0 where |volume| is at most *uncertain; a tetrahedron's sign is
+ * exact. The volume is written to *volume. O(corners). */
+int tm_poly_sign(const tm_poly_boundary *b, const double (*xyz)[3], double *volume);
+
+/* poly_shape.c: the shape of one polyhedron: the indicators by which virtual element
+ * methods tell good ones (T. Sorgente et al., Polyhedral mesh quality indicator for the
+ * virtual element method, arXiv 2112.11365, 2021). */
 
 /* A polyhedron is star-shaped if the radius of the largest ball in its kernel is more
  * than so many times its diameter. */
