@@ -45,8 +45,10 @@ has_p4est := $(shell $(CC) $(CPPFLAGS) $(MPI_CFLAGS) -E -x c -include p4est.h /d
 ifdef has_p4est
 LDLIBS += -Wl,--as-needed -lp4est -lsc $(MPI_LDLIBS) -Wl,--no-as-needed
 else
-left_out := octree-mesh octree-repair test_octree test_octree_mesh test_interior_leaves \
-	$(shell grep -l '^.include <p[48]est' lib/*/*.c lib/*/*/*.c 2>/dev/null)
+left_out := octree-mesh octree-repair $(wildcard lib/octree/layer/*.c lib/octree/repair/*.c) \
+	$(shell grep -lE '^.include.*(p[48]est|brick\.h|mpi_start)' lib/octree/forest/*.c) \
+	$(basename $(notdir $(shell grep -lE 'octree_build|octree/(layer|repair)|(octree|repair)_fixture' \
+		tests/unit/test_*.c)))
 endif
 
 FUZZ_CASES = 20000

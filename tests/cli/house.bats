@@ -339,6 +339,9 @@ examples() {
     without -n tests
     [[ "$output" == *tests/test_lepp* ]]
     [[ "$output" != *tests/test_octree* ]]
+    # Nothing in the shared library refers to what was left out.
+    echo 'int main(void) { return 0; }' >main.c
+    cc -o main main.c -Wl,--no-as-needed build/libtermesh.so.* -lgmp -lz -lm
     without clean
     [ "$output$stderr" = "" ]
     [ ! -e build ]
