@@ -58,7 +58,7 @@ ifneq ($(filter-out 0,$(SAN)),)
 override BUILD := $(BUILD)/san
 SANITIZE = -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 # No exit status of a filter's own.
-export ASAN_OPTIONS ?= exitcode=99
+export ASAN_OPTIONS ?= exitcode=99:allocator_may_return_null=1
 export UBSAN_OPTIONS ?= exitcode=99:print_stacktrace=1
 export LSAN_OPTIONS ?= exitcode=99
 endif

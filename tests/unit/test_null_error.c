@@ -60,11 +60,9 @@ static void test_surfaces(void **state)
                 assert_int_equal(
                     tm_polygon_surface_to_stream(&polygons, &stream, "surface", NULL),
                     TM_OK);
-                if (tm_surface_build(&surface, &polygons, &(tm_surface_options){0},
-                                     NULL) == TM_OK)
-                    tm_surface_free(&surface);
-                else
-                    wrong++;
+                wrong += tm_surface_build(&surface, &polygons, &(tm_surface_options){0},
+                                          NULL) != TM_OK;
+                tm_surface_free(&surface);
             }
             tm_polygon_surface_free(&polygons);
             tm_stream_free(&stream);
