@@ -7,7 +7,7 @@
 static tm_status read_m3d(const filter *f, tm_stream *stream, const tm_text *bytes,
                           tm_error *error)
 {
-    size_t materials;
+    size_t materials = 0;
     const tm_status status = tm_m3d_read(stream, bytes->byte, bytes->size,
                                          filter_input_name(f), &materials, error);
     if (status == TM_OK && materials > 0)

@@ -1,9 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Compiles everything, warnings being errors, with gcc and clang at all levels of
-# optimisation, at link time too, with the flags of Debian's packages, and without p4est.
-# In the folder $1/warnings, which is removed. Takes some ten minutes; used by make
-# warnings. Exit status 1 if there was a warning.
+# optimisation, at link time too, and with the flags of Debian's packages, in the folder
+# $1/warnings, which is removed. Takes some ten minutes; used by make warnings. Exit status
+# 1 if there was a warning.
 set -u
 build=${1:-build}/warnings
 cd "$(dirname "$0")/.." || exit 1
