@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 static const char count_format[] = "%.0f"; /* a count, as a double */
 
@@ -13,12 +14,14 @@ static const void *member(const tm_report_row *row, const void *of)
 
 static int64_t integer_of(const tm_report_row *row, const void *of)
 {
-    const char *member = (const char *)of + row->offset;
+    unsigned small;
+    size_t size;
+    int64_t number;
     if (row->type == TM_REPORT_UNSIGNED)
-        return *(const unsigned *)member;
+        return *(const unsigned *)memcpy(&small, member(row, of), sizeof small);
     if (row->type == TM_REPORT_INTEGER)
-        return *(const int64_t *)member;
-    return (int64_t) * (const size_t *)member;
+        return *(const int64_t *)memcpy(&number, member(row, of), sizeof number);
+    return (int64_t) * (const size_t *)memcpy(&size, member(row, of), sizeof size);
 }
 
 static double number_of(const tm_report_row *row, const void *of)
