@@ -6,6 +6,7 @@
 
 #include "../../lib/element/certify.h"
 #include "../../lib/examine/element_examine.h"
+#include "../../lib/octree/forest/mpi_start.h"
 #include "../../lib/octree/layer/octree_mesh.h"
 #include "../../lib/octree/layer/octree_mesh_stream.h"
 #include "../../lib/octree/repair/repair_boundary.h"
@@ -255,6 +256,14 @@ static inline void check_state(const tm_repair_state *s, const tm_surface *surfa
         assert_ok(tm_octree_check(&s->octree, NULL, &error), &error);
     if (surface)
         check_points(s, surface);
+}
+
+/* For all tests of a program. */
+static inline int start_mpi(void **unused)
+{
+    (void)unused;
+    tm_error error;
+    return tm_mpi_start(&error) == TM_OK ? 0 : -1;
 }
 
 #endif

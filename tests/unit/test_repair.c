@@ -344,13 +344,6 @@ static void test_alone(void **unused)
     end_case(&c);
 }
 
-static int start_mpi(void **unused)
-{
-    (void)unused;
-    tm_error error;
-    return tm_mpi_start(&error) == TM_OK ? 0 : -1;
-}
-
 int main(void)
 {
     random_start();

@@ -482,13 +482,6 @@ static void test_rules(void **unused)
     }
 }
 
-static int start_mpi(void **unused)
-{
-    (void)unused;
-    tm_error error;
-    return tm_mpi_start(&error) == TM_OK ? 0 : -1;
-}
-
 int main(void)
 {
     random_start();
