@@ -20,6 +20,7 @@ static const char shared_help[] =
     "  %s --threads N     use N threads; the output is the same for every N\n"
     "      --json FILE     write a JSON report to FILE\n"
     "      --no-history    do not add a history line\n"
+    "      --strict        refuse what the output cannot carry, instead of a note\n"
     "  %s --quiet         no notes on standard error\n"
     "  -v, --verbose       more notes\n"
     "  -h, --help          this text\n"
@@ -97,6 +98,24 @@ void filter_fail(const filter *f, const tm_error *error)
     fprintf(stderr, "%s\n", error->what);
     output_files_abandon(f->files);
     exit((int)error->status);
+}
+
+void filter_leave_out(const filter *f, const char *format, ...)
+{
+    tm_error error = {.status = TM_ERROR_INPUT};
+    const size_t size = sizeof error.what;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(error.what, size, format, arguments);
+    va_end(arguments);
+    if (!f->strict) {
+        filter_note(f, "%s: %s: left out", filter_input_name(f), error.what);
+        return;
+    }
+    const size_t length = strlen(error.what);
+    snprintf(error.what + length, size - length, ": the output cannot carry it");
+    snprintf(error.file, sizeof error.file, "%s", filter_input_name(f));
+    filter_fail(f, &error);
 }
 
 double filter_number(const filter *f, const char *option, const char *text, double lo,
@@ -206,6 +225,9 @@ static bool take_shared(filter *f, int c)
         return true;
     case FILTER_NO_HISTORY:
         f->history = false;
+        return true;
+    case FILTER_STRICT:
+        f->strict = true;
         return true;
     default:
         return false;

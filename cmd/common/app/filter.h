@@ -39,6 +39,7 @@ enum { EXIT_GOAL = 1, EXIT_USAGE = 2 };
     {"verbose", no_argument, NULL, 'v'}, \
     {"json", required_argument, NULL, FILTER_JSON}, \
     {"no-history", no_argument, NULL, FILTER_NO_HISTORY}, \
+    {"strict", no_argument, NULL, FILTER_STRICT}, \
     {"threads", required_argument, NULL, FILTER_THREADS}, \
     {NULL, 0, NULL, 0}
 /* clang-format on */
@@ -49,6 +50,7 @@ enum {
     FILTER_JSON = 256,
     FILTER_QUIET,
     FILTER_NO_HISTORY,
+    FILTER_STRICT,
     FILTER_THREADS,
     FILTER_OWN = 512 /* a filter numbers its own long-only options from here */
 };
@@ -72,6 +74,7 @@ typedef struct filter {
     const char *json;   /* NULL: none */
     int verbosity;      /* -1 quiet, 0, 1 verbose */
     bool history;
+    bool strict; /* what the output cannot carry is an error */
     unsigned threads;
     tm_text command;     /* the options as given, for the history */
     output_files *files; /* -o FILE in the making */
@@ -109,6 +112,11 @@ _Noreturn void filter_fail(const filter *f, const tm_error *error);
 void filter_note(const filter *f, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 void filter_verbose(const filter *f, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/* What of the input is not in the output: "3 edges (.edge)". A note that says so, or with
+ * --strict an error, exit 3; before anything is written. */
+void filter_leave_out(const filter *f, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
 /* The input's name for messages: the file, or "<stdin>". */
