@@ -11,6 +11,7 @@
 #include "base/json.h"
 #include "base/number.h"
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "base/report.h"
 #include "base/text.h"
 #include "base/version.h"

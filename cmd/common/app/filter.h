@@ -22,6 +22,7 @@
 #include "../../../lib/base/version.h"
 #include "../../../lib/stream/stream.h"
 #include "output_files.h"
+#include "progress.h"
 
 #include <getopt.h>
 #include <stdbool.h>
@@ -78,6 +79,7 @@ typedef struct filter {
     unsigned threads;
     tm_text command;     /* the options as given, for the history */
     output_files *files; /* -o FILE in the making */
+    progress *progress;  /* NULL until all options are known */
     tm_text report;      /* of --json, in the making */
     tm_json json_object;
 } filter;
@@ -107,6 +109,16 @@ _Noreturn void filter_usage_error(const filter *f, const char *format, ...)
 
 /* "name: file:line: block: what", then exit with error->status. */
 _Noreturn void filter_fail(const filter *f, const tm_error *error);
+
+/* What the library is to be given where it takes a tm_progress. */
+const tm_progress *filter_progress(const filter *f);
+
+/* A stage of the filter's own begins: "drawing". */
+void filter_stage(const filter *f, const char *what);
+
+/* A line on stderr as it is. */
+void filter_print(const filter *f, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 
 /* One line on stderr, "name: …": note() unless -q, verbose() with -v only. */
 void filter_note(const filter *f, const char *format, ...)
