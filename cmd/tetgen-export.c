@@ -60,6 +60,7 @@ static void write_files(const tm_stream *stream, const char *base, tm_json *json
 {
     output_files files = {0};
     tm_error error;
+    filter_stage(&f, "writing");
     tm_status status = TM_OK;
     for (size_t b = 0; b < stream->blocks && status == TM_OK; b++)
         if (is_tetgen_block(&stream->block[b]))

@@ -15,6 +15,7 @@ TM_EXTERN_C_BEGIN
 /* Where it is; what is not known, or does not apply, is 0. */
 typedef struct tm_progress_at {
     const char *what;    /* the stage, "improving": a string that stays */
+    const char *doing;   /* what of it: another one, or NULL */
     size_t pass;         /* which of its passes, from 1 */
     size_t done, of;     /* so many of all steps of the stage or, if it has some, pass */
     bool bytes;          /* the steps are bytes of a file */

@@ -390,6 +390,7 @@ void filter_write(filter *f, tm_stream *stream, const char *summary, ...)
     }
     tm_error error;
     int fd = open_output(f);
+    stream->progress = filter_progress(f);
     if (tm_stream_write(stream, fd, f->threads, &error) != TM_OK)
         filter_fail(f, &error);
 }

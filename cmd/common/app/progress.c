@@ -79,6 +79,8 @@ void progress_line(char line[PROGRESS_LINE], const char *name, const tm_progress
 {
     line[0] = '\0';
     add(line, "%s: %s", name, at->what);
+    if (at->doing)
+        add(line, ": %s", at->doing);
     if (at->pass > 0)
         add(line, ", pass %zu", at->pass);
     if (at->all_bad > 0) {

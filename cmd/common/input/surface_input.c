@@ -169,6 +169,7 @@ void surface_input_build(const filter *f, const tm_surface_options *options,
     tm_stream stream;
     tm_error error;
     surface_input_read(f, &polygons, &stream);
+    filter_stage(f, "building the surface");
     if (tm_surface_build(surface, &polygons, options, &error) != TM_OK) {
         if (!error.file[0])
             snprintf(error.file, sizeof error.file, "%s", filter_input_name(f));
