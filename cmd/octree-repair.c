@@ -300,6 +300,7 @@ static bool run(program *p, tm_stream *stream)
     tm_repair_notes notes = {0};
     tm_repair_report report;
     const clock_t start = clock();
+    filter_stage(&p->f, "examining");
     if (tm_repair_from_stream(&state, stream, &error) != TM_OK)
         fail(p, &error);
     if (tm_repair_is_needed(&state, stream, p->repair.threshold) || p->trace)
