@@ -137,7 +137,7 @@ $(bin): $(BUILD)/bin/%: $(BUILD)/cmd/%.o $(common) $(library)
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) $(LDLIBS)
 
-$(unit_tests): $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(library)
+$(unit_tests): $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(common) $(library)
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lcmocka $(LDLIBS)
 

@@ -16,6 +16,7 @@ static tm_status improve_all(tm_lepp_engine *e)
     e->report->passes++;
     e->at.pass = e->report->passes;
     e->at.of = e->targets;
+    e->at.all_bad = e->at.bad > e->at.all_bad ? e->at.bad : e->at.all_bad;
     for (size_t i = 0; i < e->targets && status == TM_OK; i++) {
         uint32_t t = e->target[i];
         tm_progress_step(e->options->progress, &e->at, i);
