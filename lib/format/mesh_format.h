@@ -79,10 +79,12 @@ tm_status tm_vtu_write(tm_text *text, const tm_stream *stream, unsigned threads,
 enum { TM_GETFEM_ELEMENTS = 1000000 };
 
 /* Appends the file to *text: mixed elements, tetrahedra or, where there are neither,
- * triangles in space. Faces of elements that .face gives a marker m > 0 are the region m,
+ * triangles in space. Faces of elements that .face, or .facet beside .mix, gives a marker
+ * m > 0 are the region m,
  * elements whose first attribute is a whole number r >= 0 the region
  * TM_GETFEM_ELEMENTS + r; triangles with a marker m > 0 the region m.
- * A face between two elements is in the region as that of the first.
+ * A face between two elements is in the region as that of the first. The names of .group
+ * stand in comments, "% REGION 3: inlet".
  * TM_ERROR_INPUT for other contents, where a marker or attribute is TM_GETFEM_ELEMENTS or
  * more, and where two nodes are in one place, which GetFEM refuses. `threads` format.
  * Expected O(n), but for the regions, which are sorted: O(n log n). */
