@@ -31,10 +31,11 @@ static const char *read_operands(void)
     return base;
 }
 
-static bool is_tetgen_block(const tm_block *block)
+/* TetGen does not look at a .group file, but tetgen-import does. */
+static bool is_written(const tm_block *block)
 {
     return block->kind == TM_NODE || block->kind == TM_ELE || block->kind == TM_FACE ||
-           block->kind == TM_EDGE;
+           block->kind == TM_EDGE || block->kind == TM_GROUP;
 }
 
 /* BASE.ele, or BASE.surface.face of a part. */
@@ -62,7 +63,7 @@ static void write_files(const tm_stream *stream, const char *base, tm_json *json
     tm_error error;
     tm_status status = TM_OK;
     for (size_t b = 0; b < stream->blocks && status == TM_OK; b++)
-        if (is_tetgen_block(&stream->block[b]))
+        if (is_written(&stream->block[b]))
             status = write_block(stream, &stream->block[b], base, &files, &error);
         else
             filter_note(&f, "%s is not written: TetGen has no such file",

@@ -222,6 +222,7 @@ teardown() {
     }' >many.tm
     sed -n '/^.node/,/^.ele/p' many.tm | sed '1d; $d' >many.node
     sed '/^.ele/,/^20000 1/d' many.tm >many-nodes.tm
+    { sed '$d' many-nodes.tm; printf '.ele\n0 4 0\n.end\n'; } >many-empty.tm
     awk '/^\.ele/ { print ".face\n20000 0"; getline; faces = 1; next }
         faces && NF == 5 { NF = 4 } { print }' many.tm >faces.tm
     { printf '2 0\n20000\n'; sed 1d many.node | cut -d ' ' -f 2-; } >many.visf
@@ -230,7 +231,7 @@ teardown() {
         case $1 in
         tet-stats) command="tet-stats --list many.tm" ;;
         jens-stats) command="jens-stats -l many.tm" ;;
-        lepp-improve) command="lepp-improve -q many-nodes.tm" ;;
+        lepp-improve) command="lepp-improve -q many-empty.tm" ;;
         tetgen-import) command="tetgen-import many.node" ;;
         tetgen-mesh) command="tetgen-mesh --quiet many.node" ;;
         octree-mesh) command="octree-mesh -q surface.tm" ;;

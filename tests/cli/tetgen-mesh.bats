@@ -75,7 +75,7 @@ fan_volume() {
     run --separate-stderr tetgen-mesh mesh.tm
     [ "$status" -eq 3 ]
     [ -z "$output" ]
-    [[ $stderr == 'tetgen-mesh: mesh.tm: surface.node: the stream has no such block'* ]]
+    [[ $stderr == 'tetgen-mesh: mesh.tm: holds tetrahedra (.ele), but tetgen-mesh takes points'* ]]
 }
 
 @test "polygons need no cutting" {

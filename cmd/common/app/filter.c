@@ -3,6 +3,7 @@
 
 #include "../../../lib/base/file.h"
 #include "../../../lib/base/number.h"
+#include "kinds.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -315,7 +316,8 @@ void filter_read(const filter *f, tm_stream *stream)
     tm_error error;
     int fd = open_input(f);
     tm_stream_init(stream);
-    if (tm_stream_read(stream, fd, filter_input_name(f), &error) != TM_OK)
+    if (tm_stream_read(stream, fd, filter_input_name(f), &error) != TM_OK ||
+        kinds_check(f->name, stream, filter_input_name(f), &error) != TM_OK)
         filter_fail(f, &error);
     if (f->input)
         close(fd);

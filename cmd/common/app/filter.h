@@ -126,7 +126,8 @@ const char *filter_input_name(const filter *f);
 void filter_read_bytes(const filter *f, tm_text *bytes);
 void filter_read_file(const filter *f, const char *file, tm_text *bytes);
 
-/* Reads the stream from FILE or standard input. */
+/* Reads the stream from FILE or standard input; what it holds is what the filter takes
+ * (kinds.h). */
 void filter_read(const filter *f, tm_stream *stream);
 
 /* Adds the history line "name version options: summary" (unless --no-history) and

@@ -29,13 +29,8 @@ size_t mesh_rows(const tm_stream *stream, const char *name)
 
 tm_content mesh_input_read(const filter *f, tm_stream *stream)
 {
-    tm_error error;
     filter_read(f, stream);
     const tm_content content = tm_content_of(stream);
-    if (content == TM_CONTENT_NOTHING) {
-        tm_fail(&error, TM_ERROR_INPUT, "has no nodes (.node)");
-        mesh_input_fail(f, &error);
-    }
     if (content == TM_CONTENT_TETRAHEDRA)
         mesh_input_turn(f, stream, tm_content_block(stream, content), "are turned");
     return content;

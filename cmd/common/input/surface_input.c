@@ -3,6 +3,7 @@
 
 #include "../../../lib/base/file.h"
 #include "../../../lib/mesh/cell_faces.h"
+#include "../app/kinds.h"
 #include "../../../lib/format/tetgen.h"
 
 #include <errno.h>
@@ -81,15 +82,18 @@ static tm_status copy_nodes(const tm_block *node, tm_polygon_surface *surface,
     return status;
 }
 
-/* A main mesh that is triangles alone becomes the part `surface`, unless there is one. */
+/* A main mesh that is triangles or points alone becomes the part `surface`, unless there
+ * is one. */
 static void rename_surface(tm_stream *stream)
 {
     if (tm_stream_find(stream, "surface.node") ||
         tm_stream_find(stream, "surface.face") ||
-        tm_content_of(stream) != TM_CONTENT_SURFACE)
+        tm_content_of(stream) > TM_CONTENT_SURFACE || !tm_stream_find(stream, ".node"))
         return;
     strcpy(tm_stream_find(stream, ".node")->name, "surface.node");
-    strcpy(tm_stream_find(stream, ".face")->name, "surface.face");
+    tm_block *face = tm_stream_find(stream, ".face");
+    if (face)
+        strcpy(face->name, "surface.face");
     tm_block *group = tm_stream_find(stream, ".group");
     if (group)
         strcpy(group->name, "surface.group");
@@ -129,6 +133,8 @@ tm_format surface_input_read(const filter *f, tm_polygon_surface *surface,
     const tm_format format = tm_format_of(bytes.byte, bytes.size, name);
     if (format == TM_FORMAT_STREAM) {
         status = read_stream(&bytes, name, stream, &error);
+        if (status == TM_OK)
+            status = kinds_check(f->name, stream, name, &error);
         if (status == TM_OK) {
             rename_surface(stream);
             status = surface_input_of_stream(stream, name, surface, &error);
