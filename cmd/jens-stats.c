@@ -90,7 +90,7 @@ static options read_options(filter *f)
 /* Those of .mix or, where there are none, of .ele, which are turned if they must be. */
 static tm_elements read_elements(const filter *f, tm_stream *stream)
 {
-    filter_read(f, stream);
+    mesh_input_read_to_compute(f, stream);
     const tm_block *node = tm_stream_find(stream, ".node");
     const tm_block *mix = tm_stream_find(stream, ".mix");
     tm_block *ele = tm_stream_find(stream, ".ele");

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* poly-stats: how many polyhedra are simple and star-shaped, and how good they are. */
-#include "common/app/filter.h"
+#include "common/input/mesh_input.h"
 #include "common/plot/plot.h"
 
 enum { OPTION_PLOT = FILTER_OWN };
@@ -61,7 +61,7 @@ int main(int argc, char **argv)
 
     tm_stream stream;
     tm_poly_statistics statistics;
-    filter_read(&f, &stream);
+    mesh_input_read_to_compute(&f, &stream);
     measure(&f, &stream, &statistics);
     if (plot)
         write_plot(&f, plot, &statistics);

@@ -35,7 +35,7 @@ typedef struct mesh {
 
 static void read_mesh(const filter *f, mesh *m)
 {
-    filter_read(f, &m->stream);
+    mesh_input_read_to_compute(f, &m->stream);
     const tm_block *node = tm_stream_find(&m->stream, ".node");
     tm_block *ele = tm_stream_find(&m->stream, ".ele");
     m->xyz = node ? (const double(*)[3])node->real : NULL;

@@ -4,6 +4,7 @@
 #include "common/input/surface_input.h"
 #include "common/process/tetgen.h"
 
+#include "../lib/stream/coordinates.h"
 #include "../lib/surface/surface_defects.h"
 #include "../lib/format/tetgen.h"
 
@@ -228,6 +229,9 @@ int main(int argc, char **argv)
     tm_format format = surface_input_read(&f, &surface, &input);
     tm_surface_defects defects;
     tm_error error;
+    if (tm_coordinates_check((const double(*)[3])surface.xyz, surface.nodes, surface.base,
+                             &error) != TM_OK)
+        mesh_input_fail(&f, &error);
     if (tm_surface_find_defects(&surface, &defects, &error) != TM_OK)
         filter_fail(&f, &error);
     check_surface(&surface, &defects, format, &request);

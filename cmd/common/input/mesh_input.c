@@ -2,6 +2,7 @@
 #include "mesh_input.h"
 
 #include "../../../lib/format/tetgen.h"
+#include "../../../lib/stream/coordinates.h"
 
 #include <stdio.h>
 
@@ -25,6 +26,14 @@ size_t mesh_rows(const tm_stream *stream, const char *name)
 {
     const tm_block *block = tm_stream_find(stream, name);
     return block ? block->count : 0;
+}
+
+void mesh_input_read_to_compute(const filter *f, tm_stream *stream)
+{
+    tm_error error;
+    filter_read(f, stream);
+    if (tm_stream_check_coordinates(stream, &error) != TM_OK)
+        mesh_input_fail(f, &error);
 }
 
 tm_content mesh_input_read(const filter *f, tm_stream *stream)

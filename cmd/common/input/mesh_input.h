@@ -12,6 +12,10 @@
  * they are not looked at. Exits on failure. */
 tm_content mesh_input_read(const filter *f, tm_stream *stream);
 
+/* What measures a mesh reads it so: coordinates that are too large or too small to
+ * compute with (lib/stream/coordinates.h) are refused, too. */
+void mesh_input_read_to_compute(const filter *f, tm_stream *stream);
+
 /* Turns the left-handed tetrahedra of .ele, with a note: "… were left-handed and WHAT".
  */
 void mesh_input_turn(const filter *f, const tm_stream *stream, tm_block *ele,
