@@ -245,12 +245,12 @@ int main(int argc, char **argv)
         filter_note(&f, "%zu tetrahedra that TetGen made are flat", turned.flat);
     if (keep_parts(&input, &mesh, &error) != TM_OK)
         filter_fail(&f, &error);
-    filter_write(&f, &mesh, "%zu nodes, %zu tetrahedra", mesh_rows(&mesh, ".node"),
-                 mesh_rows(&mesh, ".ele"));
     if (f.json) {
         mesh_rows_json(filter_json_begin(&f), &mesh);
         filter_json_end(&f);
     }
+    filter_write(&f, &mesh, "%zu nodes, %zu tetrahedra", mesh_rows(&mesh, ".node"),
+                 mesh_rows(&mesh, ".ele"));
     tm_stream_free(&mesh);
     tm_stream_free(&input);
     tm_polygon_surface_free(&surface);
