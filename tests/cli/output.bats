@@ -167,15 +167,17 @@ write_each() {
     [[ "$stderr" == "off-export: circle: cannot write: "* ]]
 }
 
-@test "-o /dev/stdout, a descriptor and a pipe are written as they are" {
+@test "-o on what leads to a descriptor, as /dev/stdout does: it is written as it is" {
     off-export corner.tm >expected
-    off-export -o /dev/stdout corner.tm >file
+    ln -s /proc/self/fd/1 stdout # not that of /dev, which a fault would remove
+    off-export -o stdout corner.tm >file
+    [ -L stdout ]
     cmp file expected
     exec 7>file
     off-export -o /dev/fd/7 corner.tm
     exec 7>&-
     cmp file expected
-    off-export -o /dev/stdout corner.tm | cmp - expected
+    off-export -o stdout corner.tm | cmp - expected
     [ "$(find . -name '*termesh*')" = "" ]
 }
 
