@@ -8,6 +8,7 @@
 #include "group_names.h"
 #include "row.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -34,6 +35,18 @@ const char *tm_group_find(const tm_block *group, tm_group_dimension dimension,
         if (group->marker[g] == value && tm_group_dimension_of(group, g) == dimension)
             return tm_group_name(group, g);
     return NULL;
+}
+
+bool tm_group_region(const tm_block *cells, size_t e, int32_t *region)
+{
+    const size_t which = cells->kind == TM_CELL;
+    if (which >= cells->attributes)
+        return false;
+    const double value = cells->attribute[e * cells->attributes + which];
+    if (!(value >= INT32_MIN && value <= INT32_MAX) || value != floor(value))
+        return false;
+    *region = (int32_t)value;
+    return true;
 }
 
 void tm_group_init(tm_block *group, const char *name)
