@@ -217,3 +217,39 @@ write_each() {
     done
     run -0 script -qec "visf-export corner.tm" /dev/null </dev/null
 }
+
+@test "--plot: what is no picture is refused, also where gnuplot says that all is well" {
+    mkdir bin
+    echo old >figure.svg
+    for made in '' 'echo nonsense' 'head -c 9999 /bin/sh' 'printf "<?xml version=\"1.0\"?>\n<svg>"' \
+        'echo "<svg></svg>"; exit 1'; do
+        printf '#!/bin/sh\n%s\n' "$made" >bin/gnuplot
+        chmod +x bin/gnuplot
+        for filter in tet-stats jens-stats poly-stats; do
+            PATH=$PWD/bin:$PATH run -4 --separate-stderr "$filter" --plot figure.svg "$(input "$filter")"
+            [ "$output" = "" ]
+            [[ "$stderr" == "$filter: gnuplot "* ]]
+            [ "$(cat figure.svg)" = old ]
+        done
+    done
+    printf '#!/bin/sh\ncat >script\necho "<svg></svg>"\n' >bin/gnuplot
+    PATH=$PWD/bin:$PATH tet-stats --plot figure.svg corner.tm
+    [ "$(cat figure.svg)" = "<svg></svg>" ]
+    grep '^unset multiplot' script
+}
+
+@test "--plot needs no folder for temporary files, and writes through a link" {
+    command -v gnuplot >/dev/null || skip "there is no gnuplot"
+    ln -s picture figure.svg
+    # shellcheck disable=SC2030
+    for TMPDIR in nowhere "$PWD"; do
+        export TMPDIR
+        tet-stats --plot figure.svg corner.tm >table
+        [ -L figure.svg ]
+        python3 -c 'import sys, xml.etree.ElementTree as x; x.parse(sys.argv[1])' picture
+        rm picture
+    done
+    run -4 --separate-stderr tet-stats --plot nowhere/figure.svg corner.tm
+    [ "$output" = "" ]
+    [[ "$stderr" == "tet-stats: nowhere/figure.svg: cannot write: "* ]]
+}

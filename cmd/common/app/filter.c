@@ -165,6 +165,7 @@ void filter_start(filter *f, int argc, char **argv)
 {
     occupy_standard_descriptors();
     signal(SIGPIPE, SIG_DFL);
+    signal(SIGXFSZ, SIG_IGN);  /* a file that may not grow is an error of write() */
     static output_files files; /* filter_fail(), which gets f as const, tidies them up */
     f->files = &files;
     f->argc = argc;

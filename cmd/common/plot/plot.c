@@ -66,7 +66,7 @@ static bool is_picture(const tm_text *figure)
 {
     static const char xml[] = "<?xml", svg[] = "<svg", end[] = "</svg>";
     size_t size = figure->size;
-    if (figure->size < sizeof xml + sizeof end ||
+    if (size < strlen(xml) + strlen(end) ||
         (memcmp(figure->byte, xml, strlen(xml)) != 0 &&
          memcmp(figure->byte, svg, strlen(svg)) != 0))
         return false;
