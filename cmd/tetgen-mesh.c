@@ -227,9 +227,14 @@ int main(int argc, char **argv)
     tm_stream input, mesh;
     tm_format format = surface_input_read(&f, &surface, &input);
     tm_surface_defects defects;
+    size_t dropped;
     tm_error error;
-    if (tm_surface_find_defects(&surface, &defects, &error) != TM_OK)
+    if (tm_surface_drop_duplicates(&surface, &dropped, &error) != TM_OK ||
+        tm_surface_find_defects(&surface, &defects, &error) != TM_OK)
         filter_fail(&f, &error);
+    if (dropped > 0)
+        filter_note(&f, "faces in the place of an earlier one, which are dropped: %zu",
+                    dropped);
     check_surface(&surface, &defects, format, &request);
     tm_stream_init(&mesh);
     mesh.base = surface.base;
