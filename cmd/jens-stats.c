@@ -307,13 +307,13 @@ int main(int argc, char **argv)
     const tm_elements elements = read_elements(&f, &stream);
     if (tm_jens_statistics_measure(&statistics, &elements, &o.request, &error) != TM_OK)
         filter_fail(&f, &error);
-    write_files(&f, &o, &statistics);
-    write_report(&f, &o, &elements, &statistics, stream.base);
     if (f.json) {
         tm_jens_statistics_json(filter_json_begin(&f), &statistics, &o.request,
                                 stream.base);
         filter_json_end(&f);
     }
+    write_files(&f, &o, &statistics);
+    write_report(&f, &o, &elements, &statistics, stream.base);
     const bool good = is_good(&f, &o, &statistics);
     tm_stream_free(&stream);
     return filter_finish(&f, good ? 0 : EXIT_GOAL);

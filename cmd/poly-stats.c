@@ -63,13 +63,13 @@ int main(int argc, char **argv)
     tm_poly_statistics statistics;
     mesh_input_read_to_compute(&f, &stream);
     measure(&f, &stream, &statistics);
-    if (plot)
-        write_plot(&f, plot, &statistics);
-    write_report(&f, &statistics);
     if (f.json) {
         tm_poly_statistics_json(filter_json_begin(&f), &statistics);
         filter_json_end(&f);
     }
+    if (plot)
+        write_plot(&f, plot, &statistics);
+    write_report(&f, &statistics);
     tm_stream_free(&stream);
     return filter_finish(&f, 0);
 }

@@ -224,8 +224,6 @@ int main(int argc, char **argv)
     tm_stream_init(&stream);
     read_files(&stream, &named);
     tm_turned turned = orient_all(&stream);
-    filter_write(&f, &stream, "%zu nodes, %zu tetrahedra", mesh_rows(&stream, ".node"),
-                 mesh_rows(&stream, ".ele"));
     if (f.json) {
         tm_json *json = filter_json_begin(&f);
         mesh_rows_json(json, &stream);
@@ -233,6 +231,8 @@ int main(int argc, char **argv)
         tm_json_integer(json, "flat", (int64_t)turned.flat);
         filter_json_end(&f);
     }
+    filter_write(&f, &stream, "%zu nodes, %zu tetrahedra", mesh_rows(&stream, ".node"),
+                 mesh_rows(&stream, ".ele"));
     tm_stream_free(&stream);
     free(named.file);
     free(named.stem);

@@ -78,8 +78,8 @@ int mesh_write(filter *f, mesh_writer *write)
     mesh_input_read(f, &stream);
     if (write(&text, &stream, f->threads, &error) != TM_OK)
         mesh_input_fail(f, &error);
-    filter_write_text(f, &text);
     mesh_input_report(f, &stream);
+    filter_write_text(f, &text);
     tm_text_free(&text);
     tm_stream_free(&stream);
     return filter_finish(f, 0);
@@ -137,8 +137,8 @@ int mesh_import(int argc, char **argv, const char *name, const char *purpose,
     if (read(&f, &stream, &bytes, &error) != TM_OK)
         filter_fail(&f, &error);
     tm_text_free(&bytes);
-    write_imported(&f, &stream);
     mesh_input_report(&f, &stream);
+    write_imported(&f, &stream);
     tm_stream_free(&stream);
     return filter_finish(&f, 0);
 }

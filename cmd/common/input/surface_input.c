@@ -4,6 +4,7 @@
 #include "../../../lib/base/file.h"
 #include "../../../lib/mesh/cell_faces.h"
 #include "../app/kinds.h"
+#include "../../../lib/surface/surface_defects.h"
 #include "../../../lib/format/tetgen.h"
 
 #include <errno.h>
@@ -176,6 +177,48 @@ static void note_mending(const filter *f, const tm_surface *s)
                     s->crossings);
 }
 
+/* For messages: what to do with several regions. */
+static const char one_solid[] =
+    "one solid is filled; 'tetgen-mesh FILE | off-export' makes its outer surface";
+
+/* Walls inside: no edge is open, but some have an odd number of faces, so that both sides
+ * of one of these are in the solid. */
+static void refuse_walls(const filter *f, tm_polygon_surface *polygons)
+{
+    tm_error error;
+    tm_surface_defects defects;
+    size_t dropped;
+    if (tm_surface_drop_duplicates(polygons, &dropped, &error) != TM_OK ||
+        tm_surface_find_defects(polygons, &defects, &error) != TM_OK)
+        filter_fail(f, &error);
+    if (defects.open_edges > 0 || defects.odd_edges == 0)
+        return;
+    tm_fail_at(&error, TM_ERROR_INPUT, filter_input_name(f), 0, NULL,
+               "the surface has walls inside, between several regions: %zu edges have "
+               "three faces, or another odd number, and none is open (%s)",
+               defects.odd_edges, one_solid);
+    filter_fail(f, &error);
+}
+
+/* Regions are told apart by walls, or are in what would be left empty as a cavity. */
+static void check_regions(const filter *f, const tm_polygon_surface *polygons,
+                          const tm_surface *surface)
+{
+    tm_error error;
+    for (size_t r = 0; r < polygons->regions; r++) {
+        const double *p = polygons->region[r].point;
+        if (tm_surface_has_inside(surface, p))
+            continue;
+        tm_fail_at(&error, TM_ERROR_INPUT, filter_input_name(f), 0, NULL,
+                   "region %zu, at (%g, %g, %g), is outside, or in a cavity that would "
+                   "be left empty (%s)",
+                   r + 1, p[0], p[1], p[2], one_solid);
+        filter_fail(f, &error);
+    }
+    if (polygons->regions > 1)
+        filter_leave_out(f, "%zu regions (%s)", polygons->regions, one_solid);
+}
+
 void surface_input_build(const filter *f, const tm_surface_options *options,
                          tm_surface *surface, tm_stream *history)
 {
@@ -183,11 +226,15 @@ void surface_input_build(const filter *f, const tm_surface_options *options,
     tm_stream stream;
     tm_error error;
     surface_input_read(f, &polygons, &stream);
-    if (tm_surface_build(surface, &polygons, options, &error) != TM_OK) {
+    const tm_status status = tm_surface_build(surface, &polygons, options, &error);
+    if (status == TM_ERROR_INPUT || (status == TM_OK && surface->open_edges > 0))
+        refuse_walls(f, &polygons);
+    if (status != TM_OK) {
         if (!error.file[0])
             snprintf(error.file, sizeof error.file, "%s", filter_input_name(f));
         filter_fail(f, &error);
     }
+    check_regions(f, &polygons, surface);
     tm_polygon_surface_free(&polygons);
     if (history) {
         tm_stream_init(history);
