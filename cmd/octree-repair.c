@@ -323,10 +323,10 @@ static bool run(program *p, tm_stream *stream)
     if (notes.dropped[0])
         filter_note(&p->f, "dropped, as they refer to what is no more: %s",
                     notes.dropped);
-    filter_write(&p->f, stream, "%zu elements of %zu, bad %zu of %zu", after.elements,
-                 before.elements, report.after.bad, report.before.bad);
     write_json(&p->f, &before, &after, &report,
                (double)(clock() - start) / CLOCKS_PER_SEC);
+    filter_write(&p->f, stream, "%zu elements of %zu, bad %zu of %zu", after.elements,
+                 before.elements, report.after.bad, report.before.bad);
     tm_repair_state_free(&state);
     return done;
 }

@@ -32,6 +32,7 @@ static void read_options(filter *f)
         switch (c) {
         case OPTION_BINARY:
             visf.order = read_order(f, optarg);
+            f->binary = true;
             break;
         case OPTION_NEIGHBOURS:
             visf.neighbours = true;

@@ -4,11 +4,24 @@
 
 #include "../lib/format/mesh_format.h"
 
+static const struct option long_options[] = {FILTER_OPTIONS};
+
 int main(int argc, char **argv)
 {
-    return mesh_export(
-        argc, argv, "vtu-export",
-        "Writes points, triangles, tetrahedra, mixed elements or polyhedra as\n"
-        "an unstructured grid of VTK (.vtu), which ParaView shows.",
-        tm_vtu_write);
+    filter f = {
+        .name = "vtu-export",
+        .synopsis = "[options] [FILE]",
+        .purpose =
+            "Writes points, triangles, tetrahedra, mixed elements or polyhedra as\n"
+            "an unstructured grid of VTK (.vtu), which ParaView shows.",
+        .help = "",
+        .options = long_options,
+        .letters = FILTER_LETTERS,
+        .binary = true,
+    };
+    filter_start(&f, argc, argv);
+    while (filter_option(&f) != -1)
+        ;
+    filter_operands(&f);
+    return mesh_write(&f, tm_vtu_write);
 }

@@ -20,6 +20,8 @@
 #include "geom/vector.h"
 
 /* stream: the stream and its blocks */
+#include "stream/coordinates.h"
+#include "stream/group.h"
 #include "stream/stream.h"
 
 /* element: shapes and measures of one element */

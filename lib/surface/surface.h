@@ -10,7 +10,8 @@
 
 TM_EXTERN_C_BEGIN
 
-/* Sharp edges are chained to curves that end at corners: nodes where another number than
+/* An edge is sharp where the normals beside it differ, and where the markers do. Sharp
+ * edges are chained to curves that end at corners: nodes where another number than
  * two sharp edges meet, or where two meet at a sharp angle that the next node of the
  * curve does not take back, and tips, where the angles of the triangles sum up to less
  * than 180°. An open edge is sharp. A rough surface has many short curves: see
@@ -22,6 +23,7 @@ typedef struct tm_surface {
     size_t triangles;
     uint32_t (*triangle)[3]; /* seen from outside they turn counter-clockwise */
     int32_t *marker;         /* [triangles], or NULL where the file has none */
+    tm_block group;          /* the names of markers: group.h */
     uint32_t *facet;         /* [triangles]: the facet of the file it is from */
     uint32_t *origin;        /* [nodes]: the node of the file */
     uint32_t (*across)[3];   /* the triangle beyond the edge from corner i to i + 1;
@@ -71,11 +73,11 @@ typedef struct tm_surface_options {
  * on both sides of each solid wedge become neighbours, by the file's orientation.
  *
  * TM_ERROR_INPUT, with counts and a position, in the numbers of the file, where nothing
- * is left, coordinates are not finite or beyond 1e100, a facet has several polygons or
- * holes; and unless lenient where an edge has one triangle, or more than two that do not
- * pair, where a shell cannot be oriented, or where two triangles meet otherwise than in
- * common nodes and edges, exactly (touching is meeting). With lenient the surface is cut
- * open at edges of the third and fourth kind.
+ * is left, coordinates are too large or too small (stream/coordinates.h), a facet has
+ * several polygons or holes; and unless lenient where an edge has one triangle, or more
+ * than two that do not pair, where a shell cannot be oriented, or where two triangles meet
+ * otherwise than in common nodes and edges, exactly (touching is meeting). With lenient
+ * the surface is cut open at edges of the third and fourth kind.
  *
  * *surface need not be initialised; tm_surface_free() also after an error.
  * O(n log n). */
