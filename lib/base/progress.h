@@ -34,11 +34,7 @@ static inline void tm_progress_tell(const tm_progress *progress, const tm_progre
 }
 
 /* A stage begins of which nothing more is said. */
-static inline void tm_progress_stage(const tm_progress *progress, const char *what)
-{
-    const tm_progress_at at = {.what = what};
-    tm_progress_tell(progress, &at);
-}
+void tm_progress_stage(const tm_progress *progress, const char *what);
 
 /* In a loop, before step `done`: tells each 64th one. */
 static inline void tm_progress_step(const tm_progress *progress, tm_progress_at *at,
