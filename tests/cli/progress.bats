@@ -18,7 +18,7 @@ setup() {
     export TERM=xterm
 }
 
-# Runs a command with a terminal as standard error and the most of FILE on standard input,
+# Runs a command with a terminal of its own as standard error and the most of FILE on standard input,
 # until WAIT is on the terminal or, where WAIT is a number, for so many seconds; then does
 # THEN: "rest", the rest of FILE follows; "end", it does not; "INT" or another signal, the
 # command gets that; else it is a shell command. Prints what was on the terminal, with
@@ -33,7 +33,9 @@ most = data[:-20]
 master, slave = pty.openpty()
 size = struct.pack('HHHH', 24, int(os.environ.get('COLUMNS', 80)), 0, 0)
 fcntl.ioctl(slave, termios.TIOCSWINSZ, size)
-child = subprocess.Popen(command, stdin=subprocess.PIPE, stderr=slave)
+child = subprocess.Popen(
+    command, stdin=subprocess.PIPE, stderr=slave, start_new_session=True,
+    preexec_fn=lambda: fcntl.ioctl(2, termios.TIOCSCTTY, 0))
 os.close(slave)
 child.stdin.write(most)
 child.stdin.flush()
@@ -108,8 +110,10 @@ END
     [[ "$output" == '\roff-export: reading\e[K'*'\r\e[K' ]]
 }
 
-@test "no line: with -q, of a filter that waits, on a terminal that is dumb or none" {
+@test "no line: with -q, in the background, of a filter that waits, where none can be" {
     run -0 watch sphere.tm 1 rest off-export -q -o "$out/off"
+    [ -z "$output" ]
+    run -0 watch sphere.tm 1 rest bash -mc 'off-export -o "$1" <&0 & wait' sh "$out/off"
     [ -z "$output" ]
     TERM=dumb run -0 watch sphere.tm 1 rest off-export -o "$out/off"
     [ -z "$output" ]

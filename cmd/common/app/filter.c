@@ -22,8 +22,8 @@ static const char shared_help[] =
     "      --json FILE     write a JSON report to FILE\n"
     "      --no-history    do not add a history line\n"
     "      --strict        refuse what the output cannot carry, instead of a note\n"
-    "  %s --quiet         no notes on standard error\n"
-    "  -v, --verbose       more notes\n"
+    "  %s --quiet         no notes and no progress on standard error\n"
+    "  -v, --verbose       more notes, and the time that each stage takes\n"
     "  -h, --help          this text\n"
     "  -V, --version       the version\n";
 
