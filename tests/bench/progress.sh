@@ -31,7 +31,7 @@ compare() {
     lines=$(tr -cd '\r' <"$work/typescript" | wc -c)
     awk -v q="$quiet" -v t="$told" -v lines="$lines" -v what="$*" 'BEGIN {
         gsub(/[^ ]*\//, "", what)
-        printf "%-44s %12d, drawn %5d times: %+.3f %% (at most 0.5)\n", what, q, lines,
+        printf "%-44s %13.0f, drawn %5d times: %+.3f %% (at most 0.5)\n", what, q, lines,
             100 * (t - q) / q
     }'
 }
