@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What filters say while they work: the line on a terminal, and the stages of -v.
-# shellcheck disable=SC2154 # run sets stderr
+# shellcheck disable=SC2016,SC2154 # for an inner shell; run sets stderr
 
 bats_require_minimum_version 1.5.0
 
