@@ -18,7 +18,8 @@
 /* geom: predicates and kernels */
 #include "geom/vector.h"
 
-/* stream: the stream and its blocks */
+/* stream: the stream and its blocks; what other files look like */
+#include "stream/sniff.h"
 #include "stream/stream.h"
 
 /* element: shapes and measures of one element */

@@ -101,6 +101,9 @@ long filter_integer(const filter *f, const char *option, const char *text, long 
 int filter_word(const filter *f, const char *option, const char *const *word, int count,
                 const char *given);
 
+/* "usage: name synopsis" */
+void filter_usage(const filter *f, FILE *to);
+
 /* "name: message", then exit 2, pointing to --help. */
 _Noreturn void filter_usage_error(const filter *f, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
@@ -108,7 +111,15 @@ _Noreturn void filter_usage_error(const filter *f, const char *format, ...)
 /* "name: file:line: block: what", then exit with error->status. */
 _Noreturn void filter_fail(const filter *f, const tm_error *error);
 
-/* One line on stderr, "name: …": note() unless -q, verbose() with -v only. */
+/* The same of bytes that a reader refused; `reader` is the filter that reads the format.
+ * Where they look like what another one reads, that is said. */
+_Noreturn void filter_fail_file(const filter *f, tm_error *error, const tm_text *bytes,
+                                const char *reader);
+
+/* One line on stderr, "name: …": note() unless -q, verbose() with -v only. Bytes that a
+ * terminal would obey are shown as \x1b. */
+void filter_message(const filter *f, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 void filter_note(const filter *f, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 void filter_verbose(const filter *f, const char *format, ...)
