@@ -19,6 +19,7 @@
 #include "geom/vector.h"
 
 /* stream: the stream and its blocks; what other files look like */
+#include "stream/group.h"
 #include "stream/sniff.h"
 #include "stream/stream.h"
 

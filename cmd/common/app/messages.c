@@ -3,47 +3,23 @@
  * terminal would obey is shown as \x1b. */
 #include "filter.h"
 
+#include "../../../lib/base/utf8.h"
 #include "../../../lib/stream/sniff.h"
 
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* The size of a letter of UTF-8 that is no control sign (U+0080 … U+009F are), or 0. The
- * text ends with a NUL. */
-static size_t letter(const unsigned char *at)
-{
-    enum { DELETE = 0x7f };
-    /* Of the first byte and of the second. */
-    static const unsigned char range[][4] = {
-        {0xc2, 0xc2, 0xa0, 0xbf}, {0xc3, 0xdf, 0x80, 0xbf}, {0xe0, 0xe0, 0xa0, 0xbf},
-        {0xe1, 0xec, 0x80, 0xbf}, {0xed, 0xed, 0x80, 0x9f}, {0xee, 0xef, 0x80, 0xbf},
-        {0xf0, 0xf0, 0x90, 0xbf}, {0xf1, 0xf3, 0x80, 0xbf}, {0xf4, 0xf4, 0x80, 0x8f}};
-    if (*at < DELETE)
-        return *at >= ' ';
-    for (size_t r = 0; r < sizeof range / sizeof *range; r++) {
-        if (*at < range[r][0] || *at > range[r][1])
-            continue;
-        const size_t size = *at < 0xe0 ? 2 : *at < 0xf0 ? 3 : 4;
-        if (at[1] < range[r][2] || at[1] > range[r][3])
-            return 0;
-        for (size_t i = 2; i < size; i++)
-            if ((at[i] & 0xc0) != 0x80)
-                return 0;
-        return size;
-    }
-    return 0;
-}
-
 static void append_shown(tm_text *line, const char *string)
 {
-    const unsigned char *at = (const unsigned char *)string;
-    while (*at) {
-        const size_t size = letter(at);
-        if (size > 0)
-            tm_text_append(line, (const char *)at, size);
+    const char *end = string + strlen(string);
+    for (const char *at = string; at < end;) {
+        const size_t size = tm_utf8_size(at, end);
+        if (size > 0 && !tm_utf8_is_control(at, size))
+            tm_text_append(line, at, size);
         else
-            tm_text_format(line, "\\x%02x", *at);
+            for (size_t i = 0; i == 0 || i < size; i++)
+                tm_text_format(line, "\\x%02x", (unsigned char)at[i]);
         at += size > 0 ? size : 1;
     }
 }
