@@ -13,6 +13,7 @@
 #include "base/parallel.h"
 #include "base/report.h"
 #include "base/text.h"
+#include "base/utf8.h"
 #include "base/version.h"
 
 /* geom: predicates and kernels */

@@ -77,7 +77,7 @@ static const row words[] = {
     {"GRID", {"a Nastran input file", NONE_YET}},
     {"/*--", {"an OpenFOAM file", NONE_YET}},
     {"FoamFile", {"an OpenFOAM file", NONE_YET}},
-    {"{", {"JSON", NONE}},
+    {"{\"", {"JSON", NONE}},
 };
 
 static bool begins(const char *at, const char *end, const char *with)
@@ -164,11 +164,13 @@ static bool is_iges(const char *at, const char *end)
            !memchr(at, '\n', LINE);
 }
 
-/* Behind comments of its own, of which Gmsh's sections are none. */
-static bool is_nastran(const char *at, const char *end)
+/* What stands behind comments that begin with another sign, if that is the kind of file
+ * that has such comments. */
+static const tm_look *look_behind(const char *at, const char *end, char comment,
+                                  const char *kind)
 {
-    const tm_look *look = LOOK_UP(words, first_line(at, end, '$'), end);
-    return *at == '$' && look && strstr(look->what, "Nastran");
+    const tm_look *look = LOOK_UP(words, first_line(at, end, comment), end);
+    return *at == comment && look && strstr(look->what, kind) ? look : NULL;
 }
 
 /* Numbers -------------------------------------------------------------------------- */
@@ -284,9 +286,12 @@ tm_look tm_look_at(const char *bytes, size_t size)
         return look_at_sections(at, end);
     if (*at == '<')
         return look_at_markup(at, end);
-    if (is_nastran(at, end))
-        return (tm_look){"a Nastran input file", NONE_YET};
-    if (is_iges(at, end))
+    known = look_behind(at, end, '$', "Nastran");
+    if (!known)
+        known = look_behind(at, end, '%', "GetFEM");
+    if (known)
+        return *known;
+    if (is_iges(bytes, end))
         return (tm_look){"an IGES file", NONE_YET};
     return look_at_numbers(at, end);
 }

@@ -157,7 +157,7 @@ teardown() {
     refuses() {
         run -2 --separate-stderr "$1" --no-such-option corner.tm
         [ "$output" = "" ]
-        [[ "$stderr" == "$1: option '--no-such-option' is unknown"* ]]
+        [[ "$stderr" == "$1: unknown option '--no-such-option'"* ]]
         [[ "$stderr" == *"usage: $1 "* ]]
     }
     for_each_filter refuses

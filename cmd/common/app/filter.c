@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "filter.h"
+#include "completion.h"
 
 #include "../../../lib/base/file.h"
 
@@ -40,6 +41,8 @@ void filter_start(filter *f, int argc, char **argv)
     f->history = true;
     f->threads = 1;
     opterr = 0;
+    if (argc == 2 && strcmp(argv[1], "--completion") == 0)
+        filter_print_completion(f);
 }
 
 const char *filter_input_name(const filter *f)
@@ -52,8 +55,11 @@ static int open_file(const filter *f, const char *file)
     int fd = open(file, O_RDONLY | O_CLOEXEC);
     if (fd < 0) {
         tm_error error;
-        tm_fail_at(&error, TM_ERROR_SYSTEM, file, 0, NULL, "cannot open: %s",
-                   strerror(errno));
+        char why[FILTER_APART];
+        const int cause = errno;
+        filter_explain_apart(f, file, why);
+        tm_fail_at(&error, TM_ERROR_SYSTEM, file, 0, NULL, "cannot open: %s%s",
+                   strerror(cause), why);
         filter_fail(f, &error);
     }
     return fd;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The command line: options and operands. */
 #include "filter.h"
+#include "wrong_option.h"
 
 #include "../../../lib/base/number.h"
 
@@ -8,7 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { THREADS_MAX = 256 };
+enum { THREADS_MAX = 256, OPTION_NAME = 64 };
 
 static const char shared_help[] =
     "  -o, --output FILE   write to FILE instead of standard output, whole or not at "
@@ -49,16 +50,54 @@ long filter_integer(const filter *f, const char *option, const char *text, long 
     return (long)value;
 }
 
-int filter_word(const filter *f, const char *option, const char *const *word, int count,
-                const char *given)
+/* The row of an option that takes one of some words, or NULL. */
+static const filter_words *words_of(const filter *f, int option)
 {
-    char all[256] = "";
-    for (int k = 0; k < count; k++) {
-        if (strcmp(word[k], given) == 0)
-            return k;
-        snprintf(all + strlen(all), sizeof all - strlen(all), k ? ", %s" : "%s", word[k]);
+    for (const filter_words *row = f->words; row && row->first; row++)
+        if (row->option == option)
+            return row;
+    return NULL;
+}
+
+const char *filter_word_of(const filter_words *row, int k)
+{
+    return *(const char *const *)((const char *)row->first + (size_t)k * row->stride);
+}
+
+/* "-a", or where it has no letter "--ops". */
+static void name_option(const filter *f, int option, char name[OPTION_NAME])
+{
+    const struct option *o = f->options;
+    if (option < FILTER_JSON) {
+        snprintf(name, OPTION_NAME, "-%c", option);
+        return;
     }
-    filter_usage_error(f, "%s: '%s' is none of %s", option, given, all);
+    while (o->name && o->val != option)
+        o++;
+    snprintf(name, OPTION_NAME, "--%s", o->name ? o->name : "");
+}
+
+int filter_find_word(const filter *f, int option, const char *given)
+{
+    const filter_words *row = words_of(f, option);
+    for (int k = 0; k < row->count; k++)
+        if (strcmp(filter_word_of(row, k), given) == 0)
+            return k;
+    return -1;
+}
+
+int filter_word(const filter *f, int option, const char *given)
+{
+    char all[256] = "", name[OPTION_NAME];
+    const filter_words *row = words_of(f, option);
+    const int found = filter_find_word(f, option, given);
+    if (found >= 0)
+        return found;
+    for (int k = 0; k < row->count; k++)
+        snprintf(all + strlen(all), sizeof all - strlen(all), k ? ", %s" : "%s",
+                 filter_word_of(row, k));
+    name_option(f, option, name);
+    filter_usage_error(f, "%s: '%s' is none of %s", name, given, all);
 }
 
 _Noreturn static void help(const filter *f)
@@ -129,24 +168,60 @@ static bool take_shared(filter *f, int c)
     }
 }
 
+static bool is_optional(const char *letters, int c)
+{
+    const char *at = strchr(letters, c);
+    return at && at[1] == ':' && at[2] == ':';
+}
+
+/* An argument that may lack is not taken from the next word; whoever thought so is told,
+ * once that word turns out to be wrong as an operand. */
+static void remember_apart(filter *f, int c, int index)
+{
+    if (index >= 0 ? f->options[index].has_arg != optional_argument
+                   : !is_optional(f->letters, c))
+        return;
+    if (optarg || optind >= f->argc || *f->argv[optind] == '-')
+        return;
+    f->apart = f->argv[optind];
+    if (index >= 0)
+        snprintf(f->apart_option, sizeof f->apart_option,
+                 "--%s=", f->options[index].name);
+    else
+        snprintf(f->apart_option, sizeof f->apart_option, "-%c", c);
+}
+
 int filter_option(filter *f)
 {
     for (;;) {
         int index = -1;
         int c = getopt_long(f->argc, f->argv, f->letters, f->options, &index);
-        if (c == '?' && optopt > 0 && optopt < FILTER_JSON)
-            filter_usage_error(f, "option -%c is unknown or lacks its argument", optopt);
         if (c == '?')
-            filter_usage_error(f,
-                               "option '%s' is unknown, ambiguous or lacks its argument",
-                               f->argv[optind - 1]);
+            filter_wrong_option(f);
         if (c == -1)
             return -1;
         if (take_shared(f, c))
             continue;
         remember(f, c, index);
+        remember_apart(f, c, index);
         return c;
     }
+}
+
+void filter_explain_apart(const filter *f, const char *operand, char text[FILTER_APART])
+{
+    *text = '\0';
+    if (operand && operand == f->apart && access(operand, F_OK) != 0)
+        snprintf(text, FILTER_APART, " (if %s belongs to the option: %s%s)", operand,
+                 f->apart_option, operand);
+}
+
+_Noreturn static void fail_operands(const filter *f)
+{
+    char why[FILTER_APART];
+    filter_explain_apart(f, f->input, why);
+    filter_usage_error(f, "one FILE at most, but there is also '%s'%s", f->argv[optind],
+                       why);
 }
 
 void filter_operands(filter *f)
@@ -154,8 +229,7 @@ void filter_operands(filter *f)
     if (optind < f->argc)
         f->input = f->argv[optind++];
     if (optind < f->argc)
-        filter_usage_error(f, "one FILE at most, but there is also '%s'",
-                           f->argv[optind]);
+        fail_operands(f);
     if (f->input && strcmp(f->input, "-") == 0)
         f->input = NULL;
     if (!f->input && isatty(STDIN_FILENO)) {
