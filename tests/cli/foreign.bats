@@ -87,6 +87,7 @@ cube_tm() {
 
 # What no filter reads, by the words that say what it is.
 write_others() {
+    # shellcheck disable=SC2016 # their dollar signs
     printf '$MeshFormat\n4.1 0 8\n$EndMeshFormat\n' >'a Gmsh mesh.none'
     printf 'MeshVersionFormatted 2\nDimension 3\n' >'a Medit mesh.none'
     printf '# made by hand\nmesh3d\n' >'a Netgen mesh.none'

@@ -358,6 +358,8 @@ examples() {
     for filter in $filters; do
         [ -x "to/usr/bin/$filter" ]
         [ -f "to/usr/share/man/man1/$filter.1" ]
+        [ -f "to/usr/share/bash-completion/completions/$filter" ]
+        [ -f "to/usr/share/zsh/site-functions/_$filter" ]
     done
     [ -f to/usr/share/man/man5/termesh-stream.5 ]
     [ -f to/usr/share/man/man7/termesh.7 ]

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "completion.h"
 
-#include <string.h>
-
 static void print_words(const filter *f, int option)
 {
     for (const filter_words *row = f->words; row && row->first; row++)
@@ -10,16 +8,14 @@ static void print_words(const filter *f, int option)
             printf(" %s", filter_word_of(row, k));
 }
 
-/* Letters that are no option of the table, as -j of --threads. */
-static void print_letters(const filter *f)
+/* The letter of an option; of those that every filter has, unless it is another one's. */
+static char letter_of(const filter *f, int option)
 {
-    for (const char *at = f->letters; *at; at++) {
-        const struct option *o = f->options;
-        while (o->name && o->val != *at)
-            o++;
-        if (*at != ':' && !o->name)
-            printf("%c - %s\n", *at, at[1] == ':' ? "required" : "none");
-    }
+    if (option == FILTER_QUIET)
+        return f->q_is_own ? '-' : 'q';
+    if (option == FILTER_THREADS)
+        return f->j_is_own ? '-' : 'j';
+    return option < FILTER_JSON ? (char)option : '-';
 }
 
 void filter_print_completion(const filter *f)
@@ -28,11 +24,9 @@ void filter_print_completion(const filter *f)
                                            [required_argument] = "required",
                                            [optional_argument] = "optional"};
     for (const struct option *o = f->options; o->name; o++) {
-        printf("%c %s %s", o->val < FILTER_JSON ? o->val : '-', o->name,
-               argument[o->has_arg]);
+        printf("%c %s %s", letter_of(f, o->val), o->name, argument[o->has_arg]);
         print_words(f, o->val);
         puts("");
     }
-    print_letters(f);
     filter_exit_after_text(f);
 }
