@@ -128,8 +128,9 @@ static void read_block(const char *file, tm_block *block, const tm_block *node,
 {
     tm_text bytes = {0};
     filter_read_file(&f, file, &bytes);
-    succeed(tm_tetgen_read(block, bytes.byte, bytes.size, file, base,
-                           node ? node->count : 0, &error));
+    if (tm_tetgen_read(block, bytes.byte, bytes.size, file, base, node ? node->count : 0,
+                       &error) != TM_OK)
+        filter_fail_file(&f, &error, &bytes, f.name);
     tm_text_free(&bytes);
 }
 

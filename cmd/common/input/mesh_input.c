@@ -135,7 +135,7 @@ int mesh_import(int argc, char **argv, const char *name, const char *purpose,
     tm_stream_init(&stream);
     filter_read_bytes(&f, &bytes);
     if (read(&f, &stream, &bytes, &error) != TM_OK)
-        filter_fail(&f, &error);
+        filter_fail_file(&f, &error, &bytes, name);
     tm_text_free(&bytes);
     mesh_input_report(&f, &stream);
     write_imported(&f, &stream);

@@ -36,6 +36,8 @@ static tm_status read_nodes_beside(const filter *f, tm_polygon_surface *surface,
     filter_read_file(f, file.byte, &bytes);
     const tm_status status =
         tm_plc_read(surface, TM_PLC_NODE, bytes.byte, bytes.size, file.byte, error);
+    if (status != TM_OK)
+        filter_fail_file(f, error, &bytes, "tetgen-import");
     tm_text_free(&file);
     tm_text_free(&bytes);
     return status;
@@ -148,9 +150,11 @@ tm_format surface_input_read(const filter *f, tm_polygon_surface *surface,
             status =
                 tm_format_read(surface, format, bytes.byte, bytes.size, name, &error);
     }
-    tm_text_free(&bytes);
+    if (status != TM_OK && format > TM_FORMAT_STREAM)
+        filter_fail_file(f, &error, &bytes, "tetgen-mesh");
     if (status != TM_OK)
         filter_fail(f, &error);
+    tm_text_free(&bytes);
     filter_verbose(f, "%s: %s, %zu nodes, %zu faces", name, tm_format_name(format),
                    surface->nodes, surface->facets);
     return format;
