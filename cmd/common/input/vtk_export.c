@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "vtk_export.h"
+
+#include "mesh_input.h"
+
+enum { OPTION_NO_BOUNDARY = FILTER_OWN, OPTION_NO_QUALITY };
+
+static const struct option long_options[] = {
+    {"no-boundary", no_argument, NULL, OPTION_NO_BOUNDARY},
+    {"no-quality", no_argument, NULL, OPTION_NO_QUALITY},
+    FILTER_OPTIONS};
+
+static tm_vtk_options options = {.boundary = true, .quality = true};
+static vtk_writer *writer;
+
+static tm_status write_grid(tm_text *text, const tm_stream *stream, unsigned threads,
+                            tm_error *error)
+{
+    return writer(text, stream, &options, threads, error);
+}
+
+int vtk_export(int argc, char **argv, const char *name, const char *purpose,
+               vtk_writer *write)
+{
+    filter f = {
+        .name = name,
+        .synopsis = "[--no-boundary] [--no-quality] [FILE]",
+        .purpose = purpose,
+        .help = "      --no-boundary   no cells for marked triangles, facets and edges\n"
+                "      --no-quality    no quality of cells\n",
+        .options = long_options,
+        .letters = FILTER_LETTERS,
+    };
+    int c;
+    writer = write;
+    filter_start(&f, argc, argv);
+    while ((c = filter_option(&f)) != -1) {
+        if (c == OPTION_NO_BOUNDARY)
+            options.boundary = false;
+        else
+            options.quality = false;
+    }
+    filter_operands(&f);
+    return mesh_write(&f, write_grid);
+}
