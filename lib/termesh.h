@@ -19,6 +19,7 @@
 #include "geom/vector.h"
 
 /* stream: the stream and its blocks */
+#include "stream/group.h"
 #include "stream/stream.h"
 
 /* element: shapes and measures of one element */

@@ -146,6 +146,8 @@ static tm_status read_header(reader *r, tm_block *block, size_t *rows)
         if (is == TM_HEADER_MARKERS && number != 0 && number != 1)
             return FAIL(r, block->name, "the header says %lld for markers (0 or 1)",
                         (long long)number);
+        if (is == TM_HEADER_ZERO && number != 0)
+            return FAIL(r, block->name, "the header says %lld (0)", (long long)number);
         if (is > 0 && number != is)
             return FAIL(r, block->name, "the header says %lld (%d)", (long long)number,
                         is);
@@ -317,6 +319,7 @@ static tm_status read_block(reader *r, const char *name)
     next_line(r);
     if (block->kind == TM_UNKNOWN)
         return read_unknown(r, block);
+    block->markers = block->kind == TM_GROUP; /* its values */
     status = read_header(r, block, &rows);
     if (status == TM_OK)
         status = read_rows(r, block, rows, limit);

@@ -90,6 +90,9 @@ static void rename_surface(tm_stream *stream)
         return;
     strcpy(tm_stream_find(stream, ".node")->name, "surface.node");
     strcpy(tm_stream_find(stream, ".face")->name, "surface.face");
+    tm_block *group = tm_stream_find(stream, ".group");
+    if (group)
+        strcpy(group->name, "surface.group");
 }
 
 tm_status surface_input_of_stream(const tm_stream *stream, const char *name,
@@ -105,6 +108,11 @@ tm_status surface_input_of_stream(const tm_stream *stream, const char *name,
     tm_status status = copy_nodes(node, surface, error);
     if (status == TM_OK && face)
         status = tm_polygon_surface_add_faces(surface, face, error);
+    const tm_block *group = tm_stream_find(stream, "surface.group");
+    if (!group) /* the markers of a mesh are those of its surface */
+        group = tm_stream_find(stream, ".group");
+    if (status == TM_OK && group)
+        status = tm_group_copy(&surface->group, ".group", group, error);
     return status;
 }
 
