@@ -2,6 +2,7 @@
 /* tetgen-export: a stream as TetGen's files. */
 #include "common/app/filter.h"
 #include "common/app/output_files.h"
+#include "common/input/left_out.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -56,6 +57,27 @@ static tm_status write_block(const tm_stream *stream, const tm_block *block,
     return status;
 }
 
+static bool has_tetgen_block(const tm_stream *stream)
+{
+    for (size_t b = 0; b < stream->blocks; b++)
+        if (is_tetgen_block(&stream->block[b]))
+            return true;
+    return false;
+}
+
+/* Of a stream without any nothing would be written, whatever is left out. */
+static void read_stream(tm_stream *stream)
+{
+    tm_error error;
+    filter_read(&f, stream);
+    if (!has_tetgen_block(stream)) {
+        tm_fail_at(&error, TM_ERROR_INPUT, filter_input_name(&f), 0, NULL,
+                   "has no block that TetGen knows (.node, .ele, .face, .edge)");
+        filter_fail(&f, &error);
+    }
+    mesh_leave_out(&f, stream);
+}
+
 static void write_files(const tm_stream *stream, const char *base, tm_json *json)
 {
     output_files files = {0};
@@ -64,12 +86,6 @@ static void write_files(const tm_stream *stream, const char *base, tm_json *json
     for (size_t b = 0; b < stream->blocks && status == TM_OK; b++)
         if (is_tetgen_block(&stream->block[b]))
             status = write_block(stream, &stream->block[b], base, &files, &error);
-        else
-            filter_note(&f, "%s is not written: TetGen has no such file",
-                        stream->block[b].name);
-    if (status == TM_OK && files.count == 0)
-        status = tm_fail_at(&error, TM_ERROR_INPUT, filter_input_name(&f), 0, NULL,
-                            "has no block that TetGen knows (.node, .ele, .face, .edge)");
     for (size_t i = 0; i < files.count && status == TM_OK; i++)
         tm_json_string(json, NULL, files.file[i].name);
     if (status == TM_OK)
@@ -85,7 +101,7 @@ int main(int argc, char **argv)
     filter_start(&f, argc, argv);
     const char *base = read_operands();
     tm_stream stream;
-    filter_read(&f, &stream);
+    read_stream(&stream);
     tm_json *json = filter_json_begin(&f);
     tm_json_open(json, "files", '[');
     write_files(&stream, base, json);

@@ -2,6 +2,7 @@
 #include "mesh_input.h"
 
 #include "../../../lib/format/tetgen.h"
+#include "left_out.h"
 
 #include <stdio.h>
 
@@ -74,6 +75,7 @@ int mesh_write(filter *f, mesh_writer *write)
     mesh_input_read(f, &stream);
     if (write(&text, &stream, f->threads, &error) != TM_OK)
         mesh_input_fail(f, &error);
+    mesh_leave_out(f, &stream);
     filter_write_text(f, &text);
     mesh_input_report(f, &stream);
     tm_text_free(&text);
