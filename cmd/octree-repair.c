@@ -176,7 +176,7 @@ static tm_status write_mesh(const writer *w, const char *suffix, mesh_writer *wr
 static tm_status write_vtk(tm_text *text, const tm_stream *stream, unsigned threads,
                            tm_error *error)
 {
-    const tm_vtk_options elements = {.boundary = false, .quality = false};
+    const tm_vtk_options elements = {.boundary = false};
     return tm_vtk_write(text, stream, &elements, threads, error);
 }
 

@@ -3,14 +3,15 @@
 
 #include "mesh_input.h"
 
-enum { OPTION_NO_BOUNDARY = FILTER_OWN, OPTION_NO_QUALITY };
+enum { OPTION_NO_BOUNDARY = FILTER_OWN, OPTION_NO_NAMES, OPTION_NO_QUALITY };
 
 static const struct option long_options[] = {
     {"no-boundary", no_argument, NULL, OPTION_NO_BOUNDARY},
+    {"no-names", no_argument, NULL, OPTION_NO_NAMES},
     {"no-quality", no_argument, NULL, OPTION_NO_QUALITY},
     FILTER_OPTIONS};
 
-static tm_vtk_options options = {.boundary = true, .quality = true};
+static tm_vtk_options options = {.boundary = true, .quality = true, .names = true};
 static vtk_writer *writer;
 
 static tm_status write_grid(tm_text *text, const tm_stream *stream, unsigned threads,
@@ -24,9 +25,10 @@ int vtk_export(int argc, char **argv, const char *name, const char *purpose,
 {
     filter f = {
         .name = name,
-        .synopsis = "[--no-boundary] [--no-quality] [FILE]",
+        .synopsis = "[--no-boundary] [--no-names] [--no-quality] [FILE]",
         .purpose = purpose,
         .help = "      --no-boundary   no cells for marked triangles, facets and edges\n"
+                "      --no-names      no names of markers and regions\n"
                 "      --no-quality    no quality of cells\n",
         .options = long_options,
         .letters = FILTER_LETTERS,
@@ -35,10 +37,16 @@ int vtk_export(int argc, char **argv, const char *name, const char *purpose,
     writer = write;
     filter_start(&f, argc, argv);
     while ((c = filter_option(&f)) != -1) {
-        if (c == OPTION_NO_BOUNDARY)
+        switch (c) {
+        case OPTION_NO_BOUNDARY:
             options.boundary = false;
-        else
+            break;
+        case OPTION_NO_NAMES:
+            options.names = false;
+            break;
+        default: /* OPTION_NO_QUALITY */
             options.quality = false;
+        }
     }
     filter_operands(&f);
     return mesh_write(&f, write_grid);

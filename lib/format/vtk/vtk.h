@@ -11,7 +11,8 @@
  *
  * Point data are attribute_1 … and marker. Cell data, as far as there are any:
  *
- *     region            the first attribute, of polyhedra tetrahedra; attribute_2 …
+ *     region            the first attribute, attribute_2 …; of polyhedra tetrahedra,
+ *                       region, attribute_3 …
  *     marker            of the rows of .face, .facet and .edge; 0 of other cells
  *     dihedral_quality  of .ele: min(α_min, 180° - α_max) of the dihedral angles
  *     jens              of .mix: J_ENS (jens.h)
@@ -22,7 +23,10 @@
  *
  * A marked cell has the region, the attributes and the quality of the first of the cells
  * that have all its nodes, so that it does not hide what it lies on; 0 (level -1) where
- * there is none. */
+ * there is none.
+ *
+ * The rows of .group are the strings group_names of the field data: "2 3 inlet" says
+ * dimension, value and name. */
 #ifndef TM_FORMAT_VTK_VTK_H
 #define TM_FORMAT_VTK_VTK_H
 
@@ -37,6 +41,7 @@ TM_EXTERN_C_BEGIN
 typedef struct tm_vtk_options {
     bool boundary; /* the marked rows of .face, .facet and .edge */
     bool quality;  /* dihedral_quality and what follows it above */
+    bool names;    /* group_names */
 } tm_vtk_options;
 
 /* Appends a legacy file, version 3.0, to *text. `threads` measure and format; the bytes

@@ -45,13 +45,14 @@ tm_status tm_vtk_finish(const tm_vtk_grid *grid, tm_vtk_column *column, int none
 
 /* Attributes and markers ----------------------------------------------------------- */
 
-/* Attribute i of the rows, as the first values of a column of `count`. */
+/* Attribute i of the rows, as the first values of a column of `count`; without a name it
+ * has its number. */
 static bool new_attribute(tm_vtk_column *column, const tm_block *block, size_t i,
-                          const char *first_name, size_t count)
+                          const char *name, size_t count)
 {
-    char name[TM_VTK_NAME];
-    snprintf(name, sizeof name, "attribute_%zu", i + 1);
-    if (!tm_vtk_column_new(column, i == 0 ? first_name : name, count, false))
+    char number[TM_VTK_NAME];
+    snprintf(number, sizeof number, "attribute_%zu", i + 1);
+    if (!tm_vtk_column_new(column, name ? name : number, count, false))
         return false;
     for (size_t row = 0; row < block->count; row++)
         column->real[row] = block->attribute[row * block->attributes + i];
@@ -65,7 +66,7 @@ tm_status tm_vtk_point_data(const tm_vtk_grid *grid, tm_vtk_take *take, void *co
     tm_status status = TM_OK;
     tm_vtk_column column;
     for (size_t i = 0; i < node->attributes && status == TM_OK; i++)
-        status = new_attribute(&column, node, i, "attribute_1", node->count)
+        status = new_attribute(&column, node, i, NULL, node->count)
                      ? take_and_free(&column, TM_OK, take, context)
                      : tm_fail_memory(error);
     if (status != TM_OK || !node->marker)
@@ -76,17 +77,22 @@ tm_status tm_vtk_point_data(const tm_vtk_grid *grid, tm_vtk_take *take, void *co
     return take_and_free(&column, TM_OK, take, context);
 }
 
+/* The region is the first one; of polyhedra this is how many tetrahedra they were. */
 static tm_status write_attributes(const tm_vtk_grid *grid, tm_vtk_take *take,
                                   void *context, tm_error *error)
 {
-    const char *first = grid->content == TM_CONTENT_POLYHEDRA ? "tetrahedra" : "region";
+    const bool polyhedra = grid->content == TM_CONTENT_POLYHEDRA;
     const tm_block *cell = grid->cell;
     tm_status status = TM_OK;
     tm_vtk_column column;
-    for (size_t i = 0; i < cell->attributes && status == TM_OK; i++)
-        status = new_attribute(&column, cell, i, first, tm_vtk_cells(grid))
+    for (size_t i = 0; i < cell->attributes && status == TM_OK; i++) {
+        const char *name = i == (polyhedra ? 1 : 0) ? "region" : NULL;
+        if (polyhedra && i == 0)
+            name = "tetrahedra";
+        status = new_attribute(&column, cell, i, name, tm_vtk_cells(grid))
                      ? tm_vtk_finish(grid, &column, 0, TM_OK, take, context)
                      : tm_fail_memory(error);
+    }
     return status;
 }
 

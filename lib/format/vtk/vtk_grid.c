@@ -3,6 +3,7 @@
 
 #include "../../base/array.h"
 #include "../../element/shape.h"
+#include "../../stream/group.h"
 
 #include <stdlib.h>
 
@@ -152,6 +153,7 @@ tm_status tm_vtk_grid_find(tm_vtk_grid *grid, const tm_stream *stream,
     if (grid->content == TM_CONTENT_NOTHING)
         return tm_fail(error, TM_ERROR_INPUT, "has no nodes (.node)");
     grid->cell = tm_content_block(stream, grid->content);
+    grid->group = options->names ? tm_stream_find(stream, ".group") : NULL;
     tm_status status = TM_OK;
     if (grid->content == TM_CONTENT_POLYHEDRA)
         status = tm_cell_faces_find(&grid->faces, stream, error);
@@ -183,4 +185,10 @@ uint8_t tm_vtk_type(const tm_vtk_grid *grid, size_t c)
     if (grid->content != TM_CONTENT_POINTS)
         tm_row_nodes(grid->cell, c, &k);
     return tm_vtk_cell_type(k);
+}
+
+void tm_vtk_name(const tm_vtk_grid *grid, size_t g, tm_text *text)
+{
+    tm_text_format(text, "%d %d %s", (int)tm_group_dimension_of(grid->group, g),
+                   (int)tm_group_value(grid->group, g), tm_group_name(grid->group, g));
 }

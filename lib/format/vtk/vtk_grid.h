@@ -16,7 +16,8 @@ typedef struct tm_vtk_grid {
     tm_vtk_options options;
     unsigned threads;
     const tm_block *node;
-    const tm_block *cell; /* the block of the content; .node for points */
+    const tm_block *group; /* or NULL */
+    const tm_block *cell;  /* the block of the content; .node for points */
     tm_content content;
     tm_cell_faces faces;                 /* of polyhedra */
     size_t marked;                       /* cells after those */
@@ -57,6 +58,15 @@ static inline const uint32_t *tm_vtk_marked_nodes(const tm_vtk_grid *grid, size_
 
 /* VTK's number of cell c. */
 uint8_t tm_vtk_type(const tm_vtk_grid *grid, size_t c);
+
+/* The rows of .group; 0 where there are no names. */
+static inline size_t tm_vtk_names(const tm_vtk_grid *grid)
+{
+    return grid->group ? grid->group->count : 0;
+}
+
+/* Appends row g of .group to a text: "2 3 inlet". */
+void tm_vtk_name(const tm_vtk_grid *grid, size_t g, tm_text *text);
 
 /* A value for each point or cell: real or integer is NULL. */
 typedef struct tm_vtk_column {

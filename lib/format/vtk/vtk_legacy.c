@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "vtk_grid.h"
 
+#include <string.h>
+
+enum { DELETE = 127 };
+
 static void append_rows(const tm_vtk_grid *grid, tm_text *text, const void *context,
                         size_t count, size_t (*room)(const void *, size_t, size_t),
                         char *(*put)(const void *, size_t, char *))
@@ -147,13 +151,35 @@ static tm_status append_column(void *context, const tm_vtk_column *column)
     return TM_OK;
 }
 
+/* Each name is a line, in which bytes that are no letters, digits or the like are %XX, as
+ * vtkDataWriter has them. */
+static void append_names(const tm_vtk_grid *grid, tm_text *text)
+{
+    const size_t names = tm_vtk_names(grid);
+    tm_text name = {0};
+    if (names > 0)
+        tm_text_format(text, "FIELD FieldData 1\ngroup_names 1 %zu string\n", names);
+    for (size_t g = 0; g < names; g++) {
+        name.size = 0;
+        tm_vtk_name(grid, g, &name);
+        for (size_t i = 0; i < name.size; i++) {
+            const unsigned char byte = (unsigned char)name.byte[i];
+            const bool plain = byte > ' ' && byte < DELETE && !strchr("\"%", byte);
+            tm_text_format(text, plain ? "%c" : "%%%02X", byte);
+        }
+        tm_text_string(text, "\n");
+    }
+    text->failed |= name.failed;
+    tm_text_free(&name);
+}
+
 static tm_status append_grid(const tm_vtk_grid *grid, tm_text *text, tm_error *error)
 {
     data_writer cells = {grid, text, "CELL_DATA"}, points = {grid, text, "POINT_DATA"};
-    tm_text_format(text,
-                   "# vtk DataFile Version 3.0\ntermesh\nASCII\n"
-                   "DATASET UNSTRUCTURED_GRID\nPOINTS %zu double\n",
-                   grid->node->count);
+    tm_text_format(text, "# vtk DataFile Version 3.0\ntermesh\nASCII\n"
+                         "DATASET UNSTRUCTURED_GRID\n");
+    append_names(grid, text);
+    tm_text_format(text, "POINTS %zu double\n", grid->node->count);
     tm_text_append_points(text, grid->node->real, grid->node->count, "", grid->threads);
     append_cells(grid, text);
     tm_status status = tm_vtk_cell_data(grid, append_column, &cells, error);

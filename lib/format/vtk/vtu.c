@@ -238,16 +238,40 @@ static tm_status write_points(writer *w)
                               3 * node->count);
 }
 
+/* Strings are the numbers of their bytes, with 0 behind each. */
+static void write_names(const writer *w, tm_text *xml)
+{
+    const size_t names = tm_vtk_names(&w->grid);
+    tm_text name = {0};
+    if (names == 0)
+        return;
+    tm_text_format(xml,
+                   "    <FieldData>\n"
+                   "      <DataArray type=\"String\" Name=\"group_names\" "
+                   "NumberOfTuples=\"%zu\" format=\"ascii\">\n",
+                   names);
+    for (size_t g = 0; g < names; g++) {
+        name.size = 0;
+        tm_vtk_name(&w->grid, g, &name);
+        for (size_t i = 0; i < name.size; i++)
+            tm_text_format(xml, "%d ", (unsigned char)name.byte[i]);
+        tm_text_string(xml, "0\n");
+    }
+    tm_text_string(xml, "      </DataArray>\n    </FieldData>\n");
+    xml->failed |= name.failed;
+    tm_text_free(&name);
+}
+
 static tm_status write_piece(writer *w, tm_text *xml)
 {
     const tm_text *data = &w->arrays.data;
-    tm_text_format(xml,
-                   "<?xml version=\"1.0\"?>\n"
-                   "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
-                   "byte_order=\"LittleEndian\" header_type=\"UInt64\" "
-                   "compressor=\"vtkZLibDataCompressor\">\n"
-                   "  <UnstructuredGrid>\n"
-                   "    <Piece NumberOfPoints=\"%zu\" NumberOfCells=\"%zu\">\n",
+    tm_text_string(xml, "<?xml version=\"1.0\"?>\n"
+                        "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
+                        "byte_order=\"LittleEndian\" header_type=\"UInt64\" "
+                        "compressor=\"vtkZLibDataCompressor\">\n"
+                        "  <UnstructuredGrid>\n");
+    write_names(w, xml);
+    tm_text_format(xml, "    <Piece NumberOfPoints=\"%zu\" NumberOfCells=\"%zu\">\n",
                    w->grid.node->count, tm_vtk_cells(&w->grid));
     tm_status status = write_section(w, "PointData", write_point_data);
     if (status == TM_OK)
