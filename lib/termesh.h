@@ -61,6 +61,7 @@
 #include "format/surface_format.h"
 #include "format/tetgen.h"
 #include "format/visf.h"
+#include "format/vtk/vtk.h"
 
 /* optimise: node positions */
 #include "optimise/optimise.h"

@@ -2,6 +2,7 @@
 #include "mesh_input.h"
 
 #include "../../../lib/format/tetgen.h"
+#include "left_out.h"
 #include "../../../lib/stream/coordinates.h"
 
 #include <stdio.h>
@@ -78,6 +79,7 @@ int mesh_write(filter *f, mesh_writer *write)
     mesh_input_read(f, &stream);
     if (write(&text, &stream, f->threads, &error) != TM_OK)
         mesh_input_fail(f, &error);
+    mesh_leave_out(f, &stream);
     mesh_input_report(f, &stream);
     filter_write_text(f, &text);
     tm_text_free(&text);
