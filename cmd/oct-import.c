@@ -92,11 +92,11 @@ int main(int argc, char **argv)
     read_octants(&stream);
     if (surface)
         read_surface(surface, &stream);
+    mesh_input_report(&f, &stream);
     filter_write(&f, &stream, "%zu nodes, %zu elements, %zu octants",
                  tm_stream_find(&stream, ".node")->count,
                  tm_stream_find(&stream, ".mix")->count,
                  tm_stream_find(&stream, ".octant")->count);
-    mesh_input_report(&f, &stream);
     tm_stream_free(&stream);
     return filter_finish(&f, 0);
 }

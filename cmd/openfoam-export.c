@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* openfoam-export: the cells of a stream as a polyMesh folder of OpenFOAM. */
+#include "common/input/left_out.h"
 #include "common/input/mesh_input.h"
 #include "common/app/output_files.h"
 
@@ -71,6 +72,7 @@ static tm_status write_file(output_files *files, const char *folder, const char 
     return status;
 }
 
+/* All files but their names: filter_finish() gives them. */
 static void write_folder(const filter *f, const char *folder, const tm_text *file)
 {
     tm_error error;
@@ -80,8 +82,6 @@ static void write_folder(const filter *f, const char *folder, const tm_text *fil
     for (int i = 0; i < TM_OPENFOAM_FILES && status == TM_OK; i++)
         if (file[i].size > 0)
             status = write_file(f->files, folder, tm_openfoam_name[i], &file[i], &error);
-    if (status == TM_OK)
-        status = output_files_finish(f->files, &error);
     if (status != TM_OK)
         filter_fail(f, &error);
 }
@@ -120,6 +120,7 @@ int main(int argc, char **argv)
     mesh_input_read(&f, &stream);
     if (tm_openfoam_write(file, &stream, &counts, &error) != TM_OK)
         mesh_input_fail(&f, &error);
+    mesh_leave_out(&f, &stream);
     write_folder(&f, folder, file);
     write_json(&f, &counts);
     for (int i = 0; i < TM_OPENFOAM_FILES; i++)

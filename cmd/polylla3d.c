@@ -191,7 +191,7 @@ static void convert(filter *f, tm_stream *stream, const settings *o, result *r)
     *r = (result){0};
     if (tm_stream_find(stream, ".facet") || tm_stream_find(stream, ".cell")) {
         tm_fail_at(&error, TM_ERROR_INPUT, filter_input_name(f), 0, NULL,
-                   "a mesh of polyhedra already (tetrahedra would be right)");
+                   "has .facet or .cell already, which the polyhedra would be");
         filter_fail(f, &error);
     }
     tet_mesh_from_stream(f, stream, &mesh);

@@ -25,6 +25,7 @@ static void read_options(filter *f)
         case OPTION_BINARY:
             visf.order =
                 filter_word(f, OPTION_BINARY, optarg) == 0 ? TM_VISF_LITTLE : TM_VISF_BIG;
+            f->binary = true;
             break;
         case OPTION_NEIGHBOURS:
             visf.neighbours = true;

@@ -20,6 +20,7 @@
 #include "geom/vector.h"
 
 /* stream: the stream and its blocks; what other files look like */
+#include "stream/coordinates.h"
 #include "stream/group.h"
 #include "stream/sniff.h"
 #include "stream/stream.h"
@@ -60,6 +61,7 @@
 #include "format/surface_format.h"
 #include "format/tetgen.h"
 #include "format/visf.h"
+#include "format/vtk/vtk.h"
 
 /* optimise: node positions */
 #include "optimise/optimise.h"

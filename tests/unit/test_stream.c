@@ -354,7 +354,7 @@ static void test_edit(void **state)
     (void)state;
     tm_stream stream;
     assert_int_equal(read_text(&stream, NODES ".end\n", sizeof NODES + 4, NULL), TM_OK);
-    tm_stream_add_history(&stream, "one\nline");
+    assert_int_equal(tm_stream_add_history(&stream, "one\nline", NULL), TM_OK);
     tm_block *cell = tm_stream_add(&stream, ".cell");
     assert_int_equal(cell->kind, TM_CELL);
     assert_int_equal(tm_block_allocate(cell, 1, 4, NULL), TM_OK);

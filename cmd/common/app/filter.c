@@ -3,6 +3,7 @@
 #include "completion.h"
 
 #include "../../../lib/base/file.h"
+#include "kinds.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -34,6 +35,7 @@ void filter_start(filter *f, int argc, char **argv)
 {
     occupy_standard_descriptors();
     signal(SIGPIPE, SIG_DFL);
+    signal(SIGXFSZ, SIG_IGN);  /* a file that may not grow is an error of write() */
     static output_files files; /* filter_fail(), which gets f as const, tidies them up */
     f->files = &files;
     f->argc = argc;
@@ -94,10 +96,21 @@ void filter_read(const filter *f, tm_stream *stream)
     tm_error error;
     int fd = open_input(f);
     tm_stream_init(stream);
-    if (tm_stream_read(stream, fd, filter_input_name(f), &error) != TM_OK)
+    if (tm_stream_read(stream, fd, filter_input_name(f), &error) != TM_OK ||
+        kinds_check(f->name, stream, filter_input_name(f), &error) != TM_OK)
         filter_fail(f, &error);
     if (f->input)
         close(fd);
+}
+
+/* What went out cannot be taken back where the report of --json fails after it. */
+static void require_report(const filter *f)
+{
+    tm_error error;
+    if (!f->json || f->reported)
+        return;
+    tm_fail(&error, TM_ERROR_INTERNAL, "output before the report of --json");
+    filter_fail(f, &error);
 }
 
 /* Standard output, or a temporary file beside -o FILE that filter_finish() renames, so
@@ -106,29 +119,37 @@ static int open_output(filter *f)
 {
     int fd = STDOUT_FILENO;
     tm_error error;
+    require_report(f);
     if (f->output && output_files_open(f->files, f->output, &fd, &error) != TM_OK)
         filter_fail(f, &error);
     return fd;
 }
 
+/* "# name version options: done" at the end of the stream's history. */
+static tm_status add_history(const filter *f, tm_stream *stream, const char *done,
+                             tm_error *error)
+{
+    tm_text line = {0};
+    tm_text_format(&line, "%s %s%s%s%s: %s", f->name, TM_VERSION,
+                   f->command.byte ? f->command.byte : "", f->input ? " " : "",
+                   f->input ? f->input : "", done);
+    const tm_status status = line.failed || f->command.failed
+                                 ? tm_fail_memory(error)
+                                 : tm_stream_add_history(stream, line.byte, error);
+    tm_text_free(&line);
+    return status;
+}
+
 void filter_write(filter *f, tm_stream *stream, const char *summary, ...)
 {
-    if (f->history) {
-        tm_text line = {0};
-        tm_text_format(&line, "%s %s%s%s%s: ", f->name, TM_VERSION,
-                       f->command.byte ? f->command.byte : "", f->input ? " " : "",
-                       f->input ? f->input : "");
-        char done[512];
-        va_list arguments;
-        va_start(arguments, summary);
-        vsnprintf(done, sizeof done, summary, arguments);
-        va_end(arguments);
-        tm_text_string(&line, done);
-        if (line.byte)
-            tm_stream_add_history(stream, line.byte);
-        tm_text_free(&line);
-    }
     tm_error error;
+    char done[512];
+    va_list arguments;
+    va_start(arguments, summary);
+    vsnprintf(done, sizeof done, summary, arguments);
+    va_end(arguments);
+    if (f->history && add_history(f, stream, done, &error) != TM_OK)
+        filter_fail(f, &error);
     int fd = open_output(f);
     if (tm_stream_write(stream, fd, f->threads, &error) != TM_OK)
         filter_fail(f, &error);
@@ -176,6 +197,7 @@ void filter_json_end(filter *f)
     else if (f->json && output_file_write(f->json, &f->report, &error) != TM_OK)
         filter_fail(f, &error);
     tm_text_free(&f->report);
+    f->reported = true;
 }
 
 void filter_write_json(filter *f, const tm_report_row *rows, const void *of)
@@ -187,6 +209,7 @@ void filter_write_json(filter *f, const tm_report_row *rows, const void *of)
 int filter_finish(filter *f, int status)
 {
     tm_error error;
+    require_report(f);
     if (output_files_finish(f->files, &error) != TM_OK)
         filter_fail(f, &error);
     if (close(STDOUT_FILENO) != 0) {

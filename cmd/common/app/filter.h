@@ -81,6 +81,7 @@ typedef struct filter {
     bool json_is_output;          /* --json - is stdout: the *-stats and mesh-check */
     bool q_is_own;                /* -q is the filter's; quiet is --quiet only */
     bool j_is_own;                /* -j is the filter's; threads are --threads only */
+    bool binary;                  /* its output is, before filter_operands() */
     /* set from the command line */
     int argc;
     char **argv;
@@ -89,6 +90,7 @@ typedef struct filter {
     const char *json;   /* NULL: none */
     int verbosity;      /* -1 quiet, 0, 1 verbose */
     bool history;
+    bool forced; /* -o -: to standard output, whatever that is */
     bool strict; /* what the output cannot carry is an error */
     unsigned threads;
     const char *apart;     /* what follows an option whose argument may lack */
@@ -96,6 +98,7 @@ typedef struct filter {
     tm_text command;       /* the options as given, for the history */
     output_files *files;   /* -o FILE in the making */
     tm_text report;        /* of --json, in the making */
+    bool reported;         /* the report is where it belongs */
     tm_json json_object;
 } filter;
 
@@ -105,7 +108,7 @@ void filter_start(filter *f, int argc, char **argv);
 int filter_option(filter *f);
 
 /* Takes the rest of the command line: at most one FILE. With no FILE (or "-") standard
- * input is read; if that is a terminal: usage, exit 2. */
+ * input is read; if that is a terminal: usage, exit 2. So is binary output to one. */
 void filter_operands(filter *f);
 
 /* Option arguments as numbers in lo..hi, else a usage error that names the option. */
@@ -161,15 +164,17 @@ const char *filter_input_name(const filter *f);
 void filter_read_bytes(const filter *f, tm_text *bytes);
 void filter_read_file(const filter *f, const char *file, tm_text *bytes);
 
-/* Reads the stream from FILE or standard input. */
+/* Reads the stream from FILE or standard input; what it holds is what the filter takes
+ * (kinds.h). */
 void filter_read(const filter *f, tm_stream *stream);
 
 /* Adds the history line "name version options: summary" (unless --no-history) and
- * writes the stream to the output. summary is a printf format. */
+ * writes the stream to the output. summary is a printf format. With --json the report has
+ * been written before, so that nothing goes out where that fails. */
 void filter_write(filter *f, tm_stream *stream, const char *summary, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Writes a text (a table, a foreign file) to the output. */
+/* Writes a text (a table, a foreign file) to the output, after the report as well. */
 void filter_write_text(filter *f, const tm_text *text);
 
 /* Whether the report to read is written: not where standard output is for the JSON. */

@@ -134,6 +134,7 @@ static bool take_shared(filter *f, int c)
         filter_exit_after_text(f);
     case 'o':
         f->output = strcmp(optarg, "-") ? optarg : NULL;
+        f->forced = !f->output;
         return true;
     case 'q':
         if (f->q_is_own)
@@ -236,4 +237,7 @@ void filter_operands(filter *f)
         filter_usage(f, stderr);
         exit(EXIT_USAGE);
     }
+    if (f->binary && !f->output && !f->forced && isatty(STDOUT_FILENO))
+        filter_usage_error(f, "the output is binary and would go to a terminal (-o FILE "
+                              "or a pipe would be right; -o - forces it)");
 }
