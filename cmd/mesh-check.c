@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* mesh-check: what is wrong with a mesh, as exit status and as a list. */
-#include "common/app/filter.h"
+#include "common/input/mesh_input.h"
 
 #include "../lib/examine/element_examine.h"
 #include "../lib/examine/poly_examine.h"
@@ -77,14 +77,14 @@ int main(int argc, char **argv)
     filter_operands(&f);
 
     tm_stream stream;
-    filter_read(&f, &stream);
+    mesh_input_read_to_compute(&f, &stream);
     tm_examination found;
     examine(&f, &stream, &found);
-    write_report(&f, &found, stream.base);
     if (f.json) {
         tm_examination_json(filter_json_begin(&f), &found);
         filter_json_end(&f);
     }
+    write_report(&f, &found, stream.base);
     tm_stream_free(&stream);
     return filter_finish(&f, tm_examination_is_good(&found) ? 0 : EXIT_GOAL);
 }

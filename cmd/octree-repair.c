@@ -58,9 +58,11 @@ typedef struct {
     tm_surface boundary;
 } program;
 
+static const char *const methods[] = {"refine", "full"};
+static const filter_words option_words[] = {FILTER_WORDS(METHOD, methods), {0}};
+
 static void read_option(program *p, int c)
 {
-    static const char *const methods[] = {"refine", "full"};
     switch (c) {
     case 't':
         p->repair.threshold = filter_number(&p->f, "--threshold", optarg, 0, 1);
@@ -70,8 +72,7 @@ static void read_option(program *p, int c)
             (unsigned)filter_integer(&p->f, "--iterations", optarg, 0, MOST_ITERATIONS);
         break;
     case METHOD:
-        p->repair.method =
-            (tm_repair_method)filter_word(&p->f, "--method", methods, 2, optarg);
+        p->repair.method = (tm_repair_method)filter_word(&p->f, METHOD, optarg);
         break;
     case MAX_GROWTH:
         p->repair.growth = filter_number(&p->f, "--max-growth", optarg, 1, most_growth);
@@ -329,10 +330,10 @@ static bool run(program *p, tm_stream *stream)
     if (notes.dropped[0])
         filter_note(&p->f, "dropped, as they refer to what is no more: %s",
                     notes.dropped);
-    filter_write(&p->f, stream, "%zu elements of %zu, bad %zu of %zu", after.elements,
-                 before.elements, report.after.bad, report.before.bad);
     write_json(&p->f, &before, &after, &report,
                (double)(clock() - start) / CLOCKS_PER_SEC);
+    filter_write(&p->f, stream, "%zu elements of %zu, bad %zu of %zu", after.elements,
+                 before.elements, report.after.bad, report.before.bad);
     tm_repair_state_free(&state);
     return done;
 }
@@ -347,6 +348,7 @@ int main(int argc, char **argv)
                          "divides elements, and refines octants.",
               .help = own_help,
               .options = long_options,
+              .words = option_words,
               .letters = "t:i:" FILTER_LETTERS},
         .repair = {.method = TM_REPAIR_FULL,
                    .iterations = DEFAULT_ITERATIONS,

@@ -72,6 +72,7 @@ static tm_status write_file(output_files *files, const char *folder, const char 
     return status;
 }
 
+/* All files but their names: filter_finish() gives them. */
 static void write_folder(const filter *f, const char *folder, const tm_text *file)
 {
     tm_error error;
@@ -81,8 +82,6 @@ static void write_folder(const filter *f, const char *folder, const tm_text *fil
     for (int i = 0; i < TM_OPENFOAM_FILES && status == TM_OK; i++)
         if (file[i].size > 0)
             status = write_file(f->files, folder, tm_openfoam_name[i], &file[i], &error);
-    if (status == TM_OK)
-        status = output_files_finish(f->files, &error);
     if (status != TM_OK)
         filter_fail(f, &error);
 }

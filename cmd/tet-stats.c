@@ -35,7 +35,7 @@ typedef struct mesh {
 
 static void read_mesh(const filter *f, mesh *m)
 {
-    filter_read(f, &m->stream);
+    mesh_input_read_to_compute(f, &m->stream);
     const tm_block *node = tm_stream_find(&m->stream, ".node");
     tm_block *ele = tm_stream_find(&m->stream, ".ele");
     m->xyz = node ? (const double(*)[3])node->real : NULL;
@@ -176,11 +176,11 @@ int main(int argc, char **argv)
     }
     const tm_tet_statistics *earlier = o.compare ? &before : NULL;
     const tm_tet_statistics *last = o.compare ? &after : &before;
+    if (f.json)
+        write_json(&f, earlier, last);
     if (o.plot)
         write_plot(&f, &o, earlier, last);
     write_report(&f, &o, &first, earlier, last);
-    if (f.json)
-        write_json(&f, earlier, last);
     tm_stream_free(&first.stream);
     return filter_finish(&f, 0);
 }

@@ -13,15 +13,16 @@ static const struct option options[] = {FILTER_OPTIONS};
 static filter f = {
     .name = "tetgen-import",
     .synopsis = "[options] BASE | FILE…",
-    .purpose =
-        "Read BASE.node, BASE.ele, BASE.face and BASE.edge, or the FILEs, of TetGen.",
+    .purpose = "Read BASE.node, BASE.ele, BASE.face, BASE.edge and BASE.group, or the "
+               "FILEs, of\n"
+               "TetGen.",
     .help = "",
     .options = options,
     .letters = FILTER_LETTERS,
 };
 
 /* In the order in which a stream has them: the nodes first, others refer to them. */
-static const char *const suffixes[] = {".node", ".ele", ".face", ".edge"};
+static const char *const suffixes[] = {".node", ".ele", ".face", ".edge", ".group"};
 enum { SUFFIXES = sizeof suffixes / sizeof suffixes[0] };
 
 /* The files that were named. */
@@ -59,7 +60,7 @@ static char *joined(const char *first, size_t size, const char *second)
     return text.byte;
 }
 
-/* BASE stands for those of the four files that are there. */
+/* BASE stands for those of the files that are there. */
 static void expand_base(const char *base, operands *named)
 {
     named->stem = joined(base, strlen(base), "");
@@ -91,8 +92,8 @@ static void read_operands(operands *named)
     for (int i = optind; i < f.argc; i++) {
         if (suffix_of(f.argv[i]) == SUFFIXES)
             filter_usage_error(&f,
-                               "'%s': the name of a FILE ends in .node, .ele, .face or "
-                               ".edge",
+                               "'%s': the name of a FILE ends in .node, .ele, .face, "
+                               ".edge or .group",
                                f.argv[i]);
         named->file[named->count++] = joined(f.argv[i], strlen(f.argv[i]), "");
     }
@@ -127,8 +128,9 @@ static void read_block(const char *file, tm_block *block, const tm_block *node,
 {
     tm_text bytes = {0};
     filter_read_file(&f, file, &bytes);
-    succeed(tm_tetgen_read(block, bytes.byte, bytes.size, file, base,
-                           node ? node->count : 0, &error));
+    if (tm_tetgen_read(block, bytes.byte, bytes.size, file, base, node ? node->count : 0,
+                       &error) != TM_OK)
+        filter_fail_file(&f, &error, &bytes, f.name);
     tm_text_free(&bytes);
 }
 
@@ -223,8 +225,6 @@ int main(int argc, char **argv)
     tm_stream_init(&stream);
     read_files(&stream, &named);
     tm_turned turned = orient_all(&stream);
-    filter_write(&f, &stream, "%zu nodes, %zu tetrahedra", mesh_rows(&stream, ".node"),
-                 mesh_rows(&stream, ".ele"));
     if (f.json) {
         tm_json *json = filter_json_begin(&f);
         mesh_rows_json(json, &stream);
@@ -232,6 +232,8 @@ int main(int argc, char **argv)
         tm_json_integer(json, "flat", (int64_t)turned.flat);
         filter_json_end(&f);
     }
+    filter_write(&f, &stream, "%zu nodes, %zu tetrahedra", mesh_rows(&stream, ".node"),
+                 mesh_rows(&stream, ".ele"));
     tm_stream_free(&stream);
     free(named.file);
     free(named.stem);

@@ -4,6 +4,7 @@
 #include "common/input/surface_input.h"
 #include "common/process/tetgen.h"
 
+#include "../lib/stream/coordinates.h"
 #include "../lib/surface/surface_defects.h"
 #include "../lib/format/tetgen.h"
 
@@ -227,9 +228,17 @@ int main(int argc, char **argv)
     tm_stream input, mesh;
     tm_format format = surface_input_read(&f, &surface, &input);
     tm_surface_defects defects;
+    size_t dropped;
     tm_error error;
-    if (tm_surface_find_defects(&surface, &defects, &error) != TM_OK)
+    if (tm_coordinates_check((const double(*)[3])surface.xyz, surface.nodes, surface.base,
+                             &error) != TM_OK)
+        mesh_input_fail(&f, &error);
+    if (tm_surface_drop_duplicates(&surface, &dropped, &error) != TM_OK ||
+        tm_surface_find_defects(&surface, &defects, &error) != TM_OK)
         filter_fail(&f, &error);
+    if (dropped > 0)
+        filter_note(&f, "faces in the place of an earlier one, which are dropped: %zu",
+                    dropped);
     check_surface(&surface, &defects, format, &request);
     tm_stream_init(&mesh);
     mesh.base = surface.base;
@@ -245,12 +254,12 @@ int main(int argc, char **argv)
         filter_note(&f, "%zu tetrahedra that TetGen made are flat", turned.flat);
     if (keep_parts(&input, &mesh, &error) != TM_OK)
         filter_fail(&f, &error);
-    filter_write(&f, &mesh, "%zu nodes, %zu tetrahedra", mesh_rows(&mesh, ".node"),
-                 mesh_rows(&mesh, ".ele"));
     if (f.json) {
         mesh_rows_json(filter_json_begin(&f), &mesh);
         filter_json_end(&f);
     }
+    filter_write(&f, &mesh, "%zu nodes, %zu tetrahedra", mesh_rows(&mesh, ".node"),
+                 mesh_rows(&mesh, ".ele"));
     tm_stream_free(&mesh);
     tm_stream_free(&input);
     tm_polygon_surface_free(&surface);

@@ -8,5 +8,5 @@ int main(int argc, char **argv)
         argc, argv, "vtk-export",
         "Writes points, triangles, tetrahedra, mixed elements or polyhedra as an\n"
         "unstructured grid in a legacy text file of VTK (.vtk).",
-        tm_vtk_write);
+        false, tm_vtk_write);
 }

@@ -8,5 +8,5 @@ int main(int argc, char **argv)
         argc, argv, "vtu-export",
         "Writes points, triangles, tetrahedra, mixed elements or polyhedra as\n"
         "an unstructured grid of VTK (.vtu), which ParaView shows.",
-        tm_vtu_write);
+        true, tm_vtu_write);
 }

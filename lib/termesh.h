@@ -13,13 +13,16 @@
 #include "base/parallel.h"
 #include "base/report.h"
 #include "base/text.h"
+#include "base/utf8.h"
 #include "base/version.h"
 
 /* geom: predicates and kernels */
 #include "geom/vector.h"
 
-/* stream: the stream and its blocks */
+/* stream: the stream and its blocks; what other files look like */
+#include "stream/coordinates.h"
 #include "stream/group.h"
+#include "stream/sniff.h"
 #include "stream/stream.h"
 
 /* element: shapes and measures of one element */

@@ -12,7 +12,7 @@ trap 'rm -f "$list" "$list.headers"' EXIT
 
 c_files=$(find lib cmd tests examples -name '*.[ch]')
 cxx_sources=$(find tests -name '*.cc')
-scripts="$(find tests examples -name '*.sh') $(find tests -name '*.bats' -o -name '*.bash')
+scripts="$(find cmd tests examples -name '*.sh') $(find tests -name '*.bats' -o -name '*.bash')
 .ci/run"
 pages=$(find man -name '*.[157]')
 

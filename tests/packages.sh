@@ -8,7 +8,7 @@
     build_packages="gcc libc6-dev libgmp-dev libopenmpi-dev libp4est-dev make zlib1g-dev"
     run_packages="gnuplot-nox tetgen"
     test_packages="bats bsdutils g++ libcmocka-dev libsuitesparse-dev locales mandoc
-        pkg-config python3 python3-meshio python3-vtk9"
+        pkg-config python3 python3-meshio python3-vtk9 valgrind"
     lint_packages="clang-format clang-tidy cppcheck mandoc shellcheck"
 }
 

@@ -76,9 +76,10 @@ tm_status tm_mdl_read(tm_polygon_surface *surface, const char *bytes, size_t siz
         points |= is_points;
         triangles |= is_triangles;
     }
-    if (status == TM_OK && !points)
+    if (status == TM_OK && !(points && triangles))
         status = tm_fail_at(error, TM_ERROR_INPUT, name, 0, NULL,
-                            "has no section of type ARRAY1<POINT3D>");
+                            "has no section of type ARRAY1<%s>",
+                            points ? "STRING" : "POINT3D");
     if (status == TM_OK)
         status = check_corners(&scan, surface, error);
     if (status != TM_OK)

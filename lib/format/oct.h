@@ -34,7 +34,7 @@ typedef struct tm_oct {
     size_t octants;
     uint32_t (*corner)[TM_OCT_CORNERS];
     unsigned char *level;
-    uint32_t *elements; /* [octants], or NULL where the file ends before them */
+    uint32_t *elements; /* [octants] */
 } tm_oct;
 
 /* Reads a file of either version; edges and triangles are only looked over.

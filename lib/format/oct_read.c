@@ -124,16 +124,13 @@ static tm_status read_elements(reader *r)
     return status;
 }
 
-/* Where there is one: two words, a point and three angles. */
+/* Two words, a point and three angles. */
 static tm_status read_transform(reader *r)
 {
-    if (!tm_scan_seek(&r->scan))
-        return TM_OK;
-    const tm_scan before = r->scan;
-    if (!tm_word_is(tm_scan_word(&r->scan), "Geometric")) {
-        r->scan = before;
-        return TM_OK;
-    }
+    tm_scan_seek(&r->scan);
+    if (!tm_word_is(tm_scan_word(&r->scan), "Geometric"))
+        return tm_scan_fail(&r->scan, r->error,
+                            "'Geometric Transform' should follow the last octant");
     tm_scan_end_line(&r->scan);
     for (int i = 0; i < 2 * COORDINATES; i++) {
         double value;
@@ -167,7 +164,7 @@ tm_status tm_oct_read(tm_oct *oct, const char *bytes, size_t size, const char *n
         status = read_octants(&r);
     if (status == TM_OK)
         status = read_transform(&r);
-    if (status == TM_OK && r.counts < COUNTS_MAX && tm_scan_seek(&r.scan))
+    if (status == TM_OK && r.counts < COUNTS_MAX)
         status = read_elements(&r);
     if (status == TM_OK && tm_scan_seek(&r.scan))
         status = tm_scan_no_more(&r.scan, "the last number", error);

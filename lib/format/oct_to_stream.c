@@ -232,9 +232,6 @@ static tm_status give_hexahedra(giver *g, tm_stream *stream)
 static tm_status check_elements(const giver *g, const tm_block *mix)
 {
     uint64_t sum = 0;
-    if (!g->oct->elements)
-        return tm_fail_at(g->error, TM_ERROR_INPUT, g->name, 0, NULL,
-                          "does not say which elements are in which octant");
     for (size_t o = 0; o < g->oct->octants; o++)
         sum += g->oct->elements[o];
     if (sum != mix->count)

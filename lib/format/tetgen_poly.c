@@ -136,20 +136,19 @@ static tm_status read_facets(reader *r, tm_plc_kind kind)
     return status;
 }
 
-/* The header of parts 3 and 4, which may lack. */
+/* The header of parts 3 and 4. */
 static tm_status read_count(reader *r, const char *what, int64_t *count)
 {
-    *count = 0;
-    if (!tm_scan_seek(&r->scan))
-        return TM_OK;
-    tm_status status = tm_scan_integer(&r->scan, what, 0, INT64_MAX, count, r->error);
+    tm_status status =
+        tm_scan_next_integer(&r->scan, what, 0, INT64_MAX, count, r->error);
     return status == TM_OK ? end_row(r, what) : status;
 }
 
 static tm_status read_holes(reader *r)
 {
-    int64_t count;
-    tm_status status = read_count(r, "the number of holes", &count);
+    int64_t count = 0;
+    tm_status status =
+        read_count(r, "the number of holes (0 where there is none)", &count);
     for (int64_t h = 0; h < count && status == TM_OK; h++) {
         double xyz[3];
         status = read_hole(r, xyz);
@@ -181,9 +180,12 @@ static tm_status read_region(reader *r)
     return status == TM_OK ? end_row(r, "the region") : status;
 }
 
+/* Part 4 may lack. */
 static tm_status read_regions(reader *r)
 {
-    int64_t count;
+    int64_t count = 0;
+    if (!tm_scan_seek(&r->scan))
+        return TM_OK;
     tm_status status = read_count(r, "the number of regions", &count);
     for (int64_t i = 0; i < count && status == TM_OK; i++)
         status = read_region(r);

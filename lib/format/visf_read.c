@@ -123,7 +123,7 @@ static bool is_at_end(reader *r)
 
 static tm_status read_points(reader *r)
 {
-    size_t count;
+    size_t count = 0;
     tm_status status = next_count(r, "the number of points", COORDINATES, &count);
     if (status == TM_OK)
         status = tm_block_allocate(r->node, count, 0, r->error);
@@ -136,7 +136,7 @@ static tm_status read_points(reader *r)
 static tm_status read_list(reader *r, lists *to, const char *what, size_t least,
                            size_t limit)
 {
-    size_t k, begin = to->start[to->count];
+    size_t k = 0, begin = to->start[to->count];
     tm_status status = next_count(r, what, 1, &k);
     if (status != TM_OK)
         return status;
@@ -174,7 +174,7 @@ static tm_status begin_lists(reader *r, lists *to)
 
 static tm_status read_polygons(reader *r)
 {
-    size_t count;
+    size_t count = 0;
     tm_status status = next_count(r, "the number of polygons", 1 + TRIANGLE, &count);
     if (status == TM_OK)
         status = begin_lists(r, &r->polygons);

@@ -52,6 +52,11 @@ tm_block *tm_group_of_stream(tm_stream *stream, const char *name);
 tm_status tm_group_add(tm_block *group, tm_group_dimension dimension, int32_t value,
                        const char *name, tm_error *error);
 
+/* That no name and no value is there twice in a dimension: TM_ERROR_INPUT, with the file
+ * and the rows, numbered from base. Expected O(groups). */
+tm_status tm_group_check(const tm_block *group, unsigned base, const char *file,
+                         tm_error *error);
+
 /* Appends to an empty text what any bytes are as a name: UTF-8 (bytes that are none are
  * taken for Latin-1) with '_' for control characters and without blanks at the ends.
  * Empty where nothing is left. */

@@ -11,10 +11,6 @@
  * NULL with the cause in context->problem. */
 const char *tm_group_row_name(tm_row_context *context, const char *at, const char *feed);
 
-/* That no name and no value is there twice. Expected O(groups). */
-tm_status tm_group_check(const tm_block *group, unsigned base, const char *file,
-                         tm_error *error);
-
 /* Appends all rows. */
 void tm_group_write(tm_text *text, const tm_block *group, unsigned base);
 

@@ -106,8 +106,9 @@ void tm_stream_remove_if(tm_stream *stream, tm_block_test *gone, const void *con
  * attributes and markers; the arrays that were there are freed. Contents are zero. */
 tm_status tm_block_allocate(tm_block *block, size_t count, size_t items, tm_error *error);
 
-/* Appends "# line\n" to the history; line breaks inside become blanks. */
-void tm_stream_add_history(tm_stream *stream, const char *line);
+/* Appends "# line\n" to the history, or nothing where memory is out; line breaks inside
+ * become blanks. */
+tm_status tm_stream_add_history(tm_stream *stream, const char *line, tm_error *error);
 
 TM_EXTERN_C_END
 

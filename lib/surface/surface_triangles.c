@@ -5,27 +5,12 @@
 #include "../base/array.h"
 #include "../geom/predicates.h"
 #include "../geom/vector.h"
+#include "../stream/coordinates.h"
 #include "point_table.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Coordinates up to here have squared areas and volumes that are doubles. */
-static const double coordinate_most = 1e100;
-
-static tm_status check_nodes(const tm_polygon_surface *from, tm_error *error)
-{
-    for (size_t v = 0; v < from->nodes; v++) {
-        const double *p = from->xyz[v];
-        for (int i = 0; i < 3; i++)
-            if (!(fabs(p[i]) <= coordinate_most))
-                return tm_fail(error, TM_ERROR_INPUT,
-                               "node %zu (%g, %g, %g) is not finite, or beyond 1e100",
-                               v + from->base, p[0], p[1], p[2]);
-    }
-    return TM_OK;
-}
 
 /* Half edges have 32-bit numbers. */
 static const size_t corners_most = (size_t)1 << 30;
@@ -48,7 +33,8 @@ static tm_status check_facets(const tm_polygon_surface *from, tm_error *error)
                            "facet %zu has several polygons, or a hole (each facet of "
                            "the surface would be one polygon)",
                            f + from->base);
-    return check_nodes(from, error);
+    return tm_coordinates_check((const double(*)[3])from->xyz, from->nodes, from->base,
+                                error);
 }
 
 /* unique[v] becomes the first node with v's coordinates. */

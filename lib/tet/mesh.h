@@ -111,8 +111,9 @@ static inline uint32_t tm_tet_corner(const tm_tet_mesh *mesh, uint32_t t, uint32
  * blocks stay in place) and connects them: tetrahedra are turned to be positive,
  * neighbours found, faces and edges with markers attached. No .ele is a mesh without
  * tetrahedra. TM_ERROR_INPUT where the tetrahedra are no mesh: three at a face, two on
- * the same side of one, a node twice in one, a face or edge listed twice. *mesh need not
- * be initialised; tm_tet_mesh_free() also after an error. Expected O(n). */
+ * the same side of one, a node twice in one, a face or edge listed twice, and where
+ * coordinates are too large or too small (stream/coordinates.h). *mesh need not be
+ * initialised; tm_tet_mesh_free() also after an error. Expected O(n). */
 tm_status tm_tet_mesh_from_stream(tm_tet_mesh *mesh, tm_stream *stream, tm_error *error);
 
 /* Gives the mesh back to the blocks that it was taken from; the mesh is empty then.

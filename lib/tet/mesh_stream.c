@@ -4,6 +4,7 @@
 #include "mesh.h"
 
 #include "../base/array.h"
+#include "../stream/coordinates.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -83,10 +84,10 @@ tm_status tm_tet_mesh_from_stream(tm_tet_mesh *mesh, tm_stream *stream, tm_error
     tm_block *ele = tm_stream_find(stream, ".ele");
     tm_block *face = tm_stream_find(stream, ".face");
     tm_block *edge = tm_stream_find(stream, ".edge");
-    tm_status status = TM_OK;
-    if (node)
+    tm_status status = tm_stream_check_coordinates(stream, error);
+    if (status == TM_OK && node)
         take_nodes(mesh, node);
-    if (ele)
+    if (status == TM_OK && ele)
         status = take_tets(mesh, ele, error);
     if (status == TM_OK && face)
         status = take_faces(mesh, face, stream->base, error);

@@ -90,13 +90,13 @@ elif form == 'ply-little':
 elif form == 'ply-big':
     ply('binary_big_endian', '>')
 elif form == 'stl':
-    print('solid made')
+    print('solid')
     for f in faces:
         print('facet normal 0 0 0\nouter loop')
         for p in f:
             print('vertex', text(p))
         print('endloop\nendfacet')
-    print('endsolid made')
+    print('endsolid')
 elif form == 'stl-binary':
     out.buffer.write(b'solid, but binary'.ljust(80) + struct.pack('<I', len(faces)))
     for f in faces:

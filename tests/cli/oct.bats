@@ -225,7 +225,7 @@ for i, l in enumerate(o.leaves):
     run -3 --separate-stderr oct-import -m a.m3d -o out.tm <(sed '$s/1/2/' a.oct)
     [[ "$stderr" == *" elements in its octants, but the mesh has "* ]]
     run -3 --separate-stderr oct-import -m a.m3d -o out.tm <(sed '$d' a.oct)
-    [[ "$stderr" == *": does not say which elements are in which octant" ]]
+    [[ "$stderr" == *": the file ends where the number of elements in an octant should be" ]]
     python3 -c "from octree import *
 Octree(7).write('turned.oct', False, 0.25)"
     run -3 --separate-stderr oct-import -o out.tm turned.oct

@@ -94,7 +94,7 @@ END
     printf 'termesh 1\n.end\n' >none.tm
     run --separate-stderr tetgen-export out none.tm
     [ "$status" -eq 3 ]
-    [[ $stderr == 'tetgen-export: none.tm: has no block that TetGen knows'* ]]
+    [[ $stderr == 'tetgen-export: none.tm: holds nothing, but tetgen-export takes points'* ]]
     [ -z "$(find . -name 'out*')" ]
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* No input makes a reader of foreign formats crash or return a surface that is not one:
- * every beginning of a good file, and good files with bytes changed. */
+ * every beginning of a good file, and good files with bytes changed, TM_CASES of each. */
 #include "../../lib/mesh/cell_faces.h"
 #include "../../lib/format/mesh_format.h"
 #include "../../lib/format/oct.h"
@@ -18,6 +18,8 @@
 #include <cmocka.h>
 
 enum { CHANGED = 3000, CHANGES_MAX = 6 };
+
+static int changed_files = CHANGED;
 
 static sample samples[SAMPLES];
 
@@ -89,7 +91,7 @@ static void test_changed_bytes(void **state)
 {
     (void)state;
     for (int s = 0; s < SAMPLES; s++)
-        for (int i = 0; i < CHANGED; i++) {
+        for (int i = 0; i < changed_files; i++) {
             char changed[BINARY_MAX];
             memcpy(changed, samples[s].bytes, samples[s].size);
             change(changed, samples[s].size);
@@ -146,7 +148,7 @@ static void test_rows(void **state)
         size_t length = strlen(rows[r].text);
         for (size_t size = 0; size <= length; size++)
             read_rows(rows[r].text, size, rows[r].name);
-        for (int i = 0; i < CHANGED; i++) {
+        for (int i = 0; i < changed_files; i++) {
             char changed[BINARY_MAX];
             memcpy(changed, rows[r].text, length);
             change(changed, length);
@@ -204,7 +206,7 @@ static void test_visf(void **state)
         assert_int_equal(tm_visf_write(&text, &stream, &forms[f], &error), TM_OK);
         for (size_t size = 0; size <= text.size; size++)
             read_visf(text.byte, size);
-        for (int i = 0; i < CHANGED && text.size > 0; i++) {
+        for (int i = 0; i < changed_files && text.size > 0; i++) {
             char *changed = malloc(text.size);
             assert_non_null(changed);
             memcpy(changed, text.byte, text.size);
@@ -281,7 +283,7 @@ static void read_damaged(const char *text, void (*read)(const char *, size_t))
     size_t length = strlen(text);
     for (size_t size = 0; size <= length; size++)
         read(text, size);
-    for (int i = 0; i < CHANGED && length > 0; i++) {
+    for (int i = 0; i < changed_files && length > 0; i++) {
         char changed[BINARY_MAX];
         memcpy(changed, text, length);
         change(changed, length);
@@ -329,6 +331,8 @@ int main(void)
         cmocka_unit_test(test_m3d),
         cmocka_unit_test(test_oct),
     };
+    if (getenv("TM_CASES"))
+        changed_files = atoi(getenv("TM_CASES"));
     make_samples(samples);
     random_start();
     return cmocka_run_group_tests(tests, NULL, NULL);

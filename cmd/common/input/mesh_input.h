@@ -7,10 +7,14 @@
 #include "../../../lib/mesh/cell_faces.h"
 #include "../app/filter.h"
 
-/* Reads the stream from FILE or standard input and says what it holds, which is at least
- * points. Tetrahedra of .ele that are left-handed are turned, with a note; where there
- * are other elements instead, they are not looked at. Exits on failure. */
+/* Reads the stream from FILE or standard input and says what it holds. Tetrahedra of .ele
+ * that are left-handed are turned, with a note; where there are other elements instead,
+ * they are not looked at. Exits on failure. */
 tm_content mesh_input_read(const filter *f, tm_stream *stream);
+
+/* What measures a mesh reads it so: coordinates that are too large or too small to
+ * compute with (lib/stream/coordinates.h) are refused, too. */
+void mesh_input_read_to_compute(const filter *f, tm_stream *stream);
 
 /* Turns the left-handed tetrahedra of .ele, with a note: "… were left-handed and WHAT".
  */

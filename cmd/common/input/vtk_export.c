@@ -20,7 +20,7 @@ static tm_status write_grid(tm_text *text, const tm_stream *stream, unsigned thr
     return writer(text, stream, &options, threads, error);
 }
 
-int vtk_export(int argc, char **argv, const char *name, const char *purpose,
+int vtk_export(int argc, char **argv, const char *name, const char *purpose, bool binary,
                vtk_writer *write)
 {
     filter f = {
@@ -32,6 +32,7 @@ int vtk_export(int argc, char **argv, const char *name, const char *purpose,
                 "      --no-quality    no quality of cells\n",
         .options = long_options,
         .letters = FILTER_LETTERS,
+        .binary = binary,
     };
     int c;
     writer = write;

@@ -5,6 +5,7 @@
 #include "../../geom/vector.h"
 #include "../../element/shape.h"
 #include "../../mesh/mixed_stream.h"
+#include "../../stream/coordinates.h"
 #include "../layer/octree_mesh_stream.h"
 #include "../forest/octree_stream.h"
 #include "repair_boundary.h"
@@ -129,7 +130,9 @@ tm_status tm_repair_from_stream(tm_repair_state *state, tm_stream *stream,
                                 tm_error *error)
 {
     *state = (tm_repair_state){0};
-    tm_status status = tm_mixed_mesh_from_stream(&state->mesh, stream, error);
+    tm_status status = tm_stream_check_coordinates(stream, error);
+    if (status == TM_OK)
+        status = tm_mixed_mesh_from_stream(&state->mesh, stream, error);
     if (status == TM_OK && state->mesh.elements == 0)
         status = tm_fail(error, TM_ERROR_INPUT,
                          "the stream has no elements (the blocks .node and .mix)");

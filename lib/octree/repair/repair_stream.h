@@ -19,7 +19,8 @@ typedef struct tm_repair_notes {
 } tm_repair_notes;
 
 /* Takes the arrays of .node and .mix; the blocks stay. TM_ERROR_INPUT: there are no
- * elements, or an element names a node twice. *state need not be initialised; it is to be
+ * elements, an element names a node twice, or coordinates are too large or too small
+ * (stream/coordinates.h). *state need not be initialised; it is to be
  * freed, after an error too. */
 tm_status tm_repair_from_stream(tm_repair_state *state, tm_stream *stream,
                                 tm_error *error);

@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Each beginning of a file is refused, or read as the whole file is, but where the sample
+ * says that this cannot be seen (reader_samples.h). */
+#include "reader_samples.h"
+
+/* Returns how many cuts are taken as they should not be, or the other way round. */
+static int cut(reader *read, const char *name, const char *bytes, size_t size,
+               const bool *unseen)
+{
+    tm_text whole = {0};
+    int wrong = 0;
+    assert_int_equal(read_copy(read, bytes, size, &whole), TM_OK);
+    for (size_t s = 0; s < size; s++) {
+        tm_text part = {0};
+        const tm_status status = read_copy(read, bytes, s, &part);
+        const bool same =
+            part.size == whole.size && memcmp(part.byte, whole.byte, whole.size) == 0;
+        assert_true(status == TM_OK || status == TM_ERROR_INPUT);
+        if ((status == TM_OK && !same) != unseen[s]) {
+            wrong++;
+            print_error("%s: %zu of %zu bytes are %s\n", name, s, size,
+                        status == TM_OK ? "taken for whole" : "refused");
+        }
+        tm_text_free(&part);
+    }
+    tm_text_free(&whole);
+    return wrong;
+}
+
+static void test_cuts(void **state)
+{
+    (void)state;
+    int wrong = 0;
+    for (size_t i = 0; i < READER_SAMPLES; i++) {
+        char bytes[READER_SAMPLE_MAX];
+        bool unseen[READER_SAMPLE_MAX];
+        assert_true(strlen(reader_samples[i].text) < READER_SAMPLE_MAX);
+        const size_t size = take_braces(reader_samples[i].text, bytes, unseen);
+        wrong += cut(reader_samples[i].read, reader_samples[i].name, bytes, size, unseen);
+    }
+    assert_int_equal(wrong, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_cuts)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
