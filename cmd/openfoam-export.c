@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* openfoam-export: the cells of a stream as a polyMesh folder of OpenFOAM. */
+#include "common/input/left_out.h"
 #include "common/input/mesh_input.h"
 #include "common/app/output_files.h"
 
@@ -119,6 +120,7 @@ int main(int argc, char **argv)
     mesh_input_read(&f, &stream);
     if (tm_openfoam_write(file, &stream, &counts, &error) != TM_OK)
         mesh_input_fail(&f, &error);
+    mesh_leave_out(&f, &stream);
     write_folder(&f, folder, file);
     write_json(&f, &counts);
     for (int i = 0; i < TM_OPENFOAM_FILES; i++)

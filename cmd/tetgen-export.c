@@ -2,6 +2,7 @@
 /* tetgen-export: a stream as TetGen's files. */
 #include "common/app/filter.h"
 #include "common/app/output_files.h"
+#include "common/input/left_out.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -66,12 +67,6 @@ static void write_files(const tm_stream *stream, const char *base)
     for (size_t b = 0; b < stream->blocks && status == TM_OK; b++)
         if (is_written(&stream->block[b]))
             status = write_block(stream, &stream->block[b], base, &error);
-        else
-            filter_note(&f, "%s is not written: TetGen has no such file",
-                        stream->block[b].name);
-    if (status == TM_OK && f.files->count == 0)
-        status = tm_fail_at(&error, TM_ERROR_INPUT, filter_input_name(&f), 0, NULL,
-                            "has no block that TetGen knows (.node, .ele, .face, .edge)");
     if (status != TM_OK)
         filter_fail(&f, &error);
 }
@@ -82,6 +77,7 @@ int main(int argc, char **argv)
     const char *base = read_operands();
     tm_stream stream;
     filter_read(&f, &stream);
+    mesh_leave_out(&f, &stream);
     write_files(&stream, base);
     tm_json *json = filter_json_begin(&f);
     tm_json_open(json, "files", '[');

@@ -3,8 +3,12 @@
 #ifndef TM_BASE_UTF8_H
 #define TM_BASE_UTF8_H
 
+#include "extern_c.h"
+
 #include <stdbool.h>
 #include <stddef.h>
+
+TM_EXTERN_C_BEGIN
 
 /* The bytes of the well-formed character at `at`, which is before end: 1 … 4; 0 where
  * there is none. */
@@ -38,5 +42,7 @@ static inline bool tm_utf8_is_control(const char *at, size_t size)
     return size == 1 ? u[0] < ' ' || u[0] == DELETE
                      : size == 2 && u[0] == C1_LEAD && u[1] < C1_PAST;
 }
+
+TM_EXTERN_C_END
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The formats of meshes that need no header of their own (see also oct.h, tetgen.h and
- * visf.h). A writer appends the file to *text; `threads` format or compress, and the
+/* The formats of meshes that need no header of their own (see also oct.h, tetgen.h, visf.h
+ * and vtk/vtk.h). A writer appends the file to *text; `threads` format or compress, and the
  * bytes are the same for any number of them. */
 #ifndef TM_FORMAT_MESH_FORMAT_H
 #define TM_FORMAT_MESH_FORMAT_H
@@ -21,38 +21,6 @@ TM_EXTERN_C_BEGIN
  * their order. TM_ERROR_INPUT as tm_cell_faces_find(), or where there are no cells and no
  * surface. Expected O(n). */
 tm_status tm_off_write(tm_text *text, const tm_stream *stream, bool all, tm_error *error);
-
-/* VTK ------------------------------------------------------------------------------ */
-
-/* VTK's legacy text file of an unstructured grid (.vtk), version 3.0. (VTK File Formats,
- * in The VTK User's Guide, 11th edition, 2010, section 19.3; polyhedra are lists of faces
- * as in vtkUnstructuredGrid.)
- *
- * Cells are what tm_content_of() says: vertices for points, triangles for a surface,
- * tetrahedra, mixed elements, or polyhedra with their faces. Points keep their numbers,
- * from 0. Point data are attribute_1 … and marker; cell data region (of polyhedra:
- * tetrahedra), attribute_2 … and, of triangles, marker. */
-
-/* Appends the file to *text. `threads` format; the bytes are the same for any number.
- * Fails where tm_cell_faces_find() fails for polyhedra, and where memory is out. O(n). */
-tm_status tm_vtk_write(tm_text *text, const tm_stream *stream, unsigned threads,
-                       tm_error *error);
-
-/* VTK's XML file of an unstructured grid (.vtu), version 1.0: arrays appended raw, little
- * endian, in blocks that zlib has compressed, with 64-bit headers. (VTK File Formats, in
- * The VTK User's Guide, 11th edition, 2010, section 19.3.)
- *
- * Cells are what tm_content_of() says: vertices for points, triangles for a surface,
- * tetrahedra, mixed elements, or polyhedra with their faces. Points keep their numbers,
- * from 0. Point data are attribute_1 … and marker, cell data region and attribute_2 … of
- * cells, marker of triangles and, for .ele, dihedral_quality: min(α_min, 180° - α_max) of
- * the dihedral angles, in degrees. */
-
-/* Appends the file to *text. `threads` compress; the bytes are the same for any number.
- * Tetrahedra are written as they are, so they should be right-hand positive. Fails where
- * tm_cell_faces_find() fails for polyhedra, and where memory is out. O(n). */
-tm_status tm_vtu_write(tm_text *text, const tm_stream *stream, unsigned threads,
-                       tm_error *error);
 
 /* GetFEM --------------------------------------------------------------------------- */
 

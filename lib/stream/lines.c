@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "lines.h"
 
-#include "../base/file.h"
-
 #include <ctype.h>
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -26,12 +23,12 @@ static size_t size_left(int fd)
 tm_status tm_lines_open(tm_lines *lines, int fd, const char *name,
                         const tm_progress *progress, tm_error *error)
 {
-    *lines = (tm_lines){.fd = fd,
-                        .name = name,
+    *lines = (tm_lines){.name = name,
                         .capacity = WINDOW,
                         .line = 1,
                         .progress = progress,
                         .progress_at = {.what = "reading", .bytes = true}};
+    tm_input_open(&lines->input, fd, name);
     lines->progress_at.of = progress ? size_left(fd) : 0;
     tm_progress_tell(progress, &lines->progress_at);
     lines->buffer = malloc(WINDOW + TM_LINES_SLACK);
@@ -44,6 +41,7 @@ tm_status tm_lines_open(tm_lines *lines, int fd, const char *name,
 
 void tm_lines_close(tm_lines *lines)
 {
+    tm_input_close(&lines->input);
     free(lines->buffer);
     lines->buffer = NULL;
 }
@@ -51,7 +49,8 @@ void tm_lines_close(tm_lines *lines)
 /* Doubles the buffer for a line that does not fit; the line begins it. */
 static tm_status widen(tm_lines *lines, tm_error *error)
 {
-    if (lines->capacity >= TM_LINE_MAX)
+    lines->too_long = lines->capacity >= TM_LINE_MAX;
+    if (lines->too_long)
         return tm_fail_at(error, TM_ERROR_INPUT, lines->name, lines->line, NULL,
                           "the line is longer than %zu bytes", TM_LINE_MAX);
     size_t used = (size_t)(lines->filled - lines->buffer);
@@ -70,11 +69,10 @@ static tm_status widen(tm_lines *lines, tm_error *error)
 /* Reads once into the free end of the buffer; sets `end` behind the last line feed. */
 static tm_status read_more(tm_lines *lines, tm_error *error)
 {
-    size_t room = lines->capacity - (size_t)(lines->filled - lines->buffer);
-    ptrdiff_t got = tm_read_some(lines->fd, lines->filled, room);
-    if (got < 0)
-        return tm_fail_at(error, TM_ERROR_SYSTEM, lines->name, 0, NULL, "cannot read: %s",
-                          strerror(errno));
+    size_t got, room = lines->capacity - (size_t)(lines->filled - lines->buffer);
+    tm_status status = tm_input_read(&lines->input, lines->filled, room, &got, error);
+    if (status != TM_OK)
+        return status;
     if (got == 0) {
         lines->at_end = true;
         if (lines->filled > lines->at) {
@@ -84,9 +82,9 @@ static tm_status read_more(tm_lines *lines, tm_error *error)
         lines->end = lines->filled;
         return TM_OK;
     }
-    lines->progress_at.done += (size_t)got;
+    lines->progress_at.done = lines->input.taken;
     tm_progress_tell(lines->progress, &lines->progress_at);
-    char *last = memrchr(lines->filled, '\n', (size_t)got);
+    char *last = memrchr(lines->filled, '\n', got);
     lines->filled += got;
     if (last)
         lines->end = last + 1;

@@ -45,7 +45,7 @@ load filters
     refuses() {
         run -2 --separate-stderr "$1" --no-such-option corner.tm
         [ "$output" = "" ]
-        [[ "$stderr" == "$1: option '--no-such-option' is unknown"* ]]
+        [[ "$stderr" == "$1: unknown option '--no-such-option'"* ]]
         [[ "$stderr" == *"usage: $1 "* ]]
     }
     for_each_filter refuses
@@ -247,6 +247,8 @@ examples() {
     for filter in $filters; do
         [ -x "to/usr/bin/$filter" ]
         [ -f "to/usr/share/man/man1/$filter.1" ]
+        [ -f "to/usr/share/bash-completion/completions/$filter" ]
+        [ -f "to/usr/share/zsh/site-functions/_$filter" ]
     done
     [ -f to/usr/share/man/man5/termesh-stream.5 ]
     [ -f to/usr/share/man/man7/termesh.7 ]

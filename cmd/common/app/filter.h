@@ -56,6 +56,20 @@ enum {
     FILTER_OWN = 512 /* a filter numbers its own long-only options from here */
 };
 
+/* The words that an option takes: `count` of them, the first at `first`, the next one
+ * `stride` bytes on. A table ends with {0}. The completion of shells has them from here.
+ */
+typedef struct filter_words {
+    int option;
+    const char *const *first;
+    size_t stride;
+    int count;
+} filter_words;
+#define FILTER_WORDS(option, list)                                                       \
+    {                                                                                    \
+        option, list, sizeof *(list), (int)(sizeof(list) / sizeof *(list))               \
+    }
+
 typedef struct filter {
     /* set by the filter */
     const char *name;             /* "lepp-improve" */
@@ -64,6 +78,7 @@ typedef struct filter {
     const char *help;             /* the filter's own options, a line each, for --help */
     const struct option *options; /* its own, then FILTER_OPTIONS */
     const char *letters;          /* getopt's, its own + FILTER_LETTERS */
+    const filter_words *words;    /* of options that take one of some; or NULL */
     bool json_is_output;          /* --json - is stdout: the *-stats and mesh-check */
     bool q_is_own;                /* -q is the filter's; quiet is --quiet only */
     bool j_is_own;                /* -j is the filter's; threads are --threads only */
@@ -79,11 +94,13 @@ typedef struct filter {
     bool forced; /* -o -: to standard output, whatever that is */
     bool strict; /* what the output cannot carry is an error */
     unsigned threads;
-    tm_text command;     /* the options as given, for the history */
-    output_files *files; /* -o FILE in the making */
-    progress *progress;  /* NULL until all options are known */
-    tm_text report;      /* of --json, in the making */
-    bool reported;       /* the report is where it belongs */
+    const char *apart;     /* what follows an option whose argument may lack */
+    char apart_option[32]; /* how that is written before its argument: "-q" */
+    tm_text command;       /* the options as given, for the history */
+    output_files *files;   /* -o FILE in the making */
+    progress *progress;    /* NULL until all options are known */
+    tm_text report;        /* of --json, in the making */
+    bool reported;         /* the report is where it belongs */
     tm_json json_object;
 } filter;
 
@@ -102,9 +119,19 @@ double filter_number(const filter *f, const char *option, const char *text, doub
 long filter_integer(const filter *f, const char *option, const char *text, long lo,
                     long hi);
 
-/* An option argument as its place in a list of words, else a usage error. */
-int filter_word(const filter *f, const char *option, const char *const *word, int count,
-                const char *given);
+/* An option argument as its place in the option's row of f->words, else a usage error; or
+ * -1 where it is none of them. */
+int filter_word(const filter *f, int option, const char *given);
+int filter_find_word(const filter *f, int option, const char *given);
+const char *filter_word_of(const filter_words *row, int k); /* word k of the row */
+
+/* Where the operand is the word behind an option whose argument may lack, and is no file:
+ * that it may be meant for that argument, and how to write it; else "". */
+enum { FILTER_APART = 320 };
+void filter_explain_apart(const filter *f, const char *operand, char text[FILTER_APART]);
+
+/* "usage: name synopsis" */
+void filter_usage(const filter *f, FILE *to);
 
 /* "name: message", then exit 2, pointing to --help. */
 _Noreturn void filter_usage_error(const filter *f, const char *format, ...)
@@ -123,7 +150,15 @@ void filter_stage(const filter *f, const char *what);
 void filter_print(const filter *f, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* One line on stderr, "name: …": note() unless -q, verbose() with -v only. */
+/* The same of bytes that a reader refused; `reader` is the filter that reads the format.
+ * Where they look like what another one reads, that is said. */
+_Noreturn void filter_fail_file(const filter *f, tm_error *error, const tm_text *bytes,
+                                const char *reader);
+
+/* One line on stderr, "name: …": note() unless -q, verbose() with -v only. Bytes that a
+ * terminal would obey are shown as \x1b. */
+void filter_message(const filter *f, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 void filter_note(const filter *f, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 void filter_verbose(const filter *f, const char *format, ...)

@@ -3,6 +3,7 @@
 
 #include "../../../lib/format/tetgen.h"
 #include "../../../lib/stream/coordinates.h"
+#include "left_out.h"
 
 #include <stdio.h>
 
@@ -79,6 +80,7 @@ int mesh_write(filter *f, mesh_writer *write)
     filter_stage(f, "formatting");
     if (write(&text, &stream, f->threads, &error) != TM_OK)
         mesh_input_fail(f, &error);
+    mesh_leave_out(f, &stream);
     mesh_input_report(f, &stream);
     filter_write_text(f, &text);
     tm_text_free(&text);
@@ -136,7 +138,7 @@ int mesh_import(int argc, char **argv, const char *name, const char *purpose,
     tm_stream_init(&stream);
     filter_read_bytes(&f, &bytes);
     if (read(&f, &stream, &bytes, &error) != TM_OK)
-        filter_fail(&f, &error);
+        filter_fail_file(&f, &error, &bytes, name);
     tm_text_free(&bytes);
     mesh_input_report(&f, &stream);
     write_imported(&f, &stream);

@@ -38,8 +38,8 @@ void mesh_rows_json(tm_json *json, const tm_stream *stream);
 typedef tm_status mesh_writer(tm_text *text, const tm_stream *stream, unsigned threads,
                               tm_error *error);
 
-/* What an exporter does after its options: reads, writes, reports. For main() to return.
- */
+/* What an exporter does after its options: reads, says what it leaves out, writes,
+ * reports. For main() to return. */
 int mesh_write(filter *f, mesh_writer *write);
 
 /* Reads a foreign file into an empty stream, with notes about what it had to do. */

@@ -2,6 +2,7 @@
 #include "surface_input.h"
 
 #include "../../../lib/base/file.h"
+#include "../../../lib/base/input.h"
 #include "../../../lib/mesh/cell_faces.h"
 #include "../app/kinds.h"
 #include "../../../lib/surface/surface_defects.h"
@@ -13,12 +14,18 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-/* The name with .node for its suffix. */
+/* The name with .node for its suffix, or where there is no such file with .node.gz. */
 static void node_file(const char *name, tm_text *file)
 {
-    const char *dot = strrchr(name, '.');
-    tm_text_append(file, name, dot ? (size_t)(dot - name) : strlen(name));
+    const char *end = name + tm_unpacked_name(name);
+    const char *dot = memrchr(name, '.', (size_t)(end - name));
+    tm_text_append(file, name, (size_t)((dot ? dot : end) - name));
     tm_text_string(file, ".node");
+    if (file->failed || access(file->byte, F_OK) == 0)
+        return;
+    tm_text_string(file, ".gz");
+    if (!file->failed && access(file->byte, F_OK) != 0)
+        file->byte[file->size -= strlen(".gz")] = '\0';
 }
 
 /* The nodes of a .poly or .smesh file that has none itself. */
@@ -36,6 +43,8 @@ static tm_status read_nodes_beside(const filter *f, tm_polygon_surface *surface,
     filter_read_file(f, file.byte, &bytes);
     const tm_status status =
         tm_plc_read(surface, TM_PLC_NODE, bytes.byte, bytes.size, file.byte, error);
+    if (status != TM_OK)
+        filter_fail_file(f, error, &bytes, "tetgen-import");
     tm_text_free(&file);
     tm_text_free(&bytes);
     return status;
@@ -148,9 +157,11 @@ tm_format surface_input_read(const filter *f, tm_polygon_surface *surface,
             status =
                 tm_format_read(surface, format, bytes.byte, bytes.size, name, &error);
     }
-    tm_text_free(&bytes);
+    if (status != TM_OK && format > TM_FORMAT_STREAM)
+        filter_fail_file(f, &error, &bytes, "tetgen-mesh");
     if (status != TM_OK)
         filter_fail(f, &error);
+    tm_text_free(&bytes);
     filter_verbose(f, "%s: %s, %zu nodes, %zu faces", name, tm_format_name(format),
                    surface->nodes, surface->facets);
     return format;

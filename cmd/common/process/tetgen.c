@@ -51,10 +51,10 @@ static void show_complaints(const filter *f, const tm_text *output)
         if (is_progress(line, size))
             continue;
         if (shown++ < LINES_MAX)
-            filter_print(f, "%s: tetgen: %.*s", f->name, size, line);
+            filter_message(f, "tetgen: %.*s", size, line);
     }
     if (shown > LINES_MAX)
-        filter_print(f, "%s: tetgen: … and %d lines more", f->name, shown - LINES_MAX);
+        filter_message(f, "tetgen: … and %d lines more", shown - LINES_MAX);
 }
 
 /* With -v all of it. */
