@@ -181,7 +181,7 @@ $volume" ]
         'ulimit -f 4; trap "" XFSZ; openfoam-export mesh boxes.tm'
     [[ "$stderr" == *'openfoam-export: mesh/'*': cannot write: '* ]]
     [ ! -e mesh ]
-    run -4 --separate-stderr openfoam-export no/mesh boxes.tm
+    run -4 --separate-stderr openfoam-export -q no/mesh boxes.tm
     [[ "$stderr" == 'openfoam-export: no/mesh: cannot make the folder: '* ]]
     touch file
     run -4 --separate-stderr openfoam-export file boxes.tm

@@ -22,7 +22,8 @@ enum {
     EDGE_NAMES = 1 << 9,
     FACE_NAMES = 1 << 10,
     REGION_NAMES = 1 << 11,
-    PARTS = 1 << 12,     /* of .node, .ele, .face and .edge */
+    NAMES = NODE_NAMES | EDGE_NAMES | FACE_NAMES | REGION_NAMES,
+    PARTS = 1 << 12,     /* of .node, .ele, .face, .edge and .group */
     TETRAHEDRA = 1 << 13 /* .ele whatever else there is, and nothing else */
 };
 
@@ -40,8 +41,8 @@ static const struct {
     {"off-export", REGIONS | OTHER_REGIONS | ATTRIBUTES | REGION_NAMES},
     {"openfoam-export", FACES | FACES_BELOW_0 | REGIONS | FACE_NAMES | REGION_NAMES},
     {"tetgen-export", NODE_ATTRIBUTES | NODE_MARKERS | EDGES | FACES | FACES_BELOW_0 |
-                          REGIONS | OTHER_REGIONS | ATTRIBUTES | NODE_NAMES | EDGE_NAMES |
-                          FACE_NAMES | REGION_NAMES | PARTS | TETRAHEDRA},
+                          REGIONS | OTHER_REGIONS | ATTRIBUTES | NAMES | PARTS |
+                          TETRAHEDRA},
     {"visf-export", 0},
     {"vtk-export", ~0u & ~(unsigned)(PARTS | TETRAHEDRA)},
     {"vtu-export", ~0u & ~(unsigned)(PARTS | TETRAHEDRA)},
@@ -260,7 +261,7 @@ static bool is_left_out(const finder *find, const tm_block *block)
     static const char surface[] = "surface.";
     if (block->name[0] == '.')
         return block->kind == TM_UNKNOWN;
-    if (find->keeps & PARTS && block->kind <= TM_EDGE)
+    if (find->keeps & PARTS && (block->kind <= TM_EDGE || block->kind == TM_GROUP))
         return false;
     return !tm_stream_find(find->stream, ".octant") ||
            strncmp(block->name, surface, sizeof surface - 1) != 0;
