@@ -58,20 +58,11 @@ static tm_status write_block(const tm_stream *stream, const tm_block *block,
     return status;
 }
 
-/* All but their names: filter_finish() gives them. Of a stream without any block for
- * TetGen nothing would be written, whatever is left out. */
+/* All but their names: filter_finish() gives them. */
 static void write_files(const tm_stream *stream, const char *base)
 {
     tm_error error;
     tm_status status = TM_OK;
-    bool any = false;
-    for (size_t b = 0; b < stream->blocks; b++)
-        any |= is_written(&stream->block[b]);
-    if (!any)
-        status = tm_fail_at(&error, TM_ERROR_INPUT, filter_input_name(&f), 0, NULL,
-                            "has no block that TetGen knows (.node, .ele, .face, .edge)");
-    else
-        mesh_leave_out(&f, stream);
     for (size_t b = 0; b < stream->blocks && status == TM_OK; b++)
         if (is_written(&stream->block[b]))
             status = write_block(stream, &stream->block[b], base, &error);
@@ -85,6 +76,7 @@ int main(int argc, char **argv)
     const char *base = read_operands();
     tm_stream stream;
     filter_read(&f, &stream);
+    mesh_leave_out(&f, &stream);
     write_files(&stream, base);
     tm_json *json = filter_json_begin(&f);
     tm_json_open(json, "files", '[');

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/extern_c.h"
 #include "base/file.h"
+#include "base/input.h"
 #include "base/json.h"
 #include "base/number.h"
 #include "base/parallel.h"

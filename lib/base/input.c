@@ -32,6 +32,14 @@ void tm_input_close(tm_input *input)
     input->gzip = NULL;
 }
 
+size_t tm_unpacked_name(const char *name)
+{
+    static const char suffix[] = ".gz";
+    const size_t size = strlen(name), length = sizeof suffix - 1;
+    return size > length && strcmp(name + size - length, suffix) == 0 ? size - length
+                                                                      : size;
+}
+
 static tm_status read_plain(tm_input *input, char *bytes, size_t size, size_t *got,
                             tm_error *error)
 {

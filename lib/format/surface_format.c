@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "surface_format.h"
 
+#include "../base/input.h"
 #include "../stream/sniff.h"
 #include "scan.h"
 #include "tetgen.h"
@@ -10,8 +11,8 @@
 
 static bool has_suffix(const char *name, const char *suffix)
 {
-    size_t size = strlen(name), length = strlen(suffix);
-    return size >= length && strcasecmp(name + size - length, suffix) == 0;
+    size_t size = tm_unpacked_name(name), length = strlen(suffix);
+    return size >= length && strncasecmp(name + size - length, suffix, length) == 0;
 }
 
 /* The beginning of a file: its first word. */

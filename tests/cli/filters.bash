@@ -69,7 +69,8 @@ END
         '[Triangles, ARRAY1<STRING>]' 1 '0 1 2 0 0 0' >corner.mdl
     printf '%s\n' MIXED '4 1' '0 0 0' '1 0 0' '0 1 0' '0 0 1' 'T 0 1 2 3' >corner.mvm
     printf '%s\n' '8 0 1' '0 0 0' '0 0 1' '1 0 1' '1 0 0' '0 1 0' '0 1 1' '1 1 1' '1 1 0' \
-        '8 0 1 2 3 4 5 6 7 0' 0 1 >cube.oct
+        '8 0 1 2 3 4 5 6 7 0' 0 'Geometric Transform' '0 0 0' '0 0 0' \
+        1 >cube.oct
     { sed '$d' corner.tm; printf '%s\n' .mix '1 0' '1 4 1 2 3 4' .octant '1 0' \
         '1 0 0 0 0 1 2' .root '1 0' '1 0 0 0 1 0' surface.node '3 3 0 0' '1 0 0 0' \
         '2 1 0 0' '3 0 1 0' surface.face '1 0' '1 1 2 3' .end; } >octant.tm

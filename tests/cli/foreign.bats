@@ -36,6 +36,10 @@ write_oct() {
 3 7 0
 8 0 1 2 3 4 5 6 7 0
 0
+Geometric Transform
+0 0 0
+0 0 0
+1
 END
 }
 
@@ -197,8 +201,14 @@ same() {
     same tet-stats cube.stream
     for sample in *.surface; do
         case $sample in
-        # their kind is in their suffix
-        poly.* | smesh.*) continue ;;
+        poly.* | smesh.*) # their kind is in their suffix
+            form=${sample%.*}
+            cp "$sample" "a.$form"
+            tetgen-mesh --no-history "a.$form" >plain.out
+            gzip "a.$form"
+            tetgen-mesh --no-history "a.$form.gz" | cmp - plain.out
+            continue
+            ;;
         esac
         same tetgen-mesh "$sample"
         gzip -c "$sample" | tetgen-mesh --no-history | cmp - plain.out
@@ -213,11 +223,11 @@ same() {
 @test "gzip: TetGen's files, a .node beside a .poly, rules and octants" {
     cube_tm >cube.tm
     tetgen-export cube cube.tm
-    tetgen-import --no-history cube >plain.out
+    tetgen-import --no-history cube >from-files
     for file in cube.node cube.ele cube.face; do
         gzip -c "$file" >packed && mv packed "$file"
     done
-    tetgen-import --no-history cube | cmp - plain.out
+    tetgen-import --no-history cube | cmp - from-files
     surface cube poly >whole.poly
     { echo 0 3 0 0 && sed '1,/^8 /d' whole.poly; } >apart.poly
     awk '/^12 /{ exit } 1' whole.poly >apart.node
@@ -226,6 +236,15 @@ same() {
         gzip -c "$file" >packed && mv packed "$file"
     done
     tetgen-mesh --no-history apart.poly | cmp - plain.out
+    # named with .gz
+    for file in *.node *.ele *.face *.poly; do
+        mv "$file" "$file.gz"
+    done
+    tetgen-mesh --no-history apart.poly.gz | cmp - plain.out
+    tetgen-import --no-history cube | cmp - from-files
+    tetgen-import --no-history cube.ele.gz cube.node.gz cube.face.gz | cmp - from-files
+    run -3 --separate-stderr tetgen-import cube.ele.gz
+    [ "$stderr" = 'tetgen-import: cube.ele.gz: its .node file is not among the files' ]
     [ -x "$TM_BUILD/bin/octree-mesh" ] || return 0
     surface cube off | gzip >cube.off.gz
     printf 'n_regions 1\n.2 .2 .2 .7 .7 .7 3\n' | gzip >boxes.gz

@@ -2,6 +2,7 @@
 #include "surface_input.h"
 
 #include "../../../lib/base/file.h"
+#include "../../../lib/base/input.h"
 #include "../../../lib/mesh/cell_faces.h"
 #include "../app/kinds.h"
 #include "../../../lib/surface/surface_defects.h"
@@ -13,12 +14,18 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-/* The name with .node for its suffix. */
+/* The name with .node for its suffix, or where there is no such file with .node.gz. */
 static void node_file(const char *name, tm_text *file)
 {
-    const char *dot = strrchr(name, '.');
-    tm_text_append(file, name, dot ? (size_t)(dot - name) : strlen(name));
+    const char *end = name + tm_unpacked_name(name);
+    const char *dot = memrchr(name, '.', (size_t)(end - name));
+    tm_text_append(file, name, (size_t)((dot ? dot : end) - name));
     tm_text_string(file, ".node");
+    if (file->failed || access(file->byte, F_OK) == 0)
+        return;
+    tm_text_string(file, ".gz");
+    if (!file->failed && access(file->byte, F_OK) != 0)
+        file->byte[file->size -= strlen(".gz")] = '\0';
 }
 
 /* The nodes of a .poly or .smesh file that has none itself. */
