@@ -2,8 +2,8 @@
 #include "mesh_input.h"
 
 #include "../../../lib/format/tetgen.h"
-#include "left_out.h"
 #include "../../../lib/stream/coordinates.h"
+#include "left_out.h"
 
 #include <stdio.h>
 

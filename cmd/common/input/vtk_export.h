@@ -9,7 +9,7 @@ typedef tm_status vtk_writer(tm_text *text, const tm_stream *stream,
                              const tm_vtk_options *options, unsigned threads,
                              tm_error *error);
 
-/* For main() to return. */
+/* For main() to return; `binary`: the file is no text. */
 int vtk_export(int argc, char **argv, const char *name, const char *purpose, bool binary,
                vtk_writer *write);
 
