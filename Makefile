@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # termesh. Needs GNU make.
 #
-#   make                 the filters in build/bin, the library in build, static and shared
+#   make                 the filters in build/bin, their completion for bash and zsh in
+#                        build/completion, the library in build, static and shared
 #   make check           all tests; ONLY=NAME: one test program, or one file of tests/cli;
 #                        SAN=1: under the address and undefined-behaviour sanitizers,
 #                        in build/san; TM_SEED repeats the random ones
@@ -24,6 +25,8 @@ BINDIR = $(PREFIX)/bin
 MANDIR = $(PREFIX)/share/man
 LIBDIR = $(PREFIX)/lib
 INCLUDEDIR = $(PREFIX)/include
+BASHCOMPLETIONDIR = $(PREFIX)/share/bash-completion/completions
+ZSHCOMPLETIONDIR = $(PREFIX)/share/zsh/site-functions
 
 CC = cc
 CXX = c++
@@ -76,6 +79,7 @@ in_library = $(foreach file,$(wildcard lib/*/*$(1) lib/*/*/*$(1)),\
 
 filters := $(filter-out $(left_out),$(basename $(notdir $(wildcard cmd/*.c))))
 bin := $(filters:%=$(BUILD)/bin/%)
+completions := $(filters:%=$(BUILD)/completion/bash/%)
 library := $(BUILD)/libtermesh.a
 shared := $(BUILD)/libtermesh.so.$(VERSION)
 library_objects := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(left_out),$(call in_library,.c)))
@@ -98,7 +102,7 @@ sources := $(wildcard lib/*.h lib/*/*.[ch] lib/*/*/*.[ch] lib/*/*/*/*.[ch] cmd/*
 .PHONY: all tests check benchers bench fuzz lint warnings format install uninstall clean
 .SECONDARY:
 
-all: $(bin) $(library) $(shared)
+all: $(bin) $(completions) $(library) $(shared)
 ifdef left_out
 	@echo "There is no p4est, or no mpicc: octree-mesh and octree-repair are left out." >&2
 endif
@@ -136,6 +140,10 @@ $(shared): $(library_objects) lib/termesh.map
 $(bin): $(BUILD)/bin/%: $(BUILD)/cmd/%.o $(common) $(library)
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) $(LDLIBS)
+
+# A filter prints its options; the file for zsh is made with that for bash.
+$(completions): $(BUILD)/completion/bash/%: $(BUILD)/bin/% cmd/completion.sh
+	sh cmd/completion.sh $< $(BUILD)/completion
 
 $(unit_tests): $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(library)
 	@mkdir -p $(@D)
@@ -210,6 +218,9 @@ format:
 install: all
 	install -d $(DESTDIR)$(BINDIR) $(DESTDIR)$(LIBDIR)/pkgconfig
 	install -m 755 $(bin) $(DESTDIR)$(BINDIR)
+	install -d $(DESTDIR)$(BASHCOMPLETIONDIR) $(DESTDIR)$(ZSHCOMPLETIONDIR)
+	install -m 644 $(completions) $(DESTDIR)$(BASHCOMPLETIONDIR)
+	install -m 644 $(filters:%=$(BUILD)/completion/zsh/_%) $(DESTDIR)$(ZSHCOMPLETIONDIR)
 	install -m 644 $(library) $(DESTDIR)$(LIBDIR)
 	install -m 755 $(shared) $(DESTDIR)$(LIBDIR)
 	for link in libtermesh.so.$(SOVERSION) libtermesh.so; do \
@@ -228,7 +239,9 @@ install: all
 
 uninstall:
 	rm -f $(filters:%=$(DESTDIR)$(BINDIR)/%) $(DESTDIR)$(LIBDIR)/libtermesh.* \
-		$(DESTDIR)$(LIBDIR)/pkgconfig/termesh.pc
+		$(DESTDIR)$(LIBDIR)/pkgconfig/termesh.pc \
+		$(filters:%=$(DESTDIR)$(BASHCOMPLETIONDIR)/%) \
+		$(filters:%=$(DESTDIR)$(ZSHCOMPLETIONDIR)/_%)
 	rm -rf $(DESTDIR)$(INCLUDEDIR)/termesh
 	for page in $(pages); do \
 		rm -f $(DESTDIR)$(MANDIR)/man$${page##*.}/$${page#man/} || exit; \

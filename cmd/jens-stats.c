@@ -87,22 +87,12 @@ static options read_options(filter *f)
     return o;
 }
 
-static void refuse_polyhedra(const filter *f)
-{
-    tm_error error;
-    tm_fail_at(&error, TM_ERROR_INPUT, filter_input_name(f), 0, ".cell",
-               "jens-stats reads mixed elements (.mix) or tetrahedra (.ele); poly-stats "
-               "reads polyhedra");
-    filter_fail(f, &error);
-}
-
 /* Those of .mix or, where there are none, of .ele, which are turned if they must be. */
 static tm_elements read_elements(const filter *f, tm_stream *stream)
 {
     mesh_input_read_to_compute(f, stream);
     const tm_block *node = tm_stream_find(stream, ".node");
     const tm_block *mix = tm_stream_find(stream, ".mix");
-    const tm_block *cell = tm_stream_find(stream, ".cell");
     tm_block *ele = tm_stream_find(stream, ".ele");
     const bool has_tetrahedra = ele && ele->count > 0;
     tm_elements elements = {.xyz = node ? (const double(*)[3])node->real : NULL};
@@ -116,8 +106,6 @@ static tm_elements read_elements(const filter *f, tm_stream *stream)
         mesh_input_turn(f, stream, ele, "are counted turned");
         elements.count = ele->count;
         elements.item = ele->integer;
-    } else if (cell && cell->count > 0) {
-        refuse_polyhedra(f);
     }
     return elements;
 }
@@ -319,13 +307,13 @@ int main(int argc, char **argv)
     const tm_elements elements = read_elements(&f, &stream);
     if (tm_jens_statistics_measure(&statistics, &elements, &o.request, &error) != TM_OK)
         filter_fail(&f, &error);
-    write_files(&f, &o, &statistics);
-    write_report(&f, &o, &elements, &statistics, stream.base);
     if (f.json) {
         tm_jens_statistics_json(filter_json_begin(&f), &statistics, &o.request,
                                 stream.base);
         filter_json_end(&f);
     }
+    write_files(&f, &o, &statistics);
+    write_report(&f, &o, &elements, &statistics, stream.base);
     const bool good = is_good(&f, &o, &statistics);
     tm_stream_free(&stream);
     return filter_finish(&f, good ? 0 : EXIT_GOAL);

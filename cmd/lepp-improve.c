@@ -63,6 +63,20 @@ static const char *const algorithms[] = {"bisection", "centroid",      "wcentroi
                                          "delaunay",  "swap-centroid", "selective",
                                          "improve"};
 
+static const char *const measures[] = {"dihedral", "volume"};
+static const char *const stops[] = {"original", "converged"}; /* or a number */
+static const char *const paths[] = {"simple", "full"};
+static const char *const sweeps[] = {"smooth", "face-swap", "both"};
+
+static const filter_words option_words[] = {
+    FILTER_WORDS('a', algorithms),
+    FILTER_WORDS('Q', measures),
+    FILTER_WORDS('s', stops),
+    {OPS, tm_improve_op_name, sizeof *tm_improve_op_name, TM_IMPROVE_OPS},
+    FILTER_WORDS(PATH, paths),
+    FILTER_WORDS(WITH, sweeps),
+    {0}};
+
 /* What is to be done, by one of two engines. */
 typedef struct {
     bool is_improve;
@@ -72,9 +86,10 @@ typedef struct {
 
 static void set_stop(const filter *f, settings *o, const char *text)
 {
-    if (strcmp(text, "original") == 0) {
+    const int stop = filter_find_word(f, 's', text);
+    if (stop == 0) {
         o->lepp.stop = TM_LEPP_ORIGINAL;
-    } else if (strcmp(text, "converged") == 0) {
+    } else if (stop == 1) {
         o->lepp.stop = TM_LEPP_CONVERGED;
         o->improve.converge = true;
     } else {
@@ -96,21 +111,17 @@ static unsigned find_ops(const filter *f, const char *list)
     for (;;) {
         size_t length = strcspn(list, ",");
         snprintf(word, sizeof word, "%.*s", (int)length, list);
-        ops |= 1u << filter_word(f, "--ops", tm_improve_op_name, TM_IMPROVE_OPS, word);
+        ops |= 1u << filter_word(f, OPS, word);
         if (list[length] == '\0')
             return ops;
         list += length + 1;
     }
 }
 
-static const char *const measures[] = {"dihedral", "volume"};
-static const char *const paths[] = {"simple", "full"};
-static const char *const sweeps[] = {"smooth", "face-swap", "both"};
-
 static void set_option(filter *f, settings *o, int c)
 {
     if (c == 'a') {
-        int a = filter_word(f, "-a", algorithms, ALGORITHMS + 1, optarg);
+        int a = filter_word(f, 'a', optarg);
         o->is_improve = a == IMPROVE;
         o->lepp.algorithm = o->is_improve ? TM_LEPP_SELECTIVE : (tm_lepp_algorithm)a;
     } else if (c == 'm') {
@@ -118,7 +129,7 @@ static void set_option(filter *f, settings *o, int c)
     } else if (c == 't') {
         o->lepp.angle = o->improve.angle = filter_number(f, "-t", optarg, 0, right_angle);
     } else if (c == 'Q') {
-        o->lepp.measure = (tm_tet_measure)filter_word(f, "-Q", measures, 2, optarg);
+        o->lepp.measure = (tm_tet_measure)filter_word(f, 'Q', optarg);
         o->improve.measure = o->lepp.measure;
     } else if (c == 's') {
         set_stop(f, o, optarg);
@@ -129,9 +140,9 @@ static void set_option(filter *f, settings *o, int c)
             filter_number(f, "--max-growth", optarg, least_growth, most_growth);
         o->improve.max_growth = o->lepp.max_growth;
     } else if (c == PATH) {
-        o->lepp.path = (tm_lepp_path)filter_word(f, "--path", paths, 2, optarg);
+        o->lepp.path = (tm_lepp_path)filter_word(f, PATH, optarg);
     } else if (c == WITH) {
-        o->lepp.sweeps = 1u + (unsigned)filter_word(f, "--with", sweeps, 3, optarg);
+        o->lepp.sweeps = 1u + (unsigned)filter_word(f, WITH, optarg);
     } else if (c == MAX_STAR) {
         o->lepp.max_star = (size_t)filter_integer(f, "--max-star", optarg, 1, INT32_MAX);
     }
@@ -336,6 +347,7 @@ int main(int argc, char **argv)
                 .purpose = "Improves tetrahedra; the boundary stays where it is.",
                 .help = own_help,
                 .options = options,
+                .words = option_words,
                 .letters = "a:m:t:Q:s:" FILTER_LETTERS};
     filter_start(&f, argc, argv);
     settings o = read_options(&f);

@@ -80,11 +80,11 @@ int main(int argc, char **argv)
     mesh_input_read_to_compute(&f, &stream);
     tm_examination found;
     examine(&f, &stream, &found);
-    write_report(&f, &found, stream.base);
     if (f.json) {
         tm_examination_json(filter_json_begin(&f), &found);
         filter_json_end(&f);
     }
+    write_report(&f, &found, stream.base);
     tm_stream_free(&stream);
     return filter_finish(&f, tm_examination_is_good(&found) ? 0 : EXIT_GOAL);
 }

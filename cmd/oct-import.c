@@ -37,7 +37,8 @@ static void read_mesh(const char *file, tm_stream *stream)
     tm_text bytes = {0};
     size_t materials;
     filter_read_file(&f, file, &bytes);
-    succeed(tm_m3d_read(stream, bytes.byte, bytes.size, file, &materials, &error));
+    if (tm_m3d_read(stream, bytes.byte, bytes.size, file, &materials, &error) != TM_OK)
+        filter_fail_file(&f, &error, &bytes, "m3d-import");
     tm_text_free(&bytes);
 }
 
@@ -48,8 +49,12 @@ static void read_surface(const char *file, tm_stream *stream)
     filter_read_file(&f, file, &bytes);
     const char *text = bytes.byte;
     tm_polygon_surface_init(&surface);
-    succeed(tm_format_read(&surface, tm_format_of(text, bytes.size, file), text,
-                           bytes.size, file, &error));
+    const tm_format format = tm_format_of(text, bytes.size, file);
+    if (tm_format_read(&surface, format, text, bytes.size, file, &error) != TM_OK) {
+        if (format <= TM_FORMAT_STREAM)
+            filter_fail(&f, &error);
+        filter_fail_file(&f, &error, &bytes, "tetgen-mesh");
+    }
     succeed(tm_polygon_surface_to_stream(&surface, stream, "surface", &error));
     tm_polygon_surface_free(&surface);
     tm_text_free(&bytes);
@@ -61,7 +66,8 @@ static void read_octants(tm_stream *stream)
     tm_oct oct;
     const char *name = filter_input_name(&f);
     filter_read_bytes(&f, &bytes);
-    succeed(tm_oct_read(&oct, bytes.byte, bytes.size, name, &error));
+    if (tm_oct_read(&oct, bytes.byte, bytes.size, name, &error) != TM_OK)
+        filter_fail_file(&f, &error, &bytes, f.name);
     succeed(tm_oct_to_stream(&oct, stream, name, &error));
     tm_oct_free(&oct);
     tm_text_free(&bytes);
@@ -86,11 +92,11 @@ int main(int argc, char **argv)
     read_octants(&stream);
     if (surface)
         read_surface(surface, &stream);
+    mesh_input_report(&f, &stream);
     filter_write(&f, &stream, "%zu nodes, %zu elements, %zu octants",
                  tm_stream_find(&stream, ".node")->count,
                  tm_stream_find(&stream, ".mix")->count,
                  tm_stream_find(&stream, ".octant")->count);
-    mesh_input_report(&f, &stream);
     tm_stream_free(&stream);
     return filter_finish(&f, 0);
 }

@@ -8,6 +8,7 @@
 #include "../lib/examine/jens_statistics.h"
 #include "../lib/format/mesh_format.h"
 #include "../lib/format/oct.h"
+#include "../lib/format/vtk/vtk.h"
 #include "../lib/octree/repair/repair.h"
 #include "../lib/octree/repair/repair_stream.h"
 #include "../lib/octree/repair/repair_trace.h"
@@ -57,9 +58,11 @@ typedef struct {
     tm_surface boundary;
 } program;
 
+static const char *const methods[] = {"refine", "full"};
+static const filter_words option_words[] = {FILTER_WORDS(METHOD, methods), {0}};
+
 static void read_option(program *p, int c)
 {
-    static const char *const methods[] = {"refine", "full"};
     switch (c) {
     case 't':
         p->repair.threshold = filter_number(&p->f, "--threshold", optarg, 0, 1);
@@ -69,8 +72,7 @@ static void read_option(program *p, int c)
             (unsigned)filter_integer(&p->f, "--iterations", optarg, 0, MOST_ITERATIONS);
         break;
     case METHOD:
-        p->repair.method =
-            (tm_repair_method)filter_word(&p->f, "--method", methods, 2, optarg);
+        p->repair.method = (tm_repair_method)filter_word(&p->f, METHOD, optarg);
         break;
     case MAX_GROWTH:
         p->repair.growth = filter_number(&p->f, "--max-growth", optarg, 1, most_growth);
@@ -171,6 +173,14 @@ static tm_status write_mesh(const writer *w, const char *suffix, mesh_writer *wr
     return status;
 }
 
+/* Of the elements nothing but their shape. */
+static tm_status write_vtk(tm_text *text, const tm_stream *stream, unsigned threads,
+                           tm_error *error)
+{
+    const tm_vtk_options elements = {.boundary = false};
+    return tm_vtk_write(text, stream, &elements, threads, error);
+}
+
 /* Writes BASE_i.histo, .m3d, .vtk, and, where there are octants, .oct; BASE_i.ref, with
  * the numbers of `count` octants from 0, a line each, where there are some. Each is whole
  * or not there. */
@@ -190,7 +200,7 @@ static tm_status write_trace(const program *p, unsigned iteration,
     if (status == TM_OK)
         status = write_mesh(&w, "m3d", tm_m3d_write, error);
     if (status == TM_OK)
-        status = write_mesh(&w, "vtk", tm_vtk_write, error);
+        status = write_mesh(&w, "vtk", write_vtk, error);
     if (status == TM_OK && state->octree.leaves > 0)
         status = write_mesh(&w, "oct", tm_oct_write, error);
     tm_stream_free(&stream);
@@ -320,10 +330,10 @@ static bool run(program *p, tm_stream *stream)
     if (notes.dropped[0])
         filter_note(&p->f, "dropped, as they refer to what is no more: %s",
                     notes.dropped);
-    filter_write(&p->f, stream, "%zu elements of %zu, bad %zu of %zu", after.elements,
-                 before.elements, report.after.bad, report.before.bad);
     write_json(&p->f, &before, &after, &report,
                (double)(clock() - start) / CLOCKS_PER_SEC);
+    filter_write(&p->f, stream, "%zu elements of %zu, bad %zu of %zu", after.elements,
+                 before.elements, report.after.bad, report.before.bad);
     tm_repair_state_free(&state);
     return done;
 }
@@ -338,6 +348,7 @@ int main(int argc, char **argv)
                          "divides elements, and refines octants.",
               .help = own_help,
               .options = long_options,
+              .words = option_words,
               .letters = "t:i:" FILTER_LETTERS},
         .repair = {.method = TM_REPAIR_FULL,
                    .iterations = DEFAULT_ITERATIONS,

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* openfoam-export: the cells of a stream as a polyMesh folder of OpenFOAM. */
+#include "common/input/left_out.h"
 #include "common/input/mesh_input.h"
 #include "common/app/output_files.h"
 
@@ -25,23 +26,25 @@ static const char *read_operands(filter *f)
     return folder;
 }
 
-static bool is_ours(const char *name)
+/* Whether a file of that name will be written. */
+static bool is_ours(const char *name, const tm_text *file)
 {
     for (int i = 0; i < TM_OPENFOAM_FILES; i++)
-        if (strcmp(name, tm_openfoam_name[i]) == 0)
+        if (file[i].size > 0 && strcmp(name, tm_openfoam_name[i]) == 0)
             return true;
     return strcmp(name, ".") == 0 || strcmp(name, "..") == 0;
 }
 
 /* OpenFOAM reads zones and whatever else is in the folder: what is of another mesh must
  * not be there. */
-static tm_status refuse_other_files(const char *folder, tm_error *error)
+static tm_status refuse_other_files(const char *folder, const tm_text *file,
+                                    tm_error *error)
 {
     tm_status status = TM_OK;
     DIR *entries = opendir(folder);
     const struct dirent *entry;
     while (entries && status == TM_OK && (entry = readdir(entries)))
-        if (!is_ours(entry->d_name))
+        if (!is_ours(entry->d_name, file))
             status = tm_fail_at(error, TM_ERROR_SYSTEM, folder, 0, NULL,
                                 "there is also '%s' in the folder, which may be of "
                                 "another mesh (a new folder would be right)",
@@ -69,16 +72,16 @@ static tm_status write_file(output_files *files, const char *folder, const char 
     return status;
 }
 
+/* All files but their names: filter_finish() gives them. */
 static void write_folder(const filter *f, const char *folder, const tm_text *file)
 {
     tm_error error;
-    tm_status status = refuse_other_files(folder, &error);
+    tm_status status = refuse_other_files(folder, file, &error);
     if (status == TM_OK)
         status = output_files_make_folder(f->files, folder, &error);
     for (int i = 0; i < TM_OPENFOAM_FILES && status == TM_OK; i++)
-        status = write_file(f->files, folder, tm_openfoam_name[i], &file[i], &error);
-    if (status == TM_OK)
-        status = output_files_finish(f->files, &error);
+        if (file[i].size > 0)
+            status = write_file(f->files, folder, tm_openfoam_name[i], &file[i], &error);
     if (status != TM_OK)
         filter_fail(f, &error);
 }
@@ -90,6 +93,8 @@ static void write_json(filter *f, const tm_openfoam_counts *counts)
                                          ROW("faces", faces),
                                          ROW("cells", cells),
                                          ROW("patches", patches),
+                                         ROW("cell_zones", cell_zones),
+                                         ROW("face_zones", face_zones),
                                          {0}};
     filter_write_json(f, rows, counts);
 }
@@ -115,6 +120,7 @@ int main(int argc, char **argv)
     mesh_input_read(&f, &stream);
     if (tm_openfoam_write(file, &stream, &counts, &error) != TM_OK)
         mesh_input_fail(&f, &error);
+    mesh_leave_out(&f, &stream);
     write_folder(&f, folder, file);
     write_json(&f, &counts);
     for (int i = 0; i < TM_OPENFOAM_FILES; i++)

@@ -8,21 +8,6 @@ enum { OPTION_PLOT = FILTER_OWN };
 static const struct option long_options[] = {
     {"plot", required_argument, NULL, OPTION_PLOT}, FILTER_OPTIONS};
 
-/* A stream of other elements only is the wrong one. */
-static void refuse_other_elements(const filter *f, const tm_stream *stream)
-{
-    static const char *const others[] = {".ele", ".mix"};
-    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
-        if (tm_stream_find(stream, ".cell") || !tm_stream_find(stream, others[i]))
-            continue;
-        tm_error error;
-        tm_fail_at(&error, TM_ERROR_INPUT, filter_input_name(f), 0, others[i],
-                   "poly-stats reads polyhedra (.cell)%s",
-                   i == 0 ? "; tet-stats reads tetrahedra" : "");
-        filter_fail(f, &error);
-    }
-}
-
 static void write_plot(const filter *f, const char *file, const tm_poly_statistics *s)
 {
     tm_text script = {0};
@@ -77,15 +62,14 @@ int main(int argc, char **argv)
     tm_stream stream;
     tm_poly_statistics statistics;
     mesh_input_read_to_compute(&f, &stream);
-    refuse_other_elements(&f, &stream);
     measure(&f, &stream, &statistics);
-    if (plot)
-        write_plot(&f, plot, &statistics);
-    write_report(&f, &statistics);
     if (f.json) {
         tm_poly_statistics_json(filter_json_begin(&f), &statistics);
         filter_json_end(&f);
     }
+    if (plot)
+        write_plot(&f, plot, &statistics);
+    write_report(&f, &statistics);
     tm_stream_free(&stream);
     return filter_finish(&f, 0);
 }

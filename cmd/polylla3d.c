@@ -62,22 +62,18 @@ static const double most_degrees = 30;
 
 static const char *const metrics[] = {"area", "inradius"};
 
-static tm_poly_mode read_mode(const filter *f, const char *text)
-{
-    const char *name[TM_POLY_MODES];
-    for (int m = 0; m < TM_POLY_MODES; m++)
-        name[m] = tm_poly_modes[m].name;
-    return (tm_poly_mode)filter_word(f, "--mode", name, TM_POLY_MODES, text);
-}
+static const filter_words option_words[] = {
+    {MODE, &tm_poly_modes[0].name, sizeof tm_poly_modes[0], TM_POLY_MODES},
+    FILTER_WORDS(FACE_METRIC, metrics),
+    {0}};
 
 static void set_option(filter *f, settings *o, int c)
 {
     tm_poly_options *p = &o->poly;
     if (c == MODE)
-        p->mode = read_mode(f, optarg);
+        p->mode = (tm_poly_mode)filter_word(f, MODE, optarg);
     else if (c == FACE_METRIC)
-        p->face_metric =
-            (tm_face_metric)filter_word(f, "--face-metric", metrics, 2, optarg);
+        p->face_metric = (tm_face_metric)filter_word(f, FACE_METRIC, optarg);
     else if (c == NO_REPAIR)
         p->repair = false;
     else if (c == STAR)
@@ -195,7 +191,7 @@ static void convert(filter *f, tm_stream *stream, const settings *o, result *r)
     *r = (result){0};
     if (tm_stream_find(stream, ".facet") || tm_stream_find(stream, ".cell")) {
         tm_fail_at(&error, TM_ERROR_INPUT, filter_input_name(f), 0, NULL,
-                   "a mesh of polyhedra already (tetrahedra would be right)");
+                   "has .facet or .cell already, which the polyhedra would be");
         filter_fail(f, &error);
     }
     tet_mesh_from_stream(f, stream, &mesh);
@@ -241,6 +237,7 @@ int main(int argc, char **argv)
                 .purpose = "Joins tetrahedra to polyhedra.",
                 .help = own_help,
                 .options = options,
+                .words = option_words,
                 .letters = FILTER_LETTERS};
     filter_start(&f, argc, argv);
     settings o = read_options(&f);

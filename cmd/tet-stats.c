@@ -176,11 +176,11 @@ int main(int argc, char **argv)
     }
     const tm_tet_statistics *earlier = o.compare ? &before : NULL;
     const tm_tet_statistics *last = o.compare ? &after : &before;
+    if (f.json)
+        write_json(&f, earlier, last);
     if (o.plot)
         write_plot(&f, &o, earlier, last);
     write_report(&f, &o, &first, earlier, last);
-    if (f.json)
-        write_json(&f, earlier, last);
     tm_stream_free(&first.stream);
     return filter_finish(&f, 0);
 }

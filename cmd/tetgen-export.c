@@ -2,6 +2,7 @@
 /* tetgen-export: a stream as TetGen's files. */
 #include "common/app/filter.h"
 #include "common/app/output_files.h"
+#include "common/input/left_out.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -31,22 +32,23 @@ static const char *read_operands(void)
     return base;
 }
 
-static bool is_tetgen_block(const tm_block *block)
+/* TetGen does not look at a .group file, but tetgen-import does. */
+static bool is_written(const tm_block *block)
 {
     return block->kind == TM_NODE || block->kind == TM_ELE || block->kind == TM_FACE ||
-           block->kind == TM_EDGE;
+           block->kind == TM_EDGE || block->kind == TM_GROUP;
 }
 
 /* BASE.ele, or BASE.surface.face of a part. */
 static tm_status write_block(const tm_stream *stream, const tm_block *block,
-                             const char *base, output_files *files, tm_error *error)
+                             const char *base, tm_error *error)
 {
     tm_text name = {0};
     int fd;
     tm_text_format(&name, "%s%s%s", base, block->name[0] == '.' ? "" : ".", block->name);
     if (name.failed)
         return tm_fail_memory(error);
-    tm_status status = output_files_open(files, name.byte, &fd, error);
+    tm_status status = output_files_open(f.files, name.byte, &fd, error);
     if (status == TM_OK) {
         status = tm_block_write(block, stream->base, fd, f.threads, error);
         if (status != TM_OK)
@@ -56,26 +58,14 @@ static tm_status write_block(const tm_stream *stream, const tm_block *block,
     return status;
 }
 
-static void write_files(const tm_stream *stream, const char *base, tm_json *json)
+/* All but their names: filter_finish() gives them. */
+static void write_files(const tm_stream *stream, const char *base)
 {
-    output_files files = {0};
     tm_error error;
     tm_status status = TM_OK;
     for (size_t b = 0; b < stream->blocks && status == TM_OK; b++)
-        if (is_tetgen_block(&stream->block[b]))
-            status = write_block(stream, &stream->block[b], base, &files, &error);
-        else
-            filter_note(&f, "%s is not written: TetGen has no such file",
-                        stream->block[b].name);
-    if (status == TM_OK && files.count == 0)
-        status = tm_fail_at(&error, TM_ERROR_INPUT, filter_input_name(&f), 0, NULL,
-                            "has no block that TetGen knows (.node, .ele, .face, .edge)");
-    for (size_t i = 0; i < files.count && status == TM_OK; i++)
-        tm_json_string(json, NULL, files.file[i].name);
-    if (status == TM_OK)
-        status = output_files_finish(&files, &error);
-    else
-        output_files_abandon(&files);
+        if (is_written(&stream->block[b]))
+            status = write_block(stream, &stream->block[b], base, &error);
     if (status != TM_OK)
         filter_fail(&f, &error);
 }
@@ -86,9 +76,12 @@ int main(int argc, char **argv)
     const char *base = read_operands();
     tm_stream stream;
     filter_read(&f, &stream);
+    mesh_leave_out(&f, &stream);
+    write_files(&stream, base);
     tm_json *json = filter_json_begin(&f);
     tm_json_open(json, "files", '[');
-    write_files(&stream, base, json);
+    for (size_t i = 0; i < f.files->count; i++)
+        tm_json_string(json, NULL, f.files->file[i].name);
     tm_json_close(json, ']');
     filter_json_end(&f);
     tm_stream_free(&stream);

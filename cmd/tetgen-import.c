@@ -2,6 +2,7 @@
 /* tetgen-import: TetGen's files as a stream. */
 #include "common/input/mesh_input.h"
 
+#include "../lib/base/input.h"
 #include "../lib/format/tetgen.h"
 
 #include <stdlib.h>
@@ -13,20 +14,26 @@ static const struct option options[] = {FILTER_OPTIONS};
 static filter f = {
     .name = "tetgen-import",
     .synopsis = "[options] BASE | FILE…",
-    .purpose =
-        "Read BASE.node, BASE.ele, BASE.face and BASE.edge, or the FILEs, of TetGen.",
+    .purpose = "Read BASE.node, BASE.ele, BASE.face, BASE.edge and BASE.group, or the "
+               "FILEs, of\n"
+               "TetGen.",
     .help = "",
     .options = options,
     .letters = FILTER_LETTERS,
 };
 
 /* In the order in which a stream has them: the nodes first, others refer to them. */
-static const char *const suffixes[] = {".node", ".ele", ".face", ".edge"};
+static const char *const suffixes[] = {".node", ".ele", ".face", ".edge", ".group"};
 enum { SUFFIXES = sizeof suffixes / sizeof suffixes[0] };
+
+typedef struct {
+    char *path; /* NULL once it is read */
+    char *name; /* without .gz at its end */
+} tetgen_file;
 
 /* The files that were named. */
 typedef struct {
-    char **file;
+    tetgen_file *file;
     size_t count;
     char *stem; /* the first one's, without its suffix */
 } operands;
@@ -59,16 +66,26 @@ static char *joined(const char *first, size_t size, const char *second)
     return text.byte;
 }
 
-/* BASE stands for those of the four files that are there. */
+static void add_file(operands *named, const char *path)
+{
+    named->file[named->count++] = (tetgen_file){joined(path, strlen(path), ""),
+                                                joined(path, tm_unpacked_name(path), "")};
+}
+
+/* BASE stands for those of the four files that are there, or are there with .gz. */
 static void expand_base(const char *base, operands *named)
 {
     named->stem = joined(base, strlen(base), "");
     for (size_t s = 0; s < SUFFIXES; s++) {
-        char *name = joined(base, strlen(base), suffixes[s]);
-        if (s == 0 || access(name, F_OK) == 0)
-            named->file[named->count++] = name;
-        else
-            free(name);
+        char *plain = joined(base, strlen(base), suffixes[s]);
+        char *packed = joined(plain, strlen(plain), ".gz");
+        const bool is_packed = access(plain, F_OK) != 0 && access(packed, F_OK) == 0;
+        if (is_packed)
+            add_file(named, packed);
+        else if (s == 0 || access(plain, F_OK) == 0)
+            add_file(named, plain);
+        free(plain);
+        free(packed);
     }
 }
 
@@ -84,19 +101,23 @@ static void read_operands(operands *named)
     named->file = calloc((size_t)given + SUFFIXES, sizeof *named->file);
     if (!named->file)
         succeed(tm_fail_memory(&error));
-    if (given == 1 && suffix_of(f.input) == SUFFIXES) {
+    char *unpacked = joined(f.input, tm_unpacked_name(f.input), "");
+    const bool is_base = given == 1 && suffix_of(unpacked) == SUFFIXES;
+    free(unpacked);
+    if (is_base) {
         expand_base(f.input, named);
         return;
     }
     for (int i = optind; i < f.argc; i++) {
-        if (suffix_of(f.argv[i]) == SUFFIXES)
+        add_file(named, f.argv[i]);
+        if (suffix_of(named->file[named->count - 1].name) == SUFFIXES)
             filter_usage_error(&f,
-                               "'%s': the name of a FILE ends in .node, .ele, .face or "
-                               ".edge",
+                               "'%s': the name of a FILE ends in .node, .ele, .face, "
+                               ".edge or .group, or in one of these and .gz",
                                f.argv[i]);
-        named->file[named->count++] = joined(f.argv[i], strlen(f.argv[i]), "");
     }
-    size_t size = strlen(f.input) - strlen(suffixes[suffix_of(f.input)]);
+    const char *first = named->file[0].name;
+    size_t size = strlen(first) - strlen(suffixes[suffix_of(first)]);
     named->stem = joined(f.input, size, "");
 }
 
@@ -127,24 +148,25 @@ static void read_block(const char *file, tm_block *block, const tm_block *node,
 {
     tm_text bytes = {0};
     filter_read_file(&f, file, &bytes);
-    succeed(tm_tetgen_read(block, bytes.byte, bytes.size, file, base,
-                           node ? node->count : 0, &error));
+    if (tm_tetgen_read(block, bytes.byte, bytes.size, file, base, node ? node->count : 0,
+                       &error) != TM_OK)
+        filter_fail_file(&f, &error, &bytes, f.name);
     tm_text_free(&bytes);
 }
 
 /* Reads a file into a new block; the file is then done with. */
-static void read_file(tm_stream *stream, char **file, const char *name, const char *node,
-                      unsigned *base)
+static void read_file(tm_stream *stream, tetgen_file *from, const char *name,
+                      const char *node, unsigned *base)
 {
     if (tm_stream_find(stream, name))
-        succeed(tm_fail_at(&error, TM_ERROR_INPUT, *file, 0, name,
+        succeed(tm_fail_at(&error, TM_ERROR_INPUT, from->path, 0, name,
                            "there is a second file for this block (one is right)"));
     tm_block *block = tm_stream_add(stream, name);
     if (!block)
         succeed(tm_fail_memory(&error));
-    read_block(*file, block, node ? tm_stream_find(stream, node) : NULL, base);
-    free(*file);
-    *file = NULL;
+    read_block(from->path, block, node ? tm_stream_find(stream, node) : NULL, base);
+    free(from->path);
+    from->path = NULL;
 }
 
 /* Reads a .node file and the other files of its part, which may be numbered from
@@ -153,7 +175,7 @@ static void read_part(tm_stream *stream, operands *named, size_t node_file)
 {
     char node[TM_BLOCK_NAME], name[TM_BLOCK_NAME];
     unsigned base = 1;
-    snprintf(node, sizeof node, "%s", block_name(named, named->file[node_file]));
+    snprintf(node, sizeof node, "%s", block_name(named, named->file[node_file].name));
     read_file(stream, &named->file[node_file], node, NULL, &base);
     if (node[0] == '.')
         stream->base = base;
@@ -161,7 +183,8 @@ static void read_part(tm_stream *stream, operands *named, size_t node_file)
     for (size_t s = 1; s < SUFFIXES; s++) {
         snprintf(name, sizeof name, "%.*s%s", part, node, suffixes[s]);
         for (size_t i = 0; i < named->count; i++)
-            if (named->file[i] && strcmp(block_name(named, named->file[i]), name) == 0)
+            if (named->file[i].path &&
+                strcmp(block_name(named, named->file[i].name), name) == 0)
                 read_file(stream, &named->file[i], name, node, &base);
     }
 }
@@ -171,14 +194,14 @@ static void read_files(tm_stream *stream, operands *named)
 {
     for (int parts = 0; parts < 2; parts++)
         for (size_t i = 0; i < named->count; i++) {
-            const char *file = named->file[i];
-            if (file && suffix_of(file) == 0 &&
-                (block_name(named, file)[0] != '.') == parts)
+            const char *name = named->file[i].name;
+            if (named->file[i].path && suffix_of(name) == 0 &&
+                (block_name(named, name)[0] != '.') == parts)
                 read_part(stream, named, i);
         }
     for (size_t i = 0; i < named->count; i++)
-        if (named->file[i])
-            succeed(tm_fail_at(&error, TM_ERROR_INPUT, named->file[i], 0, NULL,
+        if (named->file[i].path)
+            succeed(tm_fail_at(&error, TM_ERROR_INPUT, named->file[i].path, 0, NULL,
                                "its .node file is not among the files"));
 }
 
@@ -223,8 +246,6 @@ int main(int argc, char **argv)
     tm_stream_init(&stream);
     read_files(&stream, &named);
     tm_turned turned = orient_all(&stream);
-    filter_write(&f, &stream, "%zu nodes, %zu tetrahedra", mesh_rows(&stream, ".node"),
-                 mesh_rows(&stream, ".ele"));
     if (f.json) {
         tm_json *json = filter_json_begin(&f);
         mesh_rows_json(json, &stream);
@@ -232,7 +253,11 @@ int main(int argc, char **argv)
         tm_json_integer(json, "flat", (int64_t)turned.flat);
         filter_json_end(&f);
     }
+    filter_write(&f, &stream, "%zu nodes, %zu tetrahedra", mesh_rows(&stream, ".node"),
+                 mesh_rows(&stream, ".ele"));
     tm_stream_free(&stream);
+    for (size_t i = 0; i < named.count; i++)
+        free(named.file[i].name);
     free(named.file);
     free(named.stem);
     return filter_finish(&f, EXIT_SUCCESS);

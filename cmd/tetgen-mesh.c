@@ -183,12 +183,25 @@ _Noreturn static void fail_empty(const tm_polygon_surface *surface,
 
 /* The result ----------------------------------------------------------------------- */
 
+/* TetGen hands markers and regions on, but knows no names. */
+static tm_status add_names(const tm_polygon_surface *from, tm_stream *mesh,
+                           tm_error *error)
+{
+    if (from->group.count == 0)
+        return TM_OK;
+    tm_block *group = tm_group_of_stream(mesh, ".group");
+    return group ? tm_group_copy(group, ".group", &from->group, error)
+                 : tm_fail_memory(error);
+}
+
 /* Moves the blocks of parts (the surface that came in) and the history behind the new
  * mesh; other blocks belong to a mesh that is no longer there. */
 static tm_status keep_parts(tm_stream *from, tm_stream *mesh, tm_error *error)
 {
     for (size_t b = 0; b < from->blocks; b++) {
         tm_block *old = &from->block[b];
+        if (old->kind == TM_GROUP && old->name[0] == '.')
+            continue; /* the surface has its names */
         if (old->name[0] == '.') {
             filter_note(&f, "%s of the input is left out: it belongs to another mesh",
                         old->name);
@@ -215,12 +228,17 @@ int main(int argc, char **argv)
     tm_stream input, mesh;
     tm_format format = surface_input_read(&f, &surface, &input);
     tm_surface_defects defects;
+    size_t dropped;
     tm_error error;
     if (tm_coordinates_check((const double(*)[3])surface.xyz, surface.nodes, surface.base,
                              &error) != TM_OK)
         mesh_input_fail(&f, &error);
-    if (tm_surface_find_defects(&surface, &defects, &error) != TM_OK)
+    if (tm_surface_drop_duplicates(&surface, &dropped, &error) != TM_OK ||
+        tm_surface_find_defects(&surface, &defects, &error) != TM_OK)
         filter_fail(&f, &error);
+    if (dropped > 0)
+        filter_note(&f, "faces in the place of an earlier one, which are dropped: %zu",
+                    dropped);
     check_surface(&surface, &defects, format, &request);
     tm_stream_init(&mesh);
     mesh.base = surface.base;
@@ -228,18 +246,20 @@ int main(int argc, char **argv)
         filter_fail(&f, &error);
     if (mesh_rows(&mesh, ".ele") == 0)
         fail_empty(&surface, &defects);
+    if (add_names(&surface, &mesh, &error) != TM_OK)
+        filter_fail(&f, &error);
     tm_turned turned =
         tm_tetgen_orient(tm_stream_find(&mesh, ".node"), tm_stream_find(&mesh, ".ele"));
     if (turned.flat > 0)
         filter_note(&f, "%zu tetrahedra that TetGen made are flat", turned.flat);
     if (keep_parts(&input, &mesh, &error) != TM_OK)
         filter_fail(&f, &error);
-    filter_write(&f, &mesh, "%zu nodes, %zu tetrahedra", mesh_rows(&mesh, ".node"),
-                 mesh_rows(&mesh, ".ele"));
     if (f.json) {
         mesh_rows_json(filter_json_begin(&f), &mesh);
         filter_json_end(&f);
     }
+    filter_write(&f, &mesh, "%zu nodes, %zu tetrahedra", mesh_rows(&mesh, ".node"),
+                 mesh_rows(&mesh, ".ele"));
     tm_stream_free(&mesh);
     tm_stream_free(&input);
     tm_polygon_surface_free(&surface);

@@ -4,8 +4,6 @@
 
 #include "../lib/format/visf.h"
 
-#include <string.h>
-
 enum { OPTION_BINARY = FILTER_OWN, OPTION_NEIGHBOURS, OPTION_PER_CELL };
 
 static const struct option long_options[] = {
@@ -14,14 +12,8 @@ static const struct option long_options[] = {
     {"per-cell", no_argument, NULL, OPTION_PER_CELL},
     FILTER_OPTIONS};
 
-static tm_visf_order read_order(const filter *f, const char *text)
-{
-    if (strcmp(text, "little") == 0)
-        return TM_VISF_LITTLE;
-    if (strcmp(text, "big") == 0)
-        return TM_VISF_BIG;
-    filter_usage_error(f, "--binary: '%s' is no byte order (little, big)", text);
-}
+static const char *const orders[] = {"little", "big"};
+static const filter_words option_words[] = {FILTER_WORDS(OPTION_BINARY, orders), {0}};
 
 static tm_visf_options visf = {.order = TM_VISF_TEXT};
 
@@ -31,7 +23,9 @@ static void read_options(filter *f)
     while ((c = filter_option(f)) != -1) {
         switch (c) {
         case OPTION_BINARY:
-            visf.order = read_order(f, optarg);
+            visf.order =
+                filter_word(f, OPTION_BINARY, optarg) == 0 ? TM_VISF_LITTLE : TM_VISF_BIG;
+            f->binary = true;
             break;
         case OPTION_NEIGHBOURS:
             visf.neighbours = true;
@@ -62,6 +56,7 @@ int main(int argc, char **argv)
                 "      --neighbours    list the neighbouring polygons of each polygon\n"
                 "      --per-cell      write each polygon once for each of its cells\n",
         .options = long_options,
+        .words = option_words,
         .letters = FILTER_LETTERS,
     };
     filter_start(&f, argc, argv);

@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* vtk-export: a stream as an unstructured grid in a legacy text file of VTK. */
-#include "common/input/mesh_input.h"
-
-#include "../lib/format/mesh_format.h"
+#include "common/input/vtk_export.h"
 
 int main(int argc, char **argv)
 {
-    return mesh_export(
+    return vtk_export(
         argc, argv, "vtk-export",
         "Writes points, triangles, tetrahedra, mixed elements or polyhedra as an\n"
         "unstructured grid in a legacy text file of VTK (.vtk).",
-        tm_vtk_write);
+        false, tm_vtk_write);
 }

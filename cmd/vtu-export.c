@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* vtu-export: a stream as an unstructured grid of VTK. */
-#include "common/input/mesh_input.h"
-
-#include "../lib/format/mesh_format.h"
+#include "common/input/vtk_export.h"
 
 int main(int argc, char **argv)
 {
-    return mesh_export(
+    return vtk_export(
         argc, argv, "vtu-export",
         "Writes points, triangles, tetrahedra, mixed elements or polyhedra as\n"
         "an unstructured grid of VTK (.vtu), which ParaView shows.",
-        tm_vtu_write);
+        true, tm_vtu_write);
 }

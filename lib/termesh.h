@@ -8,18 +8,22 @@
 #include "base/error.h"
 #include "base/extern_c.h"
 #include "base/file.h"
+#include "base/input.h"
 #include "base/json.h"
 #include "base/number.h"
 #include "base/parallel.h"
 #include "base/report.h"
 #include "base/text.h"
+#include "base/utf8.h"
 #include "base/version.h"
 
 /* geom: predicates and kernels */
 #include "geom/vector.h"
 
-/* stream: the stream and its blocks */
+/* stream: the stream and its blocks; what other files look like */
 #include "stream/coordinates.h"
+#include "stream/group.h"
+#include "stream/sniff.h"
 #include "stream/stream.h"
 
 /* element: shapes and measures of one element */
@@ -58,6 +62,7 @@
 #include "format/surface_format.h"
 #include "format/tetgen.h"
 #include "format/visf.h"
+#include "format/vtk/vtk.h"
 
 /* optimise: node positions */
 #include "optimise/optimise.h"

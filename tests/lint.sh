@@ -12,7 +12,7 @@ trap 'rm -f "$list" "$list.headers"' EXIT
 
 c_files=$(find lib cmd tests examples -name '*.[ch]')
 cxx_sources=$(find tests -name '*.cc')
-scripts="$(find tests examples -name '*.sh') $(find tests -name '*.bats' -o -name '*.bash')
+scripts="$(find cmd tests examples -name '*.sh') $(find tests -name '*.bats' -o -name '*.bash')
 .ci/run"
 pages=$(find man -name '*.[157]')
 
@@ -84,8 +84,8 @@ notices() {
 }
 
 # The floors of lib/, from the ground up: a folder includes from those before it only.
-floors="base geom stream element mesh surface examine format optimise tet tet/operation
-tet/improve tet/lepp octree/forest octree/transition octree/layer octree/repair poly"
+floors="base geom stream element mesh surface examine format format/vtk optimise tet
+tet/operation tet/improve tet/lepp octree/forest octree/transition octree/layer octree/repair poly"
 
 # Who has no use for a tm_error gives NULL: none but lib/base/error.c looks into one that a
 # caller gave.

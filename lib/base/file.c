@@ -2,6 +2,7 @@
 #include "file.h"
 
 #include "array.h"
+#include "input.h"
 
 #include <errno.h>
 #include <string.h>
@@ -19,21 +20,24 @@ ptrdiff_t tm_read_some(int fd, char *bytes, size_t size)
 tm_status tm_read_all(int fd, const char *name, tm_text *text, tm_error *error)
 {
     enum { STEP = 1 << 16 };
-    for (;;) {
+    tm_input input;
+    tm_input_open(&input, fd, name);
+    tm_status status = TM_OK;
+    size_t got = 1;
+    while (status == TM_OK && got > 0) {
         char *moved = tm_grow(text->byte, &text->capacity, text->size + STEP + 1, 1);
-        if (!moved)
-            return tm_fail_memory(error);
+        if (!moved) {
+            status = tm_fail_memory(error);
+            break;
+        }
         text->byte = moved;
-        ptrdiff_t got =
-            tm_read_some(fd, text->byte + text->size, text->capacity - text->size - 1);
-        if (got < 0)
-            return tm_fail_at(error, TM_ERROR_SYSTEM, name, 0, NULL, "cannot read: %s",
-                              strerror(errno));
-        text->size += (size_t)got;
+        status = tm_input_read(&input, text->byte + text->size,
+                               text->capacity - text->size - 1, &got, error);
+        text->size += got;
         text->byte[text->size] = '\0';
-        if (got == 0)
-            return TM_OK;
     }
+    tm_input_close(&input);
+    return status;
 }
 
 tm_status tm_write_all(int fd, const char *bytes, size_t size, tm_error *error)

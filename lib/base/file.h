@@ -13,7 +13,8 @@ TM_EXTERN_C_BEGIN
  * on failure -1 with errno. */
 ptrdiff_t tm_read_some(int fd, char *bytes, size_t size);
 
-/* Appends all that is left to read to *text. `name` is for the message. */
+/* Appends all that is left to read to *text, of gzip data what is in them (input.h).
+ * `name` is for the message. */
 tm_status tm_read_all(int fd, const char *name, tm_text *text, tm_error *error);
 
 /* Writes all bytes. TM_ERROR_SYSTEM with errno's message where that fails. */

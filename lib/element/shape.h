@@ -44,7 +44,10 @@ typedef enum tm_element_kind {
 /* VTK's numbers of cell types (vtkCellType.h). */
 enum {
     TM_VTK_VERTEX = 1,
+    TM_VTK_LINE = 3,
     TM_VTK_TRIANGLE = 5,
+    TM_VTK_POLYGON = 7,
+    TM_VTK_QUADRILATERAL = 9,
     TM_VTK_TETRA = 10,
     TM_VTK_HEXAHEDRON = 12,
     TM_VTK_WEDGE = 13,

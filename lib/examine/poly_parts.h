@@ -61,6 +61,7 @@ typedef struct tm_poly_shape_memory {
     struct tm_poly_point *place; /* of its nodes; then again, farthest first */
     double (*normal)[3];         /* of its facets, length 1; 0 of those without area */
     double (*plane)[4];          /* of those with area */
+    size_t planes;
     size_t room[3];
     tm_kernel_memory kernel;
 } tm_poly_shape_memory;
@@ -74,5 +75,11 @@ void tm_poly_shape_memory_free(tm_poly_shape_memory *memory);
 tm_status tm_poly_shape_measure(tm_poly_shape *shape, tm_poly_shape_memory *memory,
                                 const tm_poly_boundary *b, const double (*xyz)[3],
                                 tm_error *error);
+
+/* The same, but only volume, diameter, min_face_area, star_shaped and kernel_radius, and
+ * the center of that ball, around the first node. */
+tm_status tm_poly_ball_measure(tm_poly_shape *shape, tm_poly_shape_memory *memory,
+                               const tm_poly_boundary *b, const double (*xyz)[3],
+                               double center[3], tm_error *error);
 
 #endif

@@ -165,19 +165,27 @@ static void find_dihedrals(tm_poly_shape *s, const tm_poly_shape_memory *m,
     }
 }
 
+/* The largest ball in the kernel, around center. */
+static void find_ball(tm_poly_shape *s, const tm_poly_shape_memory *m, double center[3])
+{
+    const double(*plane)[4] = (const double(*)[4])m->plane;
+    double radius;
+    s->star_shaped = tm_kernel_ball(plane, m->planes, center, &radius) &&
+                     radius > TM_POLY_STAR * s->diameter;
+    s->kernel_radius = s->star_shaped ? radius / s->diameter : 0;
+}
+
 /* False where memory is out. */
-static bool find_kernel(tm_poly_shape *s, tm_poly_shape_memory *m, size_t planes)
+static bool find_kernel_ratio(tm_poly_shape *s, tm_poly_shape_memory *m,
+                              const double center[3])
 {
     const double(*plane)[4] = (const double(*)[4])m->plane;
     const double beyond = 1 + 1e-9;
-    double center[3], radius, volume;
-    s->kernel_radius = s->kernel_ratio = 0;
-    s->star_shaped = tm_kernel_ball(plane, planes, center, &radius) &&
-                     radius > TM_POLY_STAR * s->diameter;
+    double volume;
+    s->kernel_ratio = 0;
     if (!s->star_shaped)
         return true;
-    s->kernel_radius = radius / s->diameter;
-    if (!tm_kernel_volume(&m->kernel, plane, planes, center, beyond * s->diameter,
+    if (!tm_kernel_volume(&m->kernel, plane, m->planes, center, beyond * s->diameter,
                           &volume))
         return false;
     if (s->volume > 0 && volume > 0)
@@ -185,9 +193,9 @@ static bool find_kernel(tm_poly_shape *s, tm_poly_shape_memory *m, size_t planes
     return true;
 }
 
-tm_status tm_poly_shape_measure(tm_poly_shape *shape, tm_poly_shape_memory *memory,
-                                const tm_poly_boundary *b, const double (*xyz)[3],
-                                tm_error *error)
+tm_status tm_poly_ball_measure(tm_poly_shape *shape, tm_poly_shape_memory *memory,
+                               const tm_poly_boundary *b, const double (*xyz)[3],
+                               double center[3], tm_error *error)
 {
     double uncertain;
     if (!allocate(memory, b->nodes, b->faces))
@@ -195,8 +203,20 @@ tm_status tm_poly_shape_measure(tm_poly_shape *shape, tm_poly_shape_memory *memo
     place_nodes(memory, b, xyz);
     shape->volume = tm_poly_volume(b, xyz, &uncertain);
     shape->diameter = diameter(memory, b->nodes);
+    memory->planes = find_planes(shape, memory, b);
+    find_ball(shape, memory, center);
+    return TM_OK;
+}
+
+tm_status tm_poly_shape_measure(tm_poly_shape *shape, tm_poly_shape_memory *memory,
+                                const tm_poly_boundary *b, const double (*xyz)[3],
+                                tm_error *error)
+{
+    double center[3];
+    const tm_status status = tm_poly_ball_measure(shape, memory, b, xyz, center, error);
+    if (status != TM_OK)
+        return status;
     shape->min_edge = min_edge(memory, b);
-    const size_t planes = find_planes(shape, memory, b);
     find_dihedrals(shape, memory, b);
-    return find_kernel(shape, memory, planes) ? TM_OK : tm_fail_memory(error);
+    return find_kernel_ratio(shape, memory, center) ? TM_OK : tm_fail_memory(error);
 }

@@ -137,13 +137,31 @@ static void add_shape(chunk_sums *sums, const tm_poly_shape *shape)
     s->kernel_ratios[ratio_bin(shape->kernel_ratio)]++;
 }
 
+static tm_status find_boundary(workspace *w, const tm_poly_arrays *mesh, size_t c)
+{
+    const size_t start = mesh->cell_start[c], faces = mesh->cell_start[c + 1] - start;
+    return tm_poly_boundary_find(&w->boundary, mesh, mesh->cell_facet + start, faces,
+                                 (uint32_t)c, NULL);
+}
+
+static void workspace_free(workspace *w)
+{
+    tm_poly_boundary_free(&w->boundary);
+    tm_poly_shape_memory_free(&w->shape);
+}
+
+static size_t chunk_end(const tm_poly_arrays *mesh, size_t first)
+{
+    const size_t left = mesh->cells - first;
+    return first + (left < CHUNK ? left : CHUNK);
+}
+
 static void measure_cell(chunk_sums *sums, const measuring *m, workspace *w, size_t c)
 {
     const tm_poly_arrays *mesh = m->mesh;
-    const size_t start = mesh->cell_start[c], faces = mesh->cell_start[c + 1] - start;
+    const size_t faces = mesh->cell_start[c + 1] - mesh->cell_start[c];
     tm_poly_shape shape = {0};
-    sums->status = tm_poly_boundary_find(&w->boundary, mesh, mesh->cell_facet + start,
-                                         faces, (uint32_t)c, NULL);
+    sums->status = find_boundary(w, mesh, c);
     if (sums->status == TM_OK)
         sums->status =
             tm_poly_shape_measure(&shape, &w->shape, &w->boundary, mesh->xyz, NULL);
@@ -162,15 +180,13 @@ static void measure_cell(chunk_sums *sums, const measuring *m, workspace *w, siz
 static void measure_chunk(void *context, size_t chunk)
 {
     const measuring *m = context;
-    const size_t first = chunk * CHUNK, left = m->mesh->cells - first;
-    const size_t end = first + (left < CHUNK ? left : CHUNK);
+    const size_t first = chunk * CHUNK, end = chunk_end(m->mesh, first);
     workspace w = {.boundary = {0}};
     chunk_sums sums = {.status = TM_OK};
     clear(&sums.part);
     for (size_t c = first; c < end && sums.status == TM_OK; c++)
         measure_cell(&sums, m, &w, c);
-    tm_poly_boundary_free(&w.boundary);
-    tm_poly_shape_memory_free(&w.shape);
+    workspace_free(&w);
     m->chunk[chunk] = sums;
 }
 
@@ -301,4 +317,48 @@ tm_status tm_poly_statistics_measure(tm_poly_statistics *statistics,
 {
     const tm_status status = measure_cells(statistics, mesh, threads, error);
     return status == TM_OK ? find_sizes(statistics, mesh, error) : status;
+}
+
+/* Each polyhedron alone ------------------------------------------------------------- */
+
+typedef struct measuring_each {
+    const tm_poly_arrays *mesh;
+    double *volume, *kernel_radius;
+    tm_status *status; /* one for each CHUNK of cells */
+} measuring_each;
+
+static void measure_each_of_chunk(void *context, size_t chunk)
+{
+    const measuring_each *m = context;
+    const size_t first = chunk * CHUNK, end = chunk_end(m->mesh, first);
+    workspace w = {.boundary = {0}};
+    tm_status status = TM_OK;
+    for (size_t c = first; c < end && status == TM_OK; c++) {
+        tm_poly_shape shape = {0};
+        double center[3];
+        status = find_boundary(&w, m->mesh, c);
+        if (status == TM_OK)
+            status = tm_poly_ball_measure(&shape, &w.shape, &w.boundary, m->mesh->xyz,
+                                          center, NULL);
+        m->volume[c] = shape.volume;
+        m->kernel_radius[c] = shape.kernel_radius;
+    }
+    workspace_free(&w);
+    m->status[chunk] = status;
+}
+
+tm_status tm_poly_measure_each(double *volume, double *kernel_radius,
+                               const tm_poly_arrays *mesh, unsigned threads,
+                               tm_error *error)
+{
+    const size_t chunks = mesh->cells / CHUNK + (mesh->cells % CHUNK != 0);
+    measuring_each m = {mesh, volume, kernel_radius, tm_new(chunks, sizeof *m.status)};
+    if (!m.status)
+        return tm_fail_memory(error);
+    tm_parallel(threads, chunks, measure_each_of_chunk, &m);
+    tm_status status = TM_OK;
+    for (size_t i = 0; i < chunks; i++)
+        status = m.status[i] != TM_OK ? m.status[i] : status;
+    free(m.status);
+    return status == TM_OK ? TM_OK : tm_fail_memory(error);
 }

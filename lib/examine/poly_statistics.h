@@ -79,6 +79,14 @@ tm_status tm_poly_statistics_measure(tm_poly_statistics *statistics,
                                      const tm_poly_arrays *mesh, unsigned threads,
                                      tm_error *error);
 
+/* Measures each polyhedron c: its volume to volume[c], and to kernel_radius[c] the radius
+ * of the largest ball in its kernel over its diameter, 0 where it is not star-shaped. The
+ * same result for every number of threads. TM_ERROR_SYSTEM where memory is out. About
+ * O(corners of facets). */
+tm_status tm_poly_measure_each(double *volume, double *kernel_radius,
+                               const tm_poly_arrays *mesh, unsigned threads,
+                               tm_error *error);
+
 /* Writes, into an object that the caller opened, the keys of poly-stats(1). */
 void tm_poly_statistics_json(tm_json *json, const tm_poly_statistics *statistics);
 

@@ -2,7 +2,9 @@
 #include "mesh_format.h"
 
 #include "../base/array.h"
+#include "../element/shape.h"
 #include "../mesh/cell_faces.h"
+#include "../stream/group.h"
 #include "../surface/point_table.h"
 #include "../mesh/polygon_table.h"
 #include "text_rows.h"
@@ -11,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TRIANGLE = 3, NODES_MAX = 8, FACES_MAX = 6, WHOLE = 255, ROW = 64 };
+enum { NODES_MAX = 8, FACES_MAX = 6, WHOLE = 255, ROW = 64 };
 
 /* An element of GetFEM: which node of ours each of its nodes is; and its faces, the nodes
  * of ours that are in each as bits. The faces of GT_PK are each opposite to a node; those
@@ -154,40 +156,82 @@ static tm_status add_member(writer *w, double number, uint32_t offset, size_t co
     return TM_OK;
 }
 
-/* The triangles of .face that have a marker of a region. */
+/* The rows of .face and of .facet that have a marker of a region, as polygons. */
 typedef struct marked {
-    const tm_block *face;
-    size_t *start;
+    size_t polygons;
+    size_t *start; /* [polygons + 1] */
+    uint32_t *node;
+    int32_t *marker;
     tm_polygon_table table;
     unsigned char *taken; /* by an element */
 } marked;
 
-static tm_status find_marked(marked *m, tm_error *error)
+static bool has_markers(const tm_block *block)
 {
-    const tm_block *face = m->face;
-    m->start = tm_new(face->count + 1, sizeof *m->start);
-    m->taken = calloc(face->count, 1);
-    if (!m->start || !m->taken)
+    return block && block->marker;
+}
+
+/* Adds the rows of a block; with no arrays yet they are only counted, in polygons and
+ * *corners. */
+static void list_marked(marked *m, const tm_block *block, size_t *corners)
+{
+    for (size_t f = 0; has_markers(block) && f < block->count; f++) {
+        if (block->marker[f] <= 0)
+            continue;
+        size_t k;
+        const uint32_t *node = tm_row_nodes(block, f, &k);
+        if (m->node) {
+            memcpy(m->node + *corners, node, k * sizeof *node);
+            m->start[m->polygons] = *corners;
+            m->marker[m->polygons] = block->marker[f];
+        }
+        *corners += k;
+        m->polygons++;
+    }
+}
+
+static tm_status find_marked(marked *m, const tm_stream *stream, tm_error *error)
+{
+    const tm_block *block[] = {tm_stream_find(stream, ".face"),
+                               tm_stream_find(stream, ".facet")};
+    size_t corners = 0;
+    for (size_t b = 0; b < 2; b++)
+        list_marked(m, block[b], &corners);
+    m->start = tm_new(m->polygons + 1, sizeof *m->start);
+    m->node = tm_new(corners, sizeof *m->node);
+    m->marker = tm_new(m->polygons, sizeof *m->marker);
+    m->taken = calloc(m->polygons + 1, 1);
+    if (!m->start || !m->node || !m->marker || !m->taken)
         return tm_fail_memory(error);
-    for (size_t f = 0; f <= face->count; f++)
-        m->start[f] = TRIANGLE * f;
-    for (uint32_t f = 0; f < face->count; f++) {
+    m->polygons = corners = 0;
+    for (size_t b = 0; b < 2; b++)
+        list_marked(m, block[b], &corners);
+    m->start[m->polygons] = corners;
+    for (uint32_t f = 0; f < m->polygons; f++) {
         uint32_t first;
-        if (face->marker[f] > 0 &&
-            !tm_polygon_table_join(&m->table, m->start, face->integer, f, &first))
+        if (!tm_polygon_table_join(&m->table, m->start, m->node, f, &first))
             return tm_fail_memory(error);
     }
     return TM_OK;
 }
 
-/* The nodes of a face of an element; returns how many there are. */
-static size_t nodes_of_face(const uint32_t *node, unsigned bits, uint32_t *corner)
+/* The nodes, in a cycle, of the face that has those of the bits, of an element of k
+ * nodes. Returns how many there are. */
+static size_t nodes_of_face(const uint32_t *node, size_t k, unsigned bits,
+                            uint32_t corner[4])
 {
-    size_t corners = 0;
-    for (; bits; bits >>= 1, node++)
-        if (bits & 1)
-            corner[corners++] = *node;
-    return corners;
+    const tm_element_shape *shape = &tm_element_shapes[k];
+    for (size_t i = 0; i < shape->faces; i++) {
+        const uint8_t *face = shape->face[i];
+        unsigned of_face = 0;
+        for (size_t c = 0; c < 4; c++) {
+            of_face |= 1u << face[c];
+            corner[c] = node[face[c]];
+        }
+        if (of_face == bits)
+            return tm_mixed_face_nodes(face);
+    }
+    return 0; /* not reached: the table has all of them */
 }
 
 static tm_status add_element_faces(writer *w, marked *m, size_t e)
@@ -196,29 +240,28 @@ static tm_status add_element_faces(writer *w, marked *m, size_t e)
     const uint32_t *node = tm_row_nodes(w->cell, e, &k);
     tm_status status = TM_OK;
     for (unsigned char i = 0; i < shapes[k].faces && status == TM_OK; i++) {
-        uint32_t corner[NODES_MAX];
-        if (nodes_of_face(node, shapes[k].face[i], corner) != TRIANGLE)
-            continue;
-        uint32_t f = tm_polygon_table_find(&m->table, m->start, m->face->integer, corner,
-                                           TRIANGLE);
+        uint32_t corner[4];
+        const size_t corners = nodes_of_face(node, k, shapes[k].face[i], corner);
+        const uint32_t f =
+            tm_polygon_table_find(&m->table, m->start, m->node, corner, corners);
         if (f == TM_NONE || m->taken[f])
             continue;
         m->taken[f] = 1;
-        status = add_member(w, m->face->marker[f], 0, e, i);
+        status = add_member(w, m->marker[f], 0, e, i);
     }
     return status;
 }
 
 static tm_status add_faces(writer *w)
 {
-    marked m = {.face = tm_stream_find(w->stream, ".face")};
-    if (!m.face || !m.face->marker)
-        return TM_OK;
-    tm_status status = find_marked(&m, w->error);
-    for (size_t e = 0; e < w->cell->count && status == TM_OK; e++)
+    marked m = {0};
+    tm_status status = find_marked(&m, w->stream, w->error);
+    for (size_t e = 0; e < w->cell->count && m.polygons > 0 && status == TM_OK; e++)
         status = add_element_faces(w, &m, e);
     tm_polygon_table_free(&m.table);
     free(m.start);
+    free(m.node);
+    free(m.marker);
     free(m.taken);
     return status;
 }
@@ -260,6 +303,20 @@ static size_t member_room(const void *context, size_t first, size_t past)
     return (past - first) * 3 * ROW;
 }
 
+/* The names of the regions, as comments. */
+static void append_names(const writer *w)
+{
+    const tm_block *group = tm_stream_find(w->stream, ".group");
+    for (size_t g = 0; group && g < group->count; g++) {
+        const int dimension = (int)tm_group_dimension_of(group, g);
+        const int64_t number = (int64_t)tm_group_value(group, g) +
+                               (dimension == TM_GROUP_REGIONS ? TM_GETFEM_ELEMENTS : 0);
+        if (dimension == TM_GROUP_REGIONS || dimension == TM_GROUP_FACES)
+            tm_text_format(w->text, "%% REGION %lld: %s\n", (long long)number,
+                           tm_group_name(group, g));
+    }
+}
+
 /* Between regions stands the end of one and the beginning of the next. */
 static char *put_member(const void *context, size_t row, char *to)
 {
@@ -290,6 +347,7 @@ static tm_status append_regions(writer *w, tm_content content, unsigned threads)
     if (status == TM_OK && w->count > 0) {
         qsort(w->members, w->count, sizeof *w->members, compare);
         const tm_text_rows rows = {w, w->count, member_room, put_member};
+        append_names(w);
         tm_text_append_rows(w->text, &rows, threads);
     }
     free(w->members);

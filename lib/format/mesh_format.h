@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The formats of meshes that need no header of their own (see also oct.h, tetgen.h and
- * visf.h). A writer appends the file to *text; `threads` format or compress, and the
+/* The formats of meshes that need no header of their own (see also oct.h, tetgen.h, visf.h
+ * and vtk/vtk.h). A writer appends the file to *text; `threads` format or compress, and the
  * bytes are the same for any number of them. */
 #ifndef TM_FORMAT_MESH_FORMAT_H
 #define TM_FORMAT_MESH_FORMAT_H
@@ -21,38 +21,6 @@ TM_EXTERN_C_BEGIN
  * their order. TM_ERROR_INPUT as tm_cell_faces_find(), or where there are no cells and no
  * surface. Expected O(n). */
 tm_status tm_off_write(tm_text *text, const tm_stream *stream, bool all, tm_error *error);
-
-/* VTK ------------------------------------------------------------------------------ */
-
-/* VTK's legacy text file of an unstructured grid (.vtk), version 3.0. (VTK File Formats,
- * in The VTK User's Guide, 11th edition, 2010, section 19.3; polyhedra are lists of faces
- * as in vtkUnstructuredGrid.)
- *
- * Cells are what tm_content_of() says: vertices for points, triangles for a surface,
- * tetrahedra, mixed elements, or polyhedra with their faces. Points keep their numbers,
- * from 0. Point data are attribute_1 … and marker; cell data region (of polyhedra:
- * tetrahedra), attribute_2 … and, of triangles, marker. */
-
-/* Appends the file to *text. `threads` format; the bytes are the same for any number.
- * Fails where tm_cell_faces_find() fails for polyhedra, and where memory is out. O(n). */
-tm_status tm_vtk_write(tm_text *text, const tm_stream *stream, unsigned threads,
-                       tm_error *error);
-
-/* VTK's XML file of an unstructured grid (.vtu), version 1.0: arrays appended raw, little
- * endian, in blocks that zlib has compressed, with 64-bit headers. (VTK File Formats, in
- * The VTK User's Guide, 11th edition, 2010, section 19.3.)
- *
- * Cells are what tm_content_of() says: vertices for points, triangles for a surface,
- * tetrahedra, mixed elements, or polyhedra with their faces. Points keep their numbers,
- * from 0. Point data are attribute_1 … and marker, cell data region and attribute_2 … of
- * cells, marker of triangles and, for .ele, dihedral_quality: min(α_min, 180° - α_max) of
- * the dihedral angles, in degrees. */
-
-/* Appends the file to *text. `threads` compress; the bytes are the same for any number.
- * Tetrahedra are written as they are, so they should be right-hand positive. Fails where
- * tm_cell_faces_find() fails for polyhedra, and where memory is out. O(n). */
-tm_status tm_vtu_write(tm_text *text, const tm_stream *stream, unsigned threads,
-                       tm_error *error);
 
 /* GetFEM --------------------------------------------------------------------------- */
 
@@ -79,10 +47,12 @@ tm_status tm_vtu_write(tm_text *text, const tm_stream *stream, unsigned threads,
 enum { TM_GETFEM_ELEMENTS = 1000000 };
 
 /* Appends the file to *text: mixed elements, tetrahedra or, where there are neither,
- * triangles in space. Faces of elements that .face gives a marker m > 0 are the region m,
+ * triangles in space. Faces of elements that .face, or .facet beside .mix, gives a marker
+ * m > 0 are the region m,
  * elements whose first attribute is a whole number r >= 0 the region
  * TM_GETFEM_ELEMENTS + r; triangles with a marker m > 0 the region m.
- * A face between two elements is in the region as that of the first.
+ * A face between two elements is in the region as that of the first. The names of .group
+ * stand in comments, "% REGION 3: inlet".
  * TM_ERROR_INPUT for other contents, where a marker or attribute is TM_GETFEM_ELEMENTS or
  * more, and where two nodes are in one place, which GetFEM refuses. `threads` format.
  * Expected O(n), but for the regions, which are sorted: O(n log n). */
@@ -121,25 +91,30 @@ tm_status tm_mvm_write(tm_text *text, const tm_stream *stream, unsigned threads,
 
 /* OpenFOAM ------------------------------------------------------------------------- */
 
-/* OpenFOAM's polyMesh: five text files (OpenFOAM User Guide, section Mesh description).
+/* OpenFOAM's polyMesh: text files (OpenFOAM User Guide, section Mesh description).
  *
  * Faces inside come first, in upper-triangular order: by their owner, the lesser of their
  * two cells, then by the other one, their neighbour; their normals point to the
  * neighbour. Then those of the boundary, outward, patch by patch. */
 
-enum { TM_OPENFOAM_FILES = 5 };
+enum { TM_OPENFOAM_FILES = 7 };
 
-/* points, faces, owner, neighbour, boundary */
+/* points, faces, owner, neighbour, boundary; cellZones and faceZones, which stay empty
+ * where there are no zones */
 extern const char *const tm_openfoam_name[TM_OPENFOAM_FILES];
 
 typedef struct tm_openfoam_counts {
-    size_t points, cells, faces, patches;
+    size_t points, cells, faces, patches, cell_zones, face_zones;
 } tm_openfoam_counts;
 
 /* Appends the files of a stream's tetrahedra, mixed elements or polyhedra to file[i], in
- * the order of tm_openfoam_name. Boundary facets with the same marker are a patch named
- * marker_N, patches in the order of N; without markers there is one, marker_0. Nodes that
- * no cell has are left out. TM_ERROR_INPUT as tm_cell_faces_find(), or where there are no
+ * the order of tm_openfoam_name. Boundary facets with the same marker N are a patch of
+ * the name that .group has for it, else marker_N, patches in the order of N; without
+ * markers there is one, marker_0. Facets inside with a marker other than 0 are a zone of
+ * faces, cells of a region (tm_group_region()) with a name, or another than 0, a zone of
+ * cells, named alike, else marker_N and region_N. What a word of OpenFOAM cannot have
+ * becomes '_', and a name that is taken gets the value behind it. Nodes that no cell has
+ * are left out. TM_ERROR_INPUT as tm_cell_faces_find(), or where there are no
  * cells. Expected O(n + b log b) for b facets of the boundary. */
 tm_status tm_openfoam_write(tm_text file[TM_OPENFOAM_FILES], const tm_stream *stream,
                             tm_openfoam_counts *counts, tm_error *error);

@@ -3,22 +3,40 @@
 
 #include "../base/array.h"
 #include "../mesh/cell_faces.h"
+#include "../stream/group.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-enum { POINTS, FACES, OWNER, NEIGHBOUR, BOUNDARY };
+enum { POINTS, FACES, OWNER, NEIGHBOUR, BOUNDARY, CELL_ZONES, FACE_ZONES };
 
 const char *const tm_openfoam_name[TM_OPENFOAM_FILES] = {
-    [POINTS] = "points",       [FACES] = "faces",       [OWNER] = "owner",
-    [NEIGHBOUR] = "neighbour", [BOUNDARY] = "boundary",
+    [POINTS] = "points",        [FACES] = "faces",       [OWNER] = "owner",
+    [NEIGHBOUR] = "neighbour",  [BOUNDARY] = "boundary", [CELL_ZONES] = "cellZones",
+    [FACE_ZONES] = "faceZones",
 };
 
 static const char *const class_name[TM_OPENFOAM_FILES] = {
     [POINTS] = "vectorField",        [FACES] = "faceList",
     [OWNER] = "labelList",           [NEIGHBOUR] = "labelList",
-    [BOUNDARY] = "polyBoundaryMesh",
+    [BOUNDARY] = "polyBoundaryMesh", [CELL_ZONES] = "regIOobject",
+    [FACE_ZONES] = "regIOobject",
 };
+
+/* A cell, or a face by its place in the file, of a zone; and what zones are sorted by. */
+typedef struct zone_member {
+    int32_t value; /* region or marker */
+    uint32_t label;
+} zone_member;
+
+/* The patches or the zones of one kind: their names are different, for OpenFOAM. */
+typedef struct name_list {
+    tm_group_dimension dimension;
+    const char *nameless; /* what stands before the value of one without a name */
+    size_t count, room;
+    char **name;
+    bool failed; /* memory is out */
+} name_list;
 
 /* A facet of the boundary; what the patches are sorted by. */
 typedef struct boundary_facet {
@@ -30,10 +48,12 @@ typedef struct boundary_facet {
 typedef struct writer {
     tm_cell_faces faces;
     const tm_block *node;
-    uint32_t *order; /* [facets]: those inside, then those of the boundary */
+    const tm_block *cells;
+    const tm_block *group; /* or NULL */
+    uint32_t *order;       /* [facets]: those inside, then those of the boundary */
     size_t inside;
     boundary_facet *boundary; /* [facets - inside], sorted */
-    size_t patches;
+    size_t patches, cell_zones, face_zones;
     uint32_t *number; /* [nodes]: in the file; TM_NONE for those that are left out */
     size_t points;
     tm_text *file;
@@ -157,6 +177,57 @@ static void end_list(writer *w, int i)
     tm_text_string(&w->file[i], ")\n");
 }
 
+/* Names ---------------------------------------------------------------------------- */
+
+/* Appends what OpenFOAM takes for a word: without blanks and what means something to its
+ * dictionaries. */
+static void append_word(tm_text *word, const char *name)
+{
+    for (; *name; name++)
+        tm_text_append(word, strchr(" \t\"'/\\;{}()[]<>#$!*?|&,=:", *name) ? "_" : name,
+                       1);
+}
+
+static bool is_taken(const name_list *names, const char *name)
+{
+    bool taken = false;
+    for (size_t i = 0; i < names->count && !taken; i++)
+        taken = strcmp(names->name[i], name) == 0;
+    return taken;
+}
+
+/* The name of a patch or zone, which has got none yet. Where two names become one word
+ * the later one gets the value behind it. Where memory is out it is "" (and the file
+ * fails in free_names()). */
+static const char *name_of(const writer *w, name_list *names, int32_t value)
+{
+    const char *given = tm_group_find(w->group, names->dimension, value);
+    tm_text word = {0};
+    if (given)
+        append_word(&word, given);
+    else
+        tm_text_format(&word, "%s_%d", names->nameless, (int)value);
+    while (!word.failed && is_taken(names, word.byte))
+        tm_text_format(&word, "_%d", (int)value);
+    char **grown = tm_grow(names->name, &names->room, names->count + 1, sizeof *grown);
+    if (grown)
+        names->name = grown;
+    if (!grown || word.failed) {
+        tm_text_free(&word);
+        names->failed = true;
+        return "";
+    }
+    return grown[names->count++] = word.byte;
+}
+
+static void free_names(writer *w, name_list *names, int file)
+{
+    for (size_t i = 0; i < names->count; i++)
+        free(names->name[i]);
+    free(names->name);
+    w->file[file].failed |= names->failed;
+}
+
 static void write_points(writer *w)
 {
     enum { COORDINATES = 3 };
@@ -214,6 +285,7 @@ static void write_faces(writer *w)
 
 static void write_boundary(writer *w)
 {
+    name_list names = {.dimension = TM_GROUP_FACES, .nameless = "marker"};
     size_t count = w->faces.facets - w->inside;
     begin_list(w, BOUNDARY, w->patches);
     for (size_t begin = 0, end; begin < count; begin = end) {
@@ -221,12 +293,109 @@ static void write_boundary(writer *w)
         for (end = begin; end < count && w->boundary[end].marker == marker; end++)
             ;
         tm_text_format(&w->file[BOUNDARY],
-                       "    marker_%d\n    {\n        type            patch;\n"
+                       "    %s\n    {\n        type            patch;\n"
                        "        nFaces          %zu;\n        startFace       %zu;\n"
                        "    }\n",
-                       (int)marker, end - begin, w->inside + begin);
+                       name_of(w, &names, marker), end - begin, w->inside + begin);
     }
     end_list(w, BOUNDARY);
+    free_names(w, &names, BOUNDARY);
+}
+
+/* Zones ---------------------------------------------------------------------------- */
+
+static int compare_members(const void *first, const void *second)
+{
+    const zone_member *a = first, *b = second;
+    if (a->value != b->value)
+        return a->value < b->value ? -1 : 1;
+    return (a->label > b->label) - (a->label < b->label);
+}
+
+/* The cells of regions that are not 0, or have a name. */
+static size_t list_cells(const writer *w, zone_member *member)
+{
+    const bool zero = tm_group_find(w->group, TM_GROUP_REGIONS, 0);
+    size_t count = 0;
+    for (size_t c = 0; c < w->faces.cells; c++) {
+        int32_t region;
+        if (tm_group_region(w->cells, c, &region) && (region != 0 || zero))
+            member[count++] = (zone_member){region, (uint32_t)c};
+    }
+    return count;
+}
+
+/* The faces inside with a marker. */
+static size_t list_faces(const writer *w, zone_member *member)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < w->inside && w->faces.marker; i++)
+        if (w->faces.marker[w->order[i]] != 0)
+            member[count++] = (zone_member){w->faces.marker[w->order[i]], (uint32_t)i};
+    return count;
+}
+
+static void write_labels(tm_text *text, const zone_member *member, size_t count)
+{
+    tm_text_format(text, "List<label>\n%zu\n(\n", count);
+    for (size_t i = 0; i < count; i++) {
+        tm_text_integer(text, member[i].label);
+        tm_text_append(text, "\n", 1);
+    }
+    tm_text_string(text, ")\n;\n");
+}
+
+/* No face of a zone turns: its normal points to its neighbour. */
+static void write_flips(tm_text *text, size_t count)
+{
+    tm_text_format(text, "        flipMap         List<bool>\n%zu\n(\n", count);
+    for (size_t i = 0; i < count; i++)
+        tm_text_string(text, "0\n");
+    tm_text_string(text, ")\n;\n");
+}
+
+/* Writes the members, sorted, as zones; returns how many zones. */
+static size_t write_zones(writer *w, int file, name_list *names, const char *type,
+                          const char *labels, zone_member *member, size_t count)
+{
+    tm_text *text = &w->file[file];
+    size_t zones = 0;
+    qsort(member, count, sizeof *member, compare_members);
+    for (size_t i = 0; i < count; i++)
+        zones += i == 0 || member[i - 1].value != member[i].value;
+    if (zones > 0)
+        begin_list(w, file, zones);
+    for (size_t begin = 0, end; begin < count; begin = end) {
+        for (end = begin; end < count && member[end].value == member[begin].value; end++)
+            ;
+        tm_text_format(text,
+                       "    %s\n    {\n        type            %s;\n        %s      ",
+                       name_of(w, names, member[begin].value), type, labels);
+        write_labels(text, member + begin, end - begin);
+        if (file == FACE_ZONES)
+            write_flips(text, end - begin);
+        tm_text_string(text, "    }\n");
+    }
+    if (zones > 0)
+        end_list(w, file);
+    free_names(w, names, file);
+    return zones;
+}
+
+static tm_status write_all_zones(writer *w)
+{
+    name_list cells = {.dimension = TM_GROUP_REGIONS, .nameless = "region"};
+    name_list faces = {.dimension = TM_GROUP_FACES, .nameless = "marker"};
+    const size_t most = w->faces.cells > w->inside ? w->faces.cells : w->inside;
+    zone_member *member = tm_new(most, sizeof *member);
+    if (!member)
+        return tm_fail_memory(w->error);
+    w->cell_zones = write_zones(w, CELL_ZONES, &cells, "cellZone", "cellLabels", member,
+                                list_cells(w, member));
+    w->face_zones = write_zones(w, FACE_ZONES, &faces, "faceZone", "faceLabels", member,
+                                list_faces(w, member));
+    free(member);
+    return TM_OK;
 }
 
 /* ---------------------------------------------------------------------------------- */
@@ -244,6 +413,7 @@ static tm_status write_all(writer *w)
     write_points(w);
     write_faces(w);
     write_boundary(w);
+    status = write_all_zones(w);
     for (int i = 0; i < TM_OPENFOAM_FILES; i++)
         if (w->file[i].failed)
             status = tm_fail_memory(w->error);
@@ -253,13 +423,22 @@ static tm_status write_all(writer *w)
 tm_status tm_openfoam_write(tm_text file[TM_OPENFOAM_FILES], const tm_stream *stream,
                             tm_openfoam_counts *counts, tm_error *error)
 {
-    writer w = {.node = tm_stream_find(stream, ".node"), .file = file, .error = error};
+    writer w = {.node = tm_stream_find(stream, ".node"),
+                .cells = tm_content_block(stream, tm_content_of(stream)),
+                .group = tm_stream_find(stream, ".group"),
+                .file = file,
+                .error = error};
     tm_status status = tm_cell_faces_find(&w.faces, stream, error);
     if (status == TM_OK && w.faces.cells == 0)
         status = tm_fail(error, TM_ERROR_INPUT, "has no cells (.cell, .mix or .ele)");
     if (status == TM_OK)
         status = write_all(&w);
-    *counts = (tm_openfoam_counts){w.points, w.faces.cells, w.faces.facets, w.patches};
+    *counts = (tm_openfoam_counts){.points = w.points,
+                                   .cells = w.faces.cells,
+                                   .faces = w.faces.facets,
+                                   .patches = w.patches,
+                                   .cell_zones = w.cell_zones,
+                                   .face_zones = w.face_zones};
     tm_cell_faces_free(&w.faces);
     free(w.order);
     free(w.boundary);

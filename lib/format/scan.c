@@ -2,6 +2,7 @@
 #include "scan.h"
 
 #include "../base/number.h"
+#include "../stream/sniff.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -15,7 +16,8 @@ enum { SHOWN = 40 };
 void tm_scan_begin(tm_scan *scan, const char *bytes, size_t size, const char *name,
                    char comment)
 {
-    *scan = (tm_scan){bytes, bytes + size, name, 1, comment};
+    const size_t mark = tm_byte_order_mark(bytes, size);
+    *scan = (tm_scan){bytes + mark, bytes + size, name, 1, comment};
 }
 
 static bool is_line_end(char c)

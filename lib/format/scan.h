@@ -25,6 +25,7 @@ typedef struct tm_word {
     size_t size;
 } tm_word;
 
+/* Behind a byte order mark of UTF-8, if there is one. */
 void tm_scan_begin(tm_scan *scan, const char *bytes, size_t size, const char *name,
                    char comment);
 

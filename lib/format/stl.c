@@ -3,6 +3,7 @@
 
 #include "binary.h"
 #include "../surface/point_table.h"
+#include "../stream/group_markers.h"
 #include "scan.h"
 
 #include <math.h>
@@ -142,17 +143,40 @@ static tm_status read_facet(tm_scan *scan, tm_polygon_surface *surface,
     return status;
 }
 
+/* What follows "solid" in its line is the solid's name: the marker of its facets. */
+static tm_status begin_solid(tm_scan *scan, tm_polygon_surface *surface,
+                             tm_group_markers *markers, tm_error *error)
+{
+    const char *name = scan->at;
+    tm_scan_end_line(scan);
+    const char *end = name;
+    while (end < scan->at && *end != '\n' && *end != '\r')
+        end++;
+    return tm_group_marker(markers, name, (size_t)(end - name), &surface->next_marker,
+                           error);
+}
+
+/* A file of one solid without a name has no groups. */
+static void end_markers(tm_polygon_surface *surface, const tm_group_markers *markers)
+{
+    surface->has_facet_markers = markers->values > 1 || surface->group.count > 0;
+    for (size_t f = 0; f < surface->facets && !surface->has_facet_markers; f++)
+        surface->facet_marker[f] = 0;
+}
+
 /* One or several solids: solid NAME, facets, endsolid NAME. */
 static tm_status read_text(tm_polygon_surface *surface, tm_point_table *table,
                            const char *bytes, size_t size, const char *name,
                            tm_error *error)
 {
     tm_scan scan;
+    tm_group_markers markers = {.group = &surface->group, .dimension = TM_GROUP_FACES};
     tm_scan_begin(&scan, bytes, size, name, '\0');
     tm_status status = TM_OK;
     while (status == TM_OK && tm_scan_seek(&scan)) {
         status = expect(&scan, "solid", error);
-        tm_scan_end_line(&scan);
+        if (status == TM_OK)
+            status = begin_solid(&scan, surface, &markers, error);
         bool open = status == TM_OK;
         while (open && status == TM_OK) {
             tm_scan_seek(&scan);
@@ -165,6 +189,8 @@ static tm_status read_text(tm_polygon_surface *surface, tm_point_table *table,
         }
         tm_scan_end_line(&scan);
     }
+    end_markers(surface, &markers);
+    tm_group_markers_free(&markers);
     return status;
 }
 

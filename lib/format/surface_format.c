@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "surface_format.h"
 
+#include "../base/input.h"
+#include "../stream/sniff.h"
 #include "scan.h"
 #include "tetgen.h"
 
@@ -9,8 +11,8 @@
 
 static bool has_suffix(const char *name, const char *suffix)
 {
-    size_t size = strlen(name), length = strlen(suffix);
-    return size >= length && strcasecmp(name + size - length, suffix) == 0;
+    size_t size = tm_unpacked_name(name), length = strlen(suffix);
+    return size >= length && strncasecmp(name + size - length, suffix, length) == 0;
 }
 
 /* The beginning of a file: its first word. */
@@ -150,9 +152,12 @@ tm_status tm_format_read(tm_polygon_surface *surface, tm_format format, const ch
 {
     if (formats[format].read)
         return formats[format].read(surface, bytes, size, name, error);
+    if (size == 0)
+        return tm_fail_at(error, TM_ERROR_INPUT, name, 0, NULL,
+                          "is empty (a surface, or points)");
+    const tm_look look = tm_look_at(bytes, size);
     return tm_fail_at(error, TM_ERROR_INPUT, name, 0, NULL,
-                      size == 0
-                          ? "is empty (a surface, or points)"
-                          : "is no surface that can be read (OFF, STL, PLY, OBJ, .mdl, "
-                            ".node, .poly or .smesh)");
+                      "is no surface that can be read (OFF, STL, PLY, OBJ, .mdl, .node, "
+                      ".poly or .smesh); looks like %s%s%s",
+                      look.what, look.advice ? ": " : "", look.advice ? look.advice : "");
 }

@@ -47,8 +47,9 @@ tm_status tm_off_read(tm_polygon_surface *surface, const char *bytes, size_t siz
 
 /* Wavefront OBJ: `v x y z` and `f a b c …`, whose corners are v, v/vt, v//vn or v/vt/vn
  * with numbers from 1, or negative ones that count back from the last vertex so far. A
- * backslash at the end of a line goes on in the next. All other statements (normals,
- * groups, materials, lines, points) are skipped. */
+ * backslash at the end of a line goes on in the next. The names of `o`, `g` and `usemtl`
+ * make the groups of the faces: those of these three that are not the same for all faces,
+ * joined by '/'. All other statements (normals, lines, points) are skipped. */
 tm_status tm_obj_read(tm_polygon_surface *surface, const char *bytes, size_t size,
                       const char *name, tm_error *error);
 
@@ -59,8 +60,9 @@ tm_status tm_ply_read(tm_polygon_surface *surface, const char *bytes, size_t siz
                       const char *name, tm_error *error);
 
 /* STL, text and binary. Triangles come with coordinates; points with equal ones become
- * one node, in the order in which they come first. Normals, names, attribute bytes and
- * colours are skipped. */
+ * one node, in the order in which they come first. The solids of a text file are its
+ * groups, but for a single one without a name. Normals, attribute bytes and colours are
+ * skipped. */
 tm_status tm_stl_read(tm_polygon_surface *surface, const char *bytes, size_t size,
                       const char *name, tm_error *error);
 

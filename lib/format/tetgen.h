@@ -10,7 +10,7 @@
 
 TM_EXTERN_C_BEGIN
 
-/* The .node, .ele, .face and .edge files: numbered from 0 or 1, with comments anywhere,
+/* The .node, .ele, .face and .edge files, and .group, which TetGen does not know: numbered from 0 or 1, with comments anywhere,
  * attributes, markers, CR LF, header fields left out. What such a file holds is what a
  * block of the stream holds. */
 

@@ -2,7 +2,10 @@
 #include "tetgen.h"
 
 #include "../geom/predicates.h"
+#include "../stream/group.h"
 #include "scan.h"
+
+#include <string.h>
 
 /* Columns that `tetgen -nn` adds. */
 enum { FACE_NEIGHBOURS = 2, EDGE_NEIGHBOURS = 1 };
@@ -169,6 +172,58 @@ static tm_status read_row(reader *r, size_t row)
     return status;
 }
 
+/* dimension, value, and the name, which is the rest of the line. */
+static tm_status read_group(reader *r)
+{
+    int64_t dimension = 0, value = 0;
+    tm_status status = tm_scan_integer(r->scan, "the dimension", 0,
+                                       TM_GROUP_DIMENSIONS - 1, &dimension, r->error);
+    if (status == TM_OK)
+        status =
+            tm_scan_integer(r->scan, "the value", INT32_MIN, INT32_MAX, &value, r->error);
+    if (status != TM_OK)
+        return status;
+    tm_text name = {0};
+    const char *begin = r->scan->at;
+    const char *feed = memchr(begin, '\n', (size_t)(r->scan->end - begin));
+    const char *end = feed ? feed : r->scan->end;
+    tm_group_clean(&name, begin, (size_t)(end - begin));
+    if (name.failed)
+        status = tm_fail_memory(r->error);
+    else if (name.size == 0)
+        status = tm_scan_fail(r->scan, r->error, "there is no name");
+    else
+        status = tm_group_add(r->block, (tm_group_dimension)dimension, (int32_t)value,
+                              name.byte, r->error);
+    tm_text_free(&name);
+    tm_scan_end_line(r->scan);
+    return status;
+}
+
+static tm_status read_groups(reader *r)
+{
+    int64_t count = 0, zero = 0;
+    unsigned first = 0;
+    char name[TM_BLOCK_NAME];
+    memcpy(name, r->block->name, sizeof name);
+    tm_group_init(r->block, name);
+    tm_status status = tm_scan_next_integer(r->scan, "the number of rows", 0, UINT32_MAX,
+                                            &count, r->error);
+    if (status == TM_OK)
+        status = read_field(r, "the second number of the header", 0, 0, &zero);
+    if (status == TM_OK)
+        status = tm_scan_no_more(r->scan, "the header", r->error);
+    tm_scan_end_line(r->scan);
+    for (size_t row = 0; row < (size_t)count && status == TM_OK; row++) {
+        status = read_number(r, row, &first);
+        if (status == TM_OK)
+            status = read_group(r);
+    }
+    if (status == TM_OK)
+        status = tm_group_check(r->block, first, r->scan->name, r->error);
+    return status;
+}
+
 tm_status tm_tetgen_read_rows(tm_block *block, tm_scan *scan, unsigned *base,
                               size_t nodes, tm_error *error)
 {
@@ -178,8 +233,9 @@ tm_status tm_tetgen_read_rows(tm_block *block, tm_scan *scan, unsigned *base,
     else if (block->kind == TM_EDGE)
         r.extra = EDGE_NEIGHBOURS;
     unsigned first = 0;
-    tm_status status = read_header(&r);
-    for (size_t row = 0; row < block->count && status == TM_OK; row++) {
+    tm_status status = block->kind == TM_GROUP ? read_groups(&r) : read_header(&r);
+    const size_t rows = block->kind == TM_GROUP ? 0 : block->count;
+    for (size_t row = 0; row < rows && status == TM_OK; row++) {
         status = read_number(&r, row, &first);
         if (block->kind == TM_NODE)
             *base = first;

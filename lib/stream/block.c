@@ -17,6 +17,7 @@ static const tm_block_shape shapes[] = {
     [TM_ROOT] = {".root", {TM_HEADER_ATTRIBUTES}, 1, 4, 1, false},
     [TM_FACET] = {".facet", {TM_HEADER_MARKERS}, 1, 0, 2, true},
     [TM_CELL] = {".cell", {TM_HEADER_ATTRIBUTES}, 1, 0, 0, true},
+    [TM_GROUP] = {".group", {TM_HEADER_ZERO}, 1, 0, 2, false},
     [TM_UNKNOWN] = {"", {0}, 0, 0, 0, false},
 };
 

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "lines.h"
 
-#include "../base/file.h"
-
 #include <ctype.h>
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,7 +10,8 @@ enum { WINDOW = 1 << 17 };
 
 tm_status tm_lines_open(tm_lines *lines, int fd, const char *name, tm_error *error)
 {
-    *lines = (tm_lines){.fd = fd, .name = name, .capacity = WINDOW, .line = 1};
+    *lines = (tm_lines){.name = name, .capacity = WINDOW, .line = 1};
+    tm_input_open(&lines->input, fd, name);
     lines->buffer = malloc(WINDOW + TM_LINES_SLACK);
     if (!lines->buffer)
         return tm_fail_memory(error);
@@ -24,6 +22,7 @@ tm_status tm_lines_open(tm_lines *lines, int fd, const char *name, tm_error *err
 
 void tm_lines_close(tm_lines *lines)
 {
+    tm_input_close(&lines->input);
     free(lines->buffer);
     lines->buffer = NULL;
 }
@@ -31,7 +30,8 @@ void tm_lines_close(tm_lines *lines)
 /* Doubles the buffer for a line that does not fit; the line begins it. */
 static tm_status widen(tm_lines *lines, tm_error *error)
 {
-    if (lines->capacity >= TM_LINE_MAX)
+    lines->too_long = lines->capacity >= TM_LINE_MAX;
+    if (lines->too_long)
         return tm_fail_at(error, TM_ERROR_INPUT, lines->name, lines->line, NULL,
                           "the line is longer than %zu bytes", TM_LINE_MAX);
     size_t used = (size_t)(lines->filled - lines->buffer);
@@ -50,11 +50,10 @@ static tm_status widen(tm_lines *lines, tm_error *error)
 /* Reads once into the free end of the buffer; sets `end` behind the last line feed. */
 static tm_status read_more(tm_lines *lines, tm_error *error)
 {
-    size_t room = lines->capacity - (size_t)(lines->filled - lines->buffer);
-    ptrdiff_t got = tm_read_some(lines->fd, lines->filled, room);
-    if (got < 0)
-        return tm_fail_at(error, TM_ERROR_SYSTEM, lines->name, 0, NULL, "cannot read: %s",
-                          strerror(errno));
+    size_t got, room = lines->capacity - (size_t)(lines->filled - lines->buffer);
+    tm_status status = tm_input_read(&lines->input, lines->filled, room, &got, error);
+    if (status != TM_OK)
+        return status;
     if (got == 0) {
         lines->at_end = true;
         if (lines->filled > lines->at) {
@@ -64,7 +63,7 @@ static tm_status read_more(tm_lines *lines, tm_error *error)
         lines->end = lines->filled;
         return TM_OK;
     }
-    char *last = memrchr(lines->filled, '\n', (size_t)got);
+    char *last = memrchr(lines->filled, '\n', got);
     lines->filled += got;
     if (last)
         lines->end = last + 1;

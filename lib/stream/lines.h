@@ -4,6 +4,7 @@
 #define TM_STREAM_LINES_H
 
 #include "../base/error.h"
+#include "../base/input.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -14,7 +15,7 @@ enum { TM_ROW_WINDOW = 48, TM_LINES_SLACK = 2 * TM_ROW_WINDOW };
 /* The window holds whole lines: [at, end), and end[-1] is a line feed. Only the last
  * line of a file may lack its own; it is given one. */
 typedef struct tm_lines {
-    int fd;
+    tm_input input;
     const char *name;
     char *buffer;
     size_t capacity;
@@ -23,7 +24,8 @@ typedef struct tm_lines {
     char *filled;    /* past the last byte that was read */
     bool at_end;     /* the file has no more */
     bool ended_without_line_feed;
-    size_t line; /* number of the line at `at`, from 1 */
+    bool too_long; /* a line was */
+    size_t line;   /* number of the line at `at`, from 1 */
 } tm_lines;
 
 tm_status tm_lines_open(tm_lines *lines, int fd, const char *name, tm_error *error);

@@ -22,8 +22,8 @@ bool tm_block_names_add(tm_block_names *names);
 
 void tm_block_names_free(tm_block_names *names);
 
-/* references.c: what is between blocks: elements of octants, facets of cells, cells of
- * facets. `file` is for the error. O(rows) expected. */
+/* references.c: what is between blocks, elements of octants, facets of cells, cells of
+ * facets; and between the rows of .group. `file` is for the error. O(rows) expected. */
 tm_status tm_stream_check_references(const tm_block_names *names, const char *file,
                                      tm_error *error);
 

@@ -55,6 +55,24 @@ static tm_status next_content(reader *r)
     }
 }
 
+/* What the file is instead of a stream. */
+static tm_status fail_magic(reader *r)
+{
+    const char *at = r->lines.at;
+    size_t filled = (size_t)(r->lines.filled - at), size = sizeof magic - 1;
+    if (r->lines.ended_without_line_feed)
+        filled--;
+    const size_t mark = tm_byte_order_mark(at, filled);
+    if (filled - mark >= size && memcmp(at + mark, "termesh 1\r\n", size + 1) == 0)
+        return FAIL(r, NULL, "the lines end in CR LF (LF alone)");
+    if (mark > 0 && filled - mark >= size && memcmp(at + mark, magic, size) == 0)
+        return FAIL(r, NULL, "begins with a byte order mark: a stream has none");
+    const tm_look look = tm_look_at(at, filled);
+    return FAIL(r, NULL,
+                "no termesh stream (its first line is 'termesh 1'); looks like %s%s%s",
+                look.what, look.advice ? ": " : "", look.advice ? look.advice : "");
+}
+
 /* The first line. Only as much is read of a file that is something else as its look
  * needs. */
 static tm_status read_magic(reader *r)
@@ -64,21 +82,13 @@ static tm_status read_magic(reader *r)
     /* A binary file may be one long line: then there is no first line to look at. */
     tm_error too_long;
     if (tm_lines_fill(&r->lines, &too_long) != TM_OK) {
-        if (too_long.status != TM_ERROR_INPUT)
+        if (!r->lines.too_long)
             return tm_fail_as(r->error, &too_long);
         r->lines.end = r->lines.filled;
     }
     size_t there = (size_t)(r->lines.end - r->lines.at);
-    if (there < size || memcmp(r->lines.at, magic, size) != 0) {
-        if (there >= size && memcmp(r->lines.at, "termesh 1\r\n", size + 1) == 0)
-            return FAIL(r, NULL, "the lines end in CR LF (LF alone)");
-        size_t filled = (size_t)(r->lines.filled - r->lines.at);
-        if (r->lines.ended_without_line_feed)
-            filled--;
-        return FAIL(r, NULL,
-                    "no termesh stream (its first line is 'termesh 1'); looks like %s",
-                    tm_looks_like(r->lines.at, filled));
-    }
+    if (there < size || memcmp(r->lines.at, magic, size) != 0)
+        return fail_magic(r);
     next_line(r);
     return status;
 }
@@ -146,6 +156,8 @@ static tm_status read_header(reader *r, tm_block *block, size_t *rows)
         if (is == TM_HEADER_MARKERS && number != 0 && number != 1)
             return FAIL(r, block->name, "the header says %lld for markers (0 or 1)",
                         (long long)number);
+        if (is == TM_HEADER_ZERO && number != 0)
+            return FAIL(r, block->name, "the header says %lld (0)", (long long)number);
         if (is > 0 && number != is)
             return FAIL(r, block->name, "the header says %lld (%d)", (long long)number,
                         is);
@@ -317,6 +329,7 @@ static tm_status read_block(reader *r, const char *name)
     next_line(r);
     if (block->kind == TM_UNKNOWN)
         return read_unknown(r, block);
+    block->markers = block->kind == TM_GROUP; /* its values */
     status = read_header(r, block, &rows);
     if (status == TM_OK)
         status = read_rows(r, block, rows, limit);

@@ -2,6 +2,8 @@
 /* Indices from one block to another that may come later in the stream. */
 #include "names.h"
 
+#include "group_names.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -80,6 +82,8 @@ tm_status tm_stream_check_references(const tm_block_names *names, const char *fi
             status = check_facets(names, block, file, error);
         else if (block->kind == TM_CELL)
             status = check_cells(names, block, file, error);
+        else if (block->kind == TM_GROUP)
+            status = tm_group_check(block, stream->base, file, error);
     }
     return status;
 }

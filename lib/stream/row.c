@@ -7,6 +7,7 @@
 #include "../base/digits.h"
 #include "../base/number.h"
 #include "block.h"
+#include "group_names.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -130,6 +131,22 @@ static const char *reals(tm_row_context *c, const char *at, const char *end, dou
     return at;
 }
 
+/* The dimension of a row of .group; the other integer, where its name is, comes with
+ * that. */
+static const char *dimension(tm_row_context *c, const char *at, const char *end,
+                             uint32_t *to)
+{
+    int64_t number;
+    at = whole(c, at, end, &number, "dimension");
+    if (at && (number < 0 || number >= TM_GROUP_DIMENSIONS))
+        return FAIL(c,
+                    "row %zu: %lld is no dimension (0 nodes, 1 edges, 2 faces, 3 "
+                    "regions)",
+                    c->block->count + c->base, (long long)number);
+    *to = (uint32_t)number;
+    return at;
+}
+
 /* The fixed integers of a row of .octant, .root and .facet. */
 static const char *mixed_integers(tm_row_context *c, const char *at, const char *end,
                                   uint32_t *to, size_t width)
@@ -151,6 +168,8 @@ static inline const char *integers(tm_row_context *c, const char *at, const char
 {
     tm_block_kind kind = c->block->kind;
     uint32_t *to = c->block->integer + c->block->count * width;
+    if (kind == TM_GROUP)
+        return dimension(c, at, end, to);
     if (kind != TM_ELE && kind != TM_FACE && kind != TM_EDGE)
         return mixed_integers(c, at, end, to, width);
     for (size_t i = 0; i < width && at; i++)
@@ -214,7 +233,6 @@ static const char *row_number(tm_row_context *c, const char *at, const char *end
 
 const char *tm_row_read(tm_row_context *c, const char *at, const char *end)
 {
-
     tm_block *block = c->block;
     const tm_block_shape *shape = c->shape;
     size_t row = block->count;
@@ -230,6 +248,8 @@ const char *tm_row_read(tm_row_context *c, const char *at, const char *end)
                    block->attributes);
     if (at && block->markers)
         at = marker(c, at, end);
+    if (at && block->kind == TM_GROUP)
+        return tm_group_row_name(c, at, memchr(at, '\n', (size_t)(end - at)));
     if (at && *at == '\n')
         return at + 1;
     while (at && tm_is_blank(*at))

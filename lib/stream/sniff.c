@@ -6,37 +6,115 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct {
+#define SURFACE  "use tetgen-mesh or octree-mesh"
+#define NONE     "no filter reads it"
+#define NONE_YET "no filter reads it yet"
+
+typedef struct row {
     const char *begins;
-    const char *what;
-} known[] = {
-    {"termesh", "a termesh stream of another version than 1"},
-    {"\xEF\xBB\xBF", "text that begins with a byte-order mark"},
-    {"OFF", "an OFF surface: use tetgen-mesh"},
-    {"COFF", "an OFF surface: use tetgen-mesh"},
-    {"NOFF", "an OFF surface: use tetgen-mesh"},
-    {"STOFF", "an OFF surface: use tetgen-mesh"},
-    {"solid", "an STL surface: use tetgen-mesh"},
-    {"ply", "a PLY surface: use tetgen-mesh"},
-    {"v ", "an OBJ surface: use tetgen-mesh"},
-    {"[Nodes,", "an .m3d mesh: use m3d-import"},
-    {"[Elements,", "an .m3d mesh: use m3d-import"},
-    {"MIXED", "an .mvm mesh: use m3d-import"},
-    {"[", "an .mdl surface: use mdl-import, or tetgen-mesh"},
-    {"MeshVersionFormatted", "a Medit mesh, which no filter reads"},
-    {"$MeshFormat", "a Gmsh mesh, which no filter reads"},
-    {"# vtk", "a VTK file, which no filter reads"},
-    {"<", "XML, which no filter reads"},
+    tm_look look;
+} row;
+
+/* Of these the very first bytes. */
+static const row magic[] = {
+    {"# vtk DataFile", {"a legacy VTK file", NONE_YET}},
+    {"\xFF\xFE", {"UTF-16 text", "save it as UTF-8 or ASCII"}},
+    {"\xFE\xFF", {"UTF-16 text", "save it as UTF-8 or ASCII"}},
+    {"\x1F\x8B", {"gzip data within gzip data", "unpack it with zcat"}},
+    {"BZh", {"bzip2 data", "unpack it with bzcat"}},
+    {"\xFD"
+     "7zXZ",
+     {"xz data", "unpack it with xzcat"}},
+    {"\x28\xB5\x2F\xFD", {"Zstandard data", "unpack it with zstdcat"}},
+    {"PK\x03\x04", {"a zip archive", "unpack it with unzip"}},
+    {"7z\xBC\xAF", {"a 7z archive", "unpack it with 7z"}},
+    {"version https://git-lfs",
+     {"a pointer of Git LFS", "get the file with git lfs pull"}},
+    {"%PDF", {"a PDF document", NONE}},
+    {"%!PS", {"a PostScript document", NONE}},
+    {"\x89PNG", {"a PNG image", NONE}},
+    {"\xFF\xD8\xFF", {"a JPEG image", NONE}},
+    {"GIF8", {"a GIF image", NONE}},
+    {"\x7F"
+     "ELF",
+     {"a program", NONE}},
+    {"\x89HDF", {"an HDF5 file (CGNS, MED, Exodus)", NONE_YET}},
+    {"CDF\x01", {"a netCDF file (Exodus)", NONE_YET}},
+    {"CDF\x02", {"a netCDF file (Exodus)", NONE_YET}},
 };
 
-/* Skips lines that are blank or begin with '#'. */
-static const char *first_line(const char *at, const char *end)
+/* Of these the first line that has more than blanks and a comment behind '#'. What is a
+ * beginning of another one stands behind it. */
+static const row words[] = {
+    {"termesh 1\n", {"a termesh stream", "it needs no import"}},
+    {"termesh", {"a termesh stream of another version than 1", NONE}},
+    {"solid", {"an STL surface", SURFACE}},
+    {"SOLID", {"an STL surface", SURFACE}},
+    {"ply\n", {"a PLY surface", SURFACE}},
+    {"ply\r", {"a PLY surface", SURFACE}},
+    {"v ", {"an OBJ surface", SURFACE}},
+    {"vn ", {"an OBJ surface", SURFACE}},
+    {"vt ", {"an OBJ surface", SURFACE}},
+    {"f ", {"an OBJ surface", SURFACE}},
+    {"g ", {"an OBJ surface", SURFACE}},
+    {"o ", {"an OBJ surface", SURFACE}},
+    {"mtllib ", {"an OBJ surface", SURFACE}},
+    {"usemtl ", {"an OBJ surface", SURFACE}},
+    {"n_regions", {"a file of boxes", "use octree-mesh -b"}},
+    {"MIXED", {"an .mvm mesh", "use m3d-import"}},
+    {"MeshVersionFormatted", {"a Medit mesh", NONE_YET}},
+    {"$MeshFormat", {"a Gmsh mesh", NONE_YET}},
+    {"$NOD", {"a Gmsh mesh of version 1", NONE_YET}},
+    {"ISO-10303-21", {"a STEP file", NONE_YET}},
+    {"DBRep_Drawable", {"a BRep file of Open CASCADE", NONE_YET}},
+    {"mesh3d", {"a Netgen mesh", NONE_YET}},
+    {"BEGIN POINTS LIST", {"a GetFEM mesh", NONE_YET}},
+    {"*KEYWORD", {"an LS-DYNA input file", NONE_YET}},
+    {"*", {"an Abaqus or CalculiX input file", NONE_YET}},
+    {"SOL ", {"a Nastran input file", NONE_YET}},
+    {"CEND", {"a Nastran input file", NONE_YET}},
+    {"BEGIN BULK", {"a Nastran input file", NONE_YET}},
+    {"GRID", {"a Nastran input file", NONE_YET}},
+    {"/*--", {"an OpenFOAM file", NONE_YET}},
+    {"FoamFile", {"an OpenFOAM file", NONE_YET}},
+    {"{\"", {"JSON", NONE}},
+};
+
+static bool begins(const char *at, const char *end, const char *with)
+{
+    size_t length = strlen(with);
+    return (size_t)(end - at) >= length && memcmp(at, with, length) == 0;
+}
+
+static bool holds(const char *at, const char *end, const char *word)
+{
+    return memmem(at, (size_t)(end - at), word, strlen(word)) != NULL;
+}
+
+static const tm_look *look_up(const row *table, size_t rows, const char *at,
+                              const char *end)
+{
+    for (size_t r = 0; r < rows; r++)
+        if (begins(at, end, table[r].begins))
+            return &table[r].look;
+    return NULL;
+}
+#define LOOK_UP(table, at, end) look_up(table, sizeof table / sizeof *table, at, end)
+
+size_t tm_byte_order_mark(const char *bytes, size_t size)
+{
+    static const char mark[] = "\xEF\xBB\xBF";
+    return begins(bytes, bytes + size, mark) ? sizeof mark - 1 : 0;
+}
+
+/* Skips lines that are blank or begin with the sign of a comment. */
+static const char *first_line(const char *at, const char *end, char comment)
 {
     while (at < end) {
         const char *c = at;
         while (c < end && (*c == ' ' || *c == '\t' || *c == '\r'))
             c++;
-        if (c < end && *c != '\n' && *c != '#')
+        if (c < end && *c != '\n' && *c != comment)
             return c;
         while (c < end && *c != '\n')
             c++;
@@ -45,8 +123,63 @@ static const char *first_line(const char *at, const char *end)
     return end;
 }
 
-/* Numbers of a header line such as TetGen's files begin with; at most 4 are taken. */
-static int header(const char *at, const char *end, long number[4])
+/* Text ----------------------------------------------------------------------------- */
+
+/* OFF, or up to six letters of its variants before it. */
+static bool is_off(const char *at, const char *end)
+{
+    enum { VARIANTS = 6 };
+    size_t letters = 0;
+    while (letters < VARIANTS && at + letters < end &&
+           !begins(at + letters, end, "OFF") && strchr("STCN4n", at[letters]))
+        letters++;
+    return begins(at + letters, end, "OFF");
+}
+
+/* Sections of the mixed-element octree mesher, in any order. */
+static tm_look look_at_sections(const char *at, const char *end)
+{
+    if (holds(at, end, "ARRAY1<POINT3D>]"))
+        return (tm_look){"an .mdl surface",
+                         "use mdl-import, or tetgen-mesh or octree-mesh"};
+    if (holds(at, end, "[Nodes,") || holds(at, end, "[Elements,"))
+        return (tm_look){"an .m3d mesh", "use m3d-import"};
+    return (tm_look){"text", NULL};
+}
+
+static tm_look look_at_markup(const char *at, const char *end)
+{
+    if (holds(at, end, "<VTKFile"))
+        return (tm_look){"an XML file of VTK (.vtu)", NONE_YET};
+    if (holds(at, end, "<html") || holds(at, end, "<HTML"))
+        return (tm_look){"an HTML page, perhaps of a server that had no file", NONE};
+    return (tm_look){"XML", NONE};
+}
+
+/* The first line has the letter S in column 73. */
+static bool is_iges(const char *at, const char *end)
+{
+    enum { COLUMN = 72, LINE = 80 };
+    return end - at > LINE && at[COLUMN] == 'S' && isspace((unsigned char)at[LINE]) &&
+           !memchr(at, '\n', LINE);
+}
+
+/* What stands behind comments that begin with another sign, if that is the kind of file
+ * that has such comments. */
+static const tm_look *look_behind(const char *at, const char *end, char comment,
+                                  const char *kind)
+{
+    const tm_look *look = LOOK_UP(words, first_line(at, end, comment), end);
+    return *at == comment && look && strstr(look->what, kind) ? look : NULL;
+}
+
+/* Numbers -------------------------------------------------------------------------- */
+
+enum { NUMBERS = 4 };
+
+/* Whole numbers of a header line such as TetGen's files begin with; at most so many are
+ * taken. */
+static int header(const char *at, const char *end, long number[NUMBERS])
 {
     char line[128];
     size_t size = 0;
@@ -54,7 +187,7 @@ static int header(const char *at, const char *end, long number[4])
         line[size++] = *at++;
     line[size] = '\0';
     int count = 0;
-    for (char *c = line, *after; count < 4; c = after, count++) {
+    for (char *c = line, *after; count < NUMBERS; c = after, count++) {
         number[count] = strtol(c, &after, 10);
         if (after == c)
             break;
@@ -62,25 +195,40 @@ static int header(const char *at, const char *end, long number[4])
     return count;
 }
 
-static const char *looks_like_tetgen(const char *at, const char *end)
+/* Counts of points, edges and octants, of which a cube has 8, 12 and 1. */
+static bool is_oct(int count, const long number[NUMBERS])
 {
-    long number[4];
+    enum { POINTS = 8, EDGES = 12 };
+    return count > 2 && number[0] >= POINTS && number[1] >= EDGES && number[2] > 0;
+}
+
+static tm_look look_at_numbers(const char *at, const char *end)
+{
+    enum { CORNERS = 4, NODES = 10 };
+    long number[NUMBERS];
     int count = header(at, end, number);
-    if (count >= 2 && number[1] == 3)
-        return "a TetGen .node file: use tetgen-import (with its .ele), or tetgen-mesh";
-    if (count >= 2 && (number[1] == 4 || number[1] == 10))
-        return "a TetGen .ele file: use tetgen-import (with its .node)";
-    if (count >= 1)
-        return "a file of numbers, perhaps TetGen's: use tetgen-import";
-    return "text";
+    if (count == 0)
+        return (tm_look){"text", NULL};
+    if (count > 1 && number[1] == 3)
+        return (tm_look){"a TetGen .node, .poly or .smesh file",
+                         "use tetgen-mesh or octree-mesh, or tetgen-import of a .node "
+                         "file with its .ele"};
+    if (count > 1 && (number[1] == CORNERS || number[1] == NODES))
+        return (tm_look){"a TetGen .ele file", "use tetgen-import with its .node"};
+    if (count == 2 && (number[1] == 0 || number[1] == 1))
+        return (tm_look){"a TetGen .face or .edge file",
+                         "use tetgen-import with its .node"};
+    if (is_oct(count, number))
+        return (tm_look){"an .oct file", "use oct-import"};
+    return (tm_look){"a file of numbers", NULL};
 }
 
 /* A line of 2 for text and the type, then one with the number of points alone; or a digit
  * for the byte order and the type as four bytes. */
-static bool looks_like_visf(const char *bytes, const char *end)
+static bool is_visf(const char *bytes, const char *end)
 {
     enum { BINARY_HEAD = 5 };
-    long number[4];
+    long number[NUMBERS];
     const char *second = memchr(bytes, '\n', (size_t)(end - bytes));
     if (second && header(bytes, end, number) == 2 && number[0] == 2 && number[1] >= 0 &&
         number[1] <= 2)
@@ -91,31 +239,59 @@ static bool looks_like_visf(const char *bytes, const char *end)
     return type[1] == 0 && type[2] == 0 && type[0] + type[3] <= 2;
 }
 
+/* Binary --------------------------------------------------------------------------- */
+
 static bool is_binary(const char *bytes, size_t size)
 {
-    for (size_t i = 0; i < size; i++)
+    enum { ENOUGH = 256 };
+    for (size_t i = 0; i < size && i < ENOUGH; i++)
         if (bytes[i] == '\0' ||
             (iscntrl((unsigned char)bytes[i]) && !isspace((unsigned char)bytes[i])))
             return true;
     return false;
 }
 
-const char *tm_looks_like(const char *bytes, size_t size)
+static bool is_tar(const char *bytes, size_t size)
 {
-    const char *end = bytes + size;
+    enum { AT = 257 };
+    static const char tar[] = "ustar";
+    return size > AT + sizeof tar && memcmp(bytes + AT, tar, sizeof tar - 1) == 0;
+}
+
+/* ---------------------------------------------------------------------------------- */
+
+tm_look tm_look_at(const char *bytes, size_t size)
+{
     if (size == 0)
-        return "an empty file";
-    for (size_t k = 0; k < sizeof known / sizeof known[0]; k++) {
-        size_t length = strlen(known[k].begins);
-        if (size >= length && memcmp(bytes, known[k].begins, length) == 0)
-            return known[k].what;
-    }
-    if (looks_like_visf(bytes, end))
-        return "a ViSF mesh: use visf-import";
-    if (is_binary(bytes, size < 256 ? size : 256))
-        return "binary data, perhaps an STL surface: use tetgen-mesh";
-    const char *line = first_line(bytes, end);
-    if (end - line >= 2 && memcmp(line, "v ", 2) == 0)
-        return "an OBJ surface: use tetgen-mesh";
-    return looks_like_tetgen(line, end);
+        return (tm_look){"an empty file", NULL};
+    const char *end = bytes + size;
+    const tm_look *known = LOOK_UP(magic, bytes, end);
+    if (known)
+        return *known;
+    const char *at = first_line(bytes + tm_byte_order_mark(bytes, size), end, '#');
+    known = LOOK_UP(words, at, end);
+    if (known)
+        return *known;
+    if (is_visf(bytes, end))
+        return (tm_look){"a ViSF mesh", "use visf-import"};
+    if (is_off(at, end))
+        return (tm_look){"an OFF surface", SURFACE};
+    if (is_tar(bytes, size))
+        return (tm_look){"a tar archive", "unpack it with tar"};
+    if (is_binary(bytes, size))
+        return (tm_look){"binary data, perhaps an STL surface", SURFACE};
+    if (at == end)
+        return (tm_look){"text", NULL};
+    if (*at == '[')
+        return look_at_sections(at, end);
+    if (*at == '<')
+        return look_at_markup(at, end);
+    known = look_behind(at, end, '$', "Nastran");
+    if (!known)
+        known = look_behind(at, end, '%', "GetFEM");
+    if (known)
+        return *known;
+    if (is_iges(bytes, end))
+        return (tm_look){"an IGES file", NONE_YET};
+    return look_at_numbers(at, end);
 }

@@ -64,12 +64,17 @@ void tm_stream_remove_if(tm_stream *stream, tm_block_test *gone, const void *con
     stream->blocks = stay;
 }
 
-void tm_stream_add_history(tm_stream *stream, const char *line)
+tm_status tm_stream_add_history(tm_stream *stream, const char *line, tm_error *error)
 {
-    size_t from = stream->history.size;
-    tm_text_format(&stream->history, "# %s", line);
-    for (size_t i = from; i < stream->history.size; i++)
-        if (stream->history.byte[i] == '\n' || stream->history.byte[i] == '\r')
-            stream->history.byte[i] = ' ';
-    tm_text_string(&stream->history, "\n");
+    tm_text *history = &stream->history;
+    const size_t from = history->size;
+    tm_text_format(history, "# %s\n", line);
+    if (history->failed) {
+        history->failed = false;
+        return tm_fail_memory(error);
+    }
+    for (size_t i = from; i + 1 < history->size; i++)
+        if (history->byte[i] == '\n' || history->byte[i] == '\r')
+            history->byte[i] = ' ';
+    return TM_OK;
 }

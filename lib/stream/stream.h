@@ -25,6 +25,7 @@ typedef enum tm_block_kind {
     TM_ROOT,   /* .root    real: x y z side; integer: finest level */
     TM_FACET,  /* .facet   integer: c1 c2 (TM_NONE for -1); item: nodes of each */
     TM_CELL,   /* .cell    item: the facets of each */
+    TM_GROUP,  /* .group   names of markers and regions: see group.h */
     TM_UNKNOWN /* anything else: text */
 } tm_block_kind;
 
@@ -47,7 +48,7 @@ typedef struct tm_block {
     uint32_t *item; /* [start[count]] */
     double *attribute; /* [count][attributes], or NULL where there are none */
     int32_t *marker;   /* [count], or NULL where there are none */
-    tm_text text;      /* TM_UNKNOWN: the lines, to be passed on unchanged */
+    tm_text text;      /* TM_UNKNOWN: the lines, to be passed on unchanged; TM_GROUP */
 } tm_block;
 
 typedef struct tm_stream {
@@ -105,8 +106,9 @@ void tm_stream_remove_if(tm_stream *stream, tm_block_test *gone, const void *con
  * attributes and markers; the arrays that were there are freed. Contents are zero. */
 tm_status tm_block_allocate(tm_block *block, size_t count, size_t items, tm_error *error);
 
-/* Appends "# line\n" to the history; line breaks inside become blanks. */
-void tm_stream_add_history(tm_stream *stream, const char *line);
+/* Appends "# line\n" to the history, or nothing where memory is out; line breaks inside
+ * become blanks. */
+tm_status tm_stream_add_history(tm_stream *stream, const char *line, tm_error *error);
 
 TM_EXTERN_C_END
 

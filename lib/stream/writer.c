@@ -8,6 +8,7 @@
 #include "../base/number.h"
 #include "../base/parallel.h"
 #include "block.h"
+#include "group_names.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -162,6 +163,8 @@ static tm_status write_header(int fd, const tm_block *block, tm_error *error)
             tm_text_format(&text, " %zu", block->attributes);
         else if (shape->header[i] == TM_HEADER_MARKERS)
             tm_text_format(&text, " %d", block->markers);
+        else if (shape->header[i] == TM_HEADER_ZERO)
+            tm_text_string(&text, " 0");
         else
             tm_text_format(&text, " %d", shape->header[i]);
     }
@@ -189,6 +192,17 @@ static tm_status write_rows(int fd, const tm_block *block, uint32_t base,
     return status;
 }
 
+static tm_status write_groups(int fd, const tm_block *block, uint32_t base,
+                              tm_error *error)
+{
+    tm_text text = {0};
+    tm_group_write(&text, block, base);
+    const tm_status status = text.failed ? tm_fail_memory(error)
+                                         : tm_write_all(fd, text.byte, text.size, error);
+    tm_text_free(&text);
+    return status;
+}
+
 static tm_status write_name(int fd, const tm_block *block, tm_error *error)
 {
     tm_status status = tm_write_all(fd, block->name, strlen(block->name), error);
@@ -206,7 +220,9 @@ tm_status tm_block_write(const tm_block *block, unsigned base, int fd, unsigned 
     if (!text)
         return tm_fail_memory(error);
     tm_status status = write_header(fd, block, error);
-    if (status == TM_OK)
+    if (status == TM_OK && block->kind == TM_GROUP)
+        status = write_groups(fd, block, base, error);
+    else if (status == TM_OK)
         status = write_rows(fd, block, base, threads, text, error);
     for (unsigned t = 0; t < threads; t++)
         free(text[t].byte);

@@ -23,6 +23,7 @@ enum {
 void tm_polygon_surface_init(tm_polygon_surface *surface)
 {
     *surface = (tm_polygon_surface){.base = 1};
+    tm_group_init(&surface->group, ".group");
 }
 
 void tm_polygon_surface_free(tm_polygon_surface *surface)
@@ -38,6 +39,7 @@ void tm_polygon_surface_free(tm_polygon_surface *surface)
     free(surface->facet_hole_start);
     free(surface->hole);
     free(surface->region);
+    tm_group_free(&surface->group);
     tm_polygon_surface_init(surface);
 }
 
@@ -116,7 +118,9 @@ tm_status tm_polygon_surface_end_facet(tm_polygon_surface *surface, int32_t mark
 tm_status tm_polygon_surface_end_face(tm_polygon_surface *surface, tm_error *error)
 {
     const tm_status status = tm_polygon_surface_end_polygon(surface, error);
-    return status == TM_OK ? tm_polygon_surface_end_facet(surface, 0, error) : status;
+    if (status != TM_OK)
+        return status;
+    return tm_polygon_surface_end_facet(surface, surface->next_marker, error);
 }
 
 tm_status tm_polygon_surface_add_polygon(tm_polygon_surface *surface,
@@ -246,6 +250,17 @@ static size_t put_fan(const tm_polygon_surface *surface, size_t p, int32_t marke
     return t;
 }
 
+static tm_status group_to_stream(const tm_polygon_surface *surface, tm_stream *stream,
+                                 const char *part, tm_error *error)
+{
+    tm_block *group = add_block(stream, part, ".group");
+    if (!group)
+        return tm_fail_memory(error);
+    char name[TM_BLOCK_NAME];
+    memcpy(name, group->name, sizeof name);
+    return tm_group_copy(group, name, &surface->group, error);
+}
+
 tm_status tm_polygon_surface_to_stream(const tm_polygon_surface *surface,
                                        tm_stream *stream, const char *part,
                                        tm_error *error)
@@ -266,5 +281,7 @@ tm_status tm_polygon_surface_to_stream(const tm_polygon_surface *surface,
     for (size_t f = 0; f < surface->facets && status == TM_OK; f++)
         for (size_t p = surface->facet_start[f]; p < surface->facet_start[f + 1]; p++)
             t = put_fan(surface, p, surface->facet_marker[f], face, t);
+    if (status == TM_OK && surface->group.count > 0)
+        status = group_to_stream(surface, stream, part, error);
     return status;
 }

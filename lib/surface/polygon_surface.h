@@ -6,6 +6,7 @@
 #define TM_SURFACE_POLYGON_SURFACE_H
 
 #include "../base/extern_c.h"
+#include "../stream/group.h"
 #include "../stream/stream.h"
 
 #include <stdbool.h>
@@ -44,6 +45,8 @@ typedef struct tm_polygon_surface {
     size_t *facet_hole_start; /* [facets + 1]: its holes, in the same way */
     int32_t *facet_marker;    /* [facets] */
     bool has_facet_markers;   /* else they are all 0 */
+    int32_t next_marker;      /* of the faces that are added from here on */
+    tm_block group;           /* the names of facet markers and regions: group.h */
     size_t facet_holes;       /* points in parts of a facet's plane that are no facet */
     double (*facet_hole)[3];  /* [facet_holes] */
 
@@ -70,7 +73,7 @@ tm_status tm_polygon_surface_add_corner(tm_polygon_surface *surface, uint32_t no
 tm_status tm_polygon_surface_end_polygon(tm_polygon_surface *surface, tm_error *error);
 tm_status tm_polygon_surface_end_facet(tm_polygon_surface *surface, int32_t marker,
                                        tm_error *error);
-/* Ends a polygon that is a facet of its own. */
+/* Ends a polygon that is a facet of its own, with the marker next_marker. */
 tm_status tm_polygon_surface_end_face(tm_polygon_surface *surface, tm_error *error);
 /* A facet that is one polygon of k nodes. */
 tm_status tm_polygon_surface_add_polygon(tm_polygon_surface *surface,
@@ -91,8 +94,8 @@ tm_status tm_polygon_surface_nodes_from_stream(tm_polygon_surface *surface,
 tm_status tm_polygon_surface_add_faces(tm_polygon_surface *surface, const tm_block *face,
                                        tm_error *error);
 
-/* Adds the blocks `part`.node and `part`.face, which must not be there yet: all nodes of
- * the surface and its polygons, those with more than three corners as fans of triangles
+/* Adds the blocks `part`.node and `part`.face, which must not be there yet, and where
+ * there are names `part`.group: all nodes of the surface and its polygons, those with more than three corners as fans of triangles
  * from the first, those with fewer left out. Attributes and markers come with them.
  * TM_ERROR_SYSTEM where memory or 32-bit ids are out. O(n). */
 tm_status tm_polygon_surface_to_stream(const tm_polygon_surface *surface,

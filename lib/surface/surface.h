@@ -10,7 +10,8 @@
 
 TM_EXTERN_C_BEGIN
 
-/* Sharp edges are chained to curves that end at corners: nodes where another number than
+/* An edge is sharp where the normals beside it differ, and where the markers do. Sharp
+ * edges are chained to curves that end at corners: nodes where another number than
  * two sharp edges meet, or where two meet at a sharp angle that the next node of the
  * curve does not take back, and tips, where the angles of the triangles sum up to less
  * than 180°. An open edge is sharp. A rough surface has many short curves: see
@@ -22,6 +23,7 @@ typedef struct tm_surface {
     size_t triangles;
     uint32_t (*triangle)[3]; /* seen from outside they turn counter-clockwise */
     int32_t *marker;         /* [triangles], or NULL where the file has none */
+    tm_block group;          /* the names of markers: group.h */
     uint32_t *facet;         /* [triangles]: the facet of the file it is from */
     uint32_t *origin;        /* [nodes]: the node of the file */
     uint32_t (*across)[3];   /* the triangle beyond the edge from corner i to i + 1;

@@ -85,6 +85,8 @@ tm_status tm_surface_build(tm_surface *surface, const tm_polygon_surface *polygo
 {
     *surface = (tm_surface){0};
     tm_status status = tm_surface_triangulate(surface, polygons, error);
+    if (status == TM_OK && polygons->group.count > 0)
+        status = tm_group_copy(&surface->group, ".group", &polygons->group, error);
     if (status == TM_OK)
         status = shape(surface, options, polygons->base, error);
     if (status == TM_OK)
@@ -97,6 +99,7 @@ void tm_surface_free(tm_surface *surface)
     free(surface->xyz);
     free(surface->triangle);
     free(surface->marker);
+    tm_group_free(&surface->group);
     free(surface->facet);
     free(surface->origin);
     free(surface->across);

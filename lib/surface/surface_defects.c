@@ -81,6 +81,7 @@ static void count_edges(const tm_polygon_surface *surface, const uint32_t *uniqu
         if (next - i == 1 && defects->open_edges++ == 0)
             memcpy(defects->open_edge, edges[i], sizeof *edges);
         defects->crowded_edges += next - i > 2;
+        defects->odd_edges += next - i > 2 && (next - i) % 2 != 0;
     }
 }
 

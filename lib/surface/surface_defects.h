@@ -15,6 +15,7 @@ typedef struct tm_surface_defects {
     size_t repeated_corners; /* polygons with a point twice */
     size_t open_edges;       /* with one polygon only */
     size_t crowded_edges;    /* with more than two polygons */
+    size_t odd_edges;        /* with three polygons, five, … */
     uint32_t open_edge[2];   /* the nodes of one of the open edges */
     bool flat;               /* all nodes are in one plane, exactly */
 } tm_surface_defects;
@@ -23,6 +24,12 @@ typedef struct tm_surface_defects {
  * or two have no edges. O(n log n) in the number of corners. */
 tm_status tm_surface_find_defects(const tm_polygon_surface *surface,
                                   tm_surface_defects *defects, tm_error *error);
+
+/* Takes facets out whose polygon has the points of an earlier facet's, in whatever order,
+ * as where two solids touch that are closed each for itself; *dropped is how many. Facets
+ * of several polygons, or with holes, stay. O(n log n) in the number of corners. */
+tm_status tm_surface_drop_duplicates(tm_polygon_surface *surface, size_t *dropped,
+                                     tm_error *error);
 
 TM_EXTERN_C_END
 

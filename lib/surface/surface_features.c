@@ -89,8 +89,8 @@ static void find_normals(feature_finder *f)
     }
 }
 
-/* Zero normals are at no angle to anything. */
-static bool is_sharp(const feature_finder *f, uint32_t t, uint32_t n)
+/* Whether the normals differ; those that are zero are at no angle to anything. */
+static bool bends(const feature_finder *f, uint32_t t, uint32_t n)
 {
     if (n == TM_NONE)
         return true;
@@ -98,6 +98,13 @@ static bool is_sharp(const feature_finder *f, uint32_t t, uint32_t n)
     if (tm_norm2(a) == 0 || tm_norm2(b) == 0)
         return false;
     return tm_dot(a, b) < f->most_cosine;
+}
+
+/* Where two groups of the surface meet there is an edge, too, that has to stay. */
+static bool is_sharp(const feature_finder *f, uint32_t t, uint32_t n)
+{
+    const int32_t *marker = f->surface->marker;
+    return bends(f, t, n) || (marker && marker[t] != marker[n]);
 }
 
 static int compare_edges(const void *a, const void *b)
@@ -368,7 +375,7 @@ static tm_status smooth_if_rough(feature_finder *f, tm_error *error)
     for (uint32_t t = 0; t < surface->triangles; t++)
         for (unsigned i = 0; i < 3; i++) {
             const uint32_t n = surface->across[t][i];
-            if ((n != TM_NONE && n < t) || !is_sharp(f, t, n))
+            if ((n != TM_NONE && n < t) || !bends(f, t, n))
                 continue;
             uint8_t *p = &at[surface->triangle[t][i]];
             uint8_t *q = &at[surface->triangle[t][(i + 1) % 3]];

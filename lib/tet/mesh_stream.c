@@ -197,7 +197,7 @@ static tm_status give_edges(const tm_tet_mesh *mesh, tm_block *block, tm_error *
 bool tm_tet_mesh_invalidates(const tm_tet_mesh *mesh, const tm_block *block)
 {
     return mesh->removed_nodes > 0 && block->name[0] == '.' && block->kind >= TM_MIX &&
-           block->kind < TM_UNKNOWN && block->kind != TM_ROOT;
+           block->kind < TM_GROUP && block->kind != TM_ROOT;
 }
 
 tm_status tm_tet_mesh_to_stream(tm_tet_mesh *mesh, tm_stream *stream, tm_error *error)

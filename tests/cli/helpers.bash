@@ -90,13 +90,13 @@ elif form == 'ply-little':
 elif form == 'ply-big':
     ply('binary_big_endian', '>')
 elif form == 'stl':
-    print('solid made')
+    print('solid')
     for f in faces:
         print('facet normal 0 0 0\nouter loop')
         for p in f:
             print('vertex', text(p))
         print('endloop\nendfacet')
-    print('endsolid made')
+    print('endsolid')
 elif form == 'stl-binary':
     out.buffer.write(b'solid, but binary'.ljust(80) + struct.pack('<I', len(faces)))
     for f in faces:
@@ -416,8 +416,9 @@ need_vtk() {
 }
 
 # vtk FILE EXPRESSION: prints it, of g, the grid that VTK reads of a .vtk or .vtu file,
-# volume, the volumes of its cells by vtkCellSizeFilter, and point and cell, the arrays by
-# their names.
+# volume and area of its cells by vtkCellSizeFilter, point and cell, the arrays by their
+# names, within(ARRAY, A, B), the cells with values A to B by vtkThreshold: their types,
+# volume and area, and names, the strings of the field data.
 vtk() {
     "$vtk_python" - "$@" <<'END'
 import sys, vtk
@@ -439,8 +440,24 @@ size = vtk.vtkCellSizeFilter()
 size.SetInputData(g)
 size.Update()
 point, cell = arrays(g.GetPointData()), arrays(g.GetCellData())
-volume = arrays(size.GetOutput().GetCellData()).get('Volume')
+sizes = arrays(size.GetOutput().GetCellData())
+volume, area = sizes.get('Volume'), sizes.get('Area')
 types = [g.GetCellType(c) for c in range(g.GetNumberOfCells())]
+group_names = g.GetFieldData().GetAbstractArray('group_names')
+names = group_names and [group_names.GetValue(i) for i in range(group_names.GetNumberOfValues())]
+
+def within(name, low, high):
+    threshold = vtk.vtkThreshold()
+    threshold.SetInputConnection(size.GetOutputPort())
+    threshold.SetInputArrayToProcess(0, 0, 0, vtk.vtkDataObject.FIELD_ASSOCIATION_CELLS, name)
+    threshold.SetLowerThreshold(low)
+    threshold.SetUpperThreshold(high)
+    threshold.SetThresholdFunction(threshold.THRESHOLD_BETWEEN)
+    threshold.Update()
+    part = threshold.GetOutput()
+    data = arrays(part.GetCellData())
+    return (sorted({part.GetCellType(c) for c in range(part.GetNumberOfCells())}),
+            round(float(data['Volume'].sum()), 9), round(float(data['Area'].sum()), 9))
 print(eval(sys.argv[2]))
 END
 }

@@ -4,120 +4,7 @@
 
 bats_require_minimum_version 1.5.0
 
-# Whether a filter needs p4est, and there is none.
-is_left_out() {
-    needs_p4est "$1" && ! [ -x "$TM_BUILD/bin/$1" ]
-}
-
-# Only these may.
-needs_p4est() {
-    [ "$1" = octree-mesh ] || [ "$1" = octree-repair ]
-}
-
-setup_file() {
-    root=$(cd "$BATS_TEST_DIRNAME/../.." && pwd)
-    filters=$(cd "$root/cmd" && for file in *.c; do
-        is_left_out "${file%.c}" || echo "${file%.c}"
-    done)
-    export root filters
-}
-
-setup() {
-    cd "$BATS_TEST_TMPDIR" || exit
-    cat >corner.tm <<'END'
-termesh 1
-.node
-4 3 0 0
-1 0 0 0
-2 1 0 0
-3 0 1 0
-4 0 0 1
-.ele
-1 4 0
-1 1 2 3 4
-.face
-4 0
-1 1 3 2
-2 1 2 4
-3 2 3 4
-4 1 4 3
-.end
-END
-    cat >cell.tm <<'END'
-termesh 1
-.node
-4 3 0 0
-1 0 0 0
-2 1 0 0
-3 0 1 0
-4 0 0 1
-.facet
-4 0
-1 1 -1 3 1 3 2
-2 1 -1 3 1 2 4
-3 1 -1 3 2 3 4
-4 1 -1 3 1 4 3
-.cell
-1 1
-1 4 1 2 3 4 1
-.end
-END
-    sed -n '/^.node/,/^.ele/p' corner.tm | sed '1d; $d' >corner.node
-    sed 's/^\.node/surface.node/; s/^\.face/surface.face/; /^\.ele/,/^1 1 2/d' \
-        corner.tm >surface.tm
-    printf '%s\n' '2 0' 4 '0 0 0' '1 0 0' '0 1 0' '0 0 1' >corner.visf
-    printf '%s\n' '[Vertices, ARRAY1<POINT3D>]' 3 '0 0 0' '1 0 0' '0 1 0' \
-        '[Triangles, ARRAY1<STRING>]' 1 '0 1 2 0 0 0' >corner.mdl
-    printf '%s\n' MIXED '4 1' '0 0 0' '1 0 0' '0 1 0' '0 0 1' 'T 0 1 2 3' >corner.mvm
-    printf '%s\n' '8 0 1' '0 0 0' '0 0 1' '1 0 1' '1 0 0' '0 1 0' '0 1 1' '1 1 1' '1 1 0' \
-        '8 0 1 2 3 4 5 6 7 0' 0 'Geometric Transform' '0 0 0' '0 0 0' \
-        1 >cube.oct
-    { sed '$d' corner.tm; printf '%s\n' .mix '1 0' '1 4 1 2 3 4' .octant '1 0' \
-        '1 0 0 0 0 1 2' .root '1 0' '1 0 0 0 1 0' surface.node '3 3 0 0' '1 0 0 0' \
-        '2 1 0 0' '3 0 1 0' surface.face '1 0' '1 1 2 3' .end; } >octant.tm
-    { sed '/^surface.node/,$d' octant.tm; echo .end; } >element.tm
-}
-
-# The operands with which a filter reads the file $2; for tetgen-import, a .node file.
-operands() {
-    case $1 in
-    tetgen-export | openfoam-export) echo "out $2" ;;
-    *) echo "$2" ;;
-    esac
-}
-
-# Whether a filter's output is files that an operand names.
-writes_files() {
-    [ "$1" = tetgen-export ] || [ "$1" = openfoam-export ]
-}
-
-# A good input for a filter.
-input() {
-    case $1 in
-    poly-stats) echo cell.tm ;;
-    tetgen-import) echo corner.node ;;
-    tetgen-mesh | octree-mesh) echo surface.tm ;;
-    visf-import) echo corner.visf ;;
-    mdl-import) echo corner.mdl ;;
-    m3d-import) echo corner.mvm ;;
-    oct-import) echo cube.oct ;;
-    oct-export) echo octant.tm ;;
-    octree-repair) echo element.tm ;;
-    *) echo corner.tm ;;
-    esac
-}
-
-# Runs the function $1 with each filter. (bats shows which one where it fails.)
-for_each_filter() {
-    for filter in $filters; do
-        echo "$filter"
-        "$1" "$filter"
-    done
-}
-
-teardown() {
-    echo "status '${status:-}', output '${output:-}', standard error '${stderr:-}'"
-}
+load filters
 
 @test "--help and --version: on standard output, exit 0" {
     asks() {
@@ -158,7 +45,7 @@ teardown() {
     refuses() {
         run -2 --separate-stderr "$1" --no-such-option corner.tm
         [ "$output" = "" ]
-        [[ "$stderr" == "$1: option '--no-such-option' is unknown"* ]]
+        [[ "$stderr" == "$1: unknown option '--no-such-option'"* ]]
         [[ "$stderr" == *"usage: $1 "* ]]
     }
     for_each_filter refuses
@@ -223,6 +110,7 @@ teardown() {
     }' >many.tm
     sed -n '/^.node/,/^.ele/p' many.tm | sed '1d; $d' >many.node
     sed '/^.ele/,/^20000 1/d' many.tm >many-nodes.tm
+    { sed '$d' many-nodes.tm; printf '.ele\n0 4 0\n.end\n'; } >many-empty.tm
     awk '/^\.ele/ { print ".face\n20000 0"; getline; faces = 1; next }
         faces && NF == 5 { NF = 4 } { print }' many.tm >faces.tm
     { printf '2 0\n20000\n'; sed 1d many.node | cut -d ' ' -f 2-; } >many.visf
@@ -231,7 +119,7 @@ teardown() {
         case $1 in
         tet-stats) command="tet-stats --list many.tm" ;;
         jens-stats) command="jens-stats -l many.tm" ;;
-        lepp-improve) command="lepp-improve -q many-nodes.tm" ;;
+        lepp-improve) command="lepp-improve -q many-empty.tm" ;;
         tetgen-import) command="tetgen-import many.node" ;;
         tetgen-mesh) command="tetgen-mesh --quiet many.node" ;;
         octree-mesh) command="octree-mesh -q surface.tm" ;;
@@ -359,6 +247,8 @@ examples() {
     for filter in $filters; do
         [ -x "to/usr/bin/$filter" ]
         [ -f "to/usr/share/man/man1/$filter.1" ]
+        [ -f "to/usr/share/bash-completion/completions/$filter" ]
+        [ -f "to/usr/share/zsh/site-functions/_$filter" ]
     done
     [ -f to/usr/share/man/man5/termesh-stream.5 ]
     [ -f to/usr/share/man/man7/termesh.7 ]

@@ -256,15 +256,12 @@ END
     [ "$(json out.json inverted)" = 1 ]
 }
 
-@test "a mesh without tetrahedra, or without any block, is good" {
-    printf 'termesh 1\n.end\n' >empty.tm
-    for mesh in none.tm empty.tm; do
-        run -0 mesh-check --json out.json $mesh
-        [[ "$output" =~ tetrahedra\ +0 ]]
-        [[ "$output" =~ "nothing is wrong" ]]
-        [ "$(json out.json euler)" = 0 ]
-        [ "$(json out.json area)" = 0 ]
-    done
+@test "a mesh without tetrahedra is good" {
+    run -0 mesh-check --json out.json none.tm
+    [[ "$output" =~ tetrahedra\ +0 ]]
+    [[ "$output" =~ "nothing is wrong" ]]
+    [ "$(json out.json euler)" = 0 ]
+    [ "$(json out.json area)" = 0 ]
 }
 
 @test "of several kinds of elements one is examined, with a note for the others" {

@@ -410,7 +410,7 @@ assert abs(json.load(open("check.json"))["volume"] - 1.79) < 0.1'
     head -c 200 /dev/urandom >noise.bin
     fails noise.bin 'noise.bin*'
     mixed >mixed.tm
-    fails mixed.tm 'mixed.tm: surface.node: the stream has no such block*'
+    fails mixed.tm 'mixed.tm: holds mixed elements (.mix), but octree-mesh takes a surface*'
     fails open.off 'open.off: the surface is open*' -r box.off 4
     fails box.off 'open.off: the surface is open*' -r open.off 4
     # files of the options

@@ -288,8 +288,8 @@ END
 }
 
 @test "degenerate: nothing, one tetrahedron, a flat one, counted from 0" {
-    run -0 --separate-stderr polylla3d --no-history <<<$'termesh 1\n.end'
-    [ "$(grep -c '^0' <<<"$output")" -eq 2 ]
+    run -0 --separate-stderr polylla3d --no-history <<<$'termesh 1\n.node\n0 3 0 0\n.ele\n0 4 0\n.end'
+    [ "$(grep -c '^0' <<<"$output")" -eq 3 ]
     cat >"$out/flat.tm" <<'END'
 termesh 1
 .node
@@ -321,7 +321,7 @@ END
     [[ $stderr == "polylla3d: $out/overlap.tm: .ele: tetrahedra 0 and 1 overlap"* ]]
     polylla3d -q points.tm >"$out/poly.tm"
     run -3 --separate-stderr polylla3d "$out/poly.tm"
-    [[ $stderr == *"a mesh of polyhedra already"* ]]
+    [[ $stderr == *"holds polyhedra (.cell), but polylla3d takes tetrahedra (.ele)"* ]]
     while read -r options; do
         # shellcheck disable=SC2086 # words
         run -2 --separate-stderr polylla3d $options points.tm

@@ -317,7 +317,7 @@ END
 
 @test "export: usage is exit 2, a wrong stream exit 3" {
     run -2 --separate-stderr visf-export --binary middle cubes.tm
-    [[ "$stderr" == "visf-export: --binary: 'middle' is no byte order"* ]]
+    [[ "$stderr" == "visf-export: --binary: 'middle' is none of little, big"* ]]
     run -3 --separate-stderr visf-export <(printf 'termesh 1\n.end\n')
     [[ "$stderr" == *': has no nodes (.node)' ]]
     sed 's/^11 2 1 1$/11 2 1 1e39/' cubes.tm >far.tm

@@ -146,18 +146,23 @@ typedef struct {
 
 static const wrong wrongs[] = {
     {"", 1, "", "looks like an empty file"},
-    {"OFF\n1 2 3\n", 1, "", "an OFF surface: use tetgen-mesh"},
+    {"OFF\n1 2 3\n", 1, "", "an OFF surface: use tetgen-mesh or octree-mesh"},
     {"solid x\n", 1, "", "an STL surface: use tetgen-mesh"},
     {"ply\n", 1, "", "a PLY surface: use tetgen-mesh"},
     {"# blender\nv 1 2 3\n", 1, "", "an OBJ surface: use tetgen-mesh"},
-    {"# c\n 5 3 0 0\n", 1, "", "a TetGen .node file: use tetgen-import"},
+    {"# c\n 5 3 0 0\n", 1, "", "a TetGen .node, .poly or .smesh file: use tetgen-mesh"},
     {"5 4 0\n", 1, "", "a TetGen .ele file: use tetgen-import"},
-    {"12 1\n", 1, "", "numbers"},
-    {"2 1\n1 1 2 3\n", 1, "", "numbers"},
+    {"12 1\n", 1, "", "a TetGen .face or .edge file: use tetgen-import"},
+    {"2 1\n1 1 2 3\n", 1, "", "a TetGen .face or .edge file: use tetgen-import"},
+    {"12 7\n", 1, "", "looks like a file of numbers"},
     {"2 2\n8\n0 0 0\n", 1, "", "a ViSF mesh: use visf-import"},
     {"$MeshFormat\n", 1, "", "Gmsh"},
     {"MeshVersionFormatted 2\n", 1, "", "Medit"},
-    {"\x7f\x45LF\x02\x01", 1, "", "binary"},
+    {"\x7f\x45LF\x02\x01", 1, "", "looks like a program: no filter reads it"},
+    {"\x01\x02", 1, "", "binary data, perhaps an STL surface: use tetgen-mesh"},
+    {"\xEF\xBB\xBFtermesh 1\n.end\n", 1, "", "begins with a byte order mark"},
+    {"\xEF\xBB\xBFOFF\n", 1, "", "an OFF surface: use tetgen-mesh"},
+    {"\xFF\xFEO", 1, "", "UTF-16 text"},
     {"termesh 2\n.end\n", 1, "", "another version"},
     {"termesh 1 \n.end\n", 1, "", "another version"},
     {"termesh 1\r\n.end\r\n", 1, "", "CR LF"},
@@ -349,7 +354,7 @@ static void test_edit(void **state)
     (void)state;
     tm_stream stream;
     assert_int_equal(read_text(&stream, NODES ".end\n", sizeof NODES + 4, NULL), TM_OK);
-    tm_stream_add_history(&stream, "one\nline");
+    assert_int_equal(tm_stream_add_history(&stream, "one\nline", NULL), TM_OK);
     tm_block *cell = tm_stream_add(&stream, ".cell");
     assert_int_equal(cell->kind, TM_CELL);
     assert_int_equal(tm_block_allocate(cell, 1, 4, NULL), TM_OK);

@@ -55,6 +55,20 @@ enum {
     FILTER_OWN = 512 /* a filter numbers its own long-only options from here */
 };
 
+/* The words that an option takes: `count` of them, the first at `first`, the next one
+ * `stride` bytes on. A table ends with {0}. The completion of shells has them from here.
+ */
+typedef struct filter_words {
+    int option;
+    const char *const *first;
+    size_t stride;
+    int count;
+} filter_words;
+#define FILTER_WORDS(option, list)                                                       \
+    {                                                                                    \
+        option, list, sizeof *(list), (int)(sizeof(list) / sizeof *(list))               \
+    }
+
 typedef struct filter {
     /* set by the filter */
     const char *name;             /* "lepp-improve" */
@@ -63,9 +77,11 @@ typedef struct filter {
     const char *help;             /* the filter's own options, a line each, for --help */
     const struct option *options; /* its own, then FILTER_OPTIONS */
     const char *letters;          /* getopt's, its own + FILTER_LETTERS */
+    const filter_words *words;    /* of options that take one of some; or NULL */
     bool json_is_output;          /* --json - is stdout: the *-stats and mesh-check */
     bool q_is_own;                /* -q is the filter's; quiet is --quiet only */
     bool j_is_own;                /* -j is the filter's; threads are --threads only */
+    bool binary;                  /* its output is, before filter_operands() */
     /* set from the command line */
     int argc;
     char **argv;
@@ -74,11 +90,15 @@ typedef struct filter {
     const char *json;   /* NULL: none */
     int verbosity;      /* -1 quiet, 0, 1 verbose */
     bool history;
+    bool forced; /* -o -: to standard output, whatever that is */
     bool strict; /* what the output cannot carry is an error */
     unsigned threads;
-    tm_text command;     /* the options as given, for the history */
-    output_files *files; /* -o FILE in the making */
-    tm_text report;      /* of --json, in the making */
+    const char *apart;     /* what follows an option whose argument may lack */
+    char apart_option[32]; /* how that is written before its argument: "-q" */
+    tm_text command;       /* the options as given, for the history */
+    output_files *files;   /* -o FILE in the making */
+    tm_text report;        /* of --json, in the making */
+    bool reported;         /* the report is where it belongs */
     tm_json json_object;
 } filter;
 
@@ -88,7 +108,7 @@ void filter_start(filter *f, int argc, char **argv);
 int filter_option(filter *f);
 
 /* Takes the rest of the command line: at most one FILE. With no FILE (or "-") standard
- * input is read; if that is a terminal: usage, exit 2. */
+ * input is read; if that is a terminal: usage, exit 2. So is binary output to one. */
 void filter_operands(filter *f);
 
 /* Option arguments as numbers in lo..hi, else a usage error that names the option. */
@@ -97,9 +117,19 @@ double filter_number(const filter *f, const char *option, const char *text, doub
 long filter_integer(const filter *f, const char *option, const char *text, long lo,
                     long hi);
 
-/* An option argument as its place in a list of words, else a usage error. */
-int filter_word(const filter *f, const char *option, const char *const *word, int count,
-                const char *given);
+/* An option argument as its place in the option's row of f->words, else a usage error; or
+ * -1 where it is none of them. */
+int filter_word(const filter *f, int option, const char *given);
+int filter_find_word(const filter *f, int option, const char *given);
+const char *filter_word_of(const filter_words *row, int k); /* word k of the row */
+
+/* Where the operand is the word behind an option whose argument may lack, and is no file:
+ * that it may be meant for that argument, and how to write it; else "". */
+enum { FILTER_APART = 320 };
+void filter_explain_apart(const filter *f, const char *operand, char text[FILTER_APART]);
+
+/* "usage: name synopsis" */
+void filter_usage(const filter *f, FILE *to);
 
 /* "name: message", then exit 2, pointing to --help. */
 _Noreturn void filter_usage_error(const filter *f, const char *format, ...)
@@ -108,7 +138,15 @@ _Noreturn void filter_usage_error(const filter *f, const char *format, ...)
 /* "name: file:line: block: what", then exit with error->status. */
 _Noreturn void filter_fail(const filter *f, const tm_error *error);
 
-/* One line on stderr, "name: …": note() unless -q, verbose() with -v only. */
+/* The same of bytes that a reader refused; `reader` is the filter that reads the format.
+ * Where they look like what another one reads, that is said. */
+_Noreturn void filter_fail_file(const filter *f, tm_error *error, const tm_text *bytes,
+                                const char *reader);
+
+/* One line on stderr, "name: …": note() unless -q, verbose() with -v only. Bytes that a
+ * terminal would obey are shown as \x1b. */
+void filter_message(const filter *f, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 void filter_note(const filter *f, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 void filter_verbose(const filter *f, const char *format, ...)
@@ -126,15 +164,17 @@ const char *filter_input_name(const filter *f);
 void filter_read_bytes(const filter *f, tm_text *bytes);
 void filter_read_file(const filter *f, const char *file, tm_text *bytes);
 
-/* Reads the stream from FILE or standard input. */
+/* Reads the stream from FILE or standard input; what it holds is what the filter takes
+ * (kinds.h). */
 void filter_read(const filter *f, tm_stream *stream);
 
 /* Adds the history line "name version options: summary" (unless --no-history) and
- * writes the stream to the output. summary is a printf format. */
+ * writes the stream to the output. summary is a printf format. With --json the report has
+ * been written before, so that nothing goes out where that fails. */
 void filter_write(filter *f, tm_stream *stream, const char *summary, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Writes a text (a table, a foreign file) to the output. */
+/* Writes a text (a table, a foreign file) to the output, after the report as well. */
 void filter_write_text(filter *f, const tm_text *text);
 
 /* Whether the report to read is written: not where standard output is for the JSON. */

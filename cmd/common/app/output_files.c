@@ -5,6 +5,7 @@
 #include "../process/private.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,19 +23,61 @@ static tm_status fail_file(const char *name, tm_error *error)
 static void free_file(output_file *file)
 {
     free(file->name);
+    free(file->target);
     free(file->temporary);
 }
 
-/* Makes NAME.XXXXXX; -1 with errno where that fails. */
+/* A file that is open already, as /dev/stdout is: its link leads to the name under which
+ * it was opened, not to the file. */
+static bool is_descriptor(const char *path)
+{
+    static const char *const folder[] = {"/proc/", "/dev/fd/"};
+    for (size_t i = 0; i < sizeof folder / sizeof *folder; i++)
+        if (strncmp(path, folder[i], strlen(folder[i])) == 0)
+            return true;
+    return false;
+}
+
+/* The file that a name leads to through symbolic links, which need not be there; NULL
+ * with errno where there is none. */
+static char *follow_links(const char *name)
+{
+    enum { LINKS_MAX = 40 }; /* as Linux has it, path_resolution(7) */
+    tm_text path = {0};
+    char target[PATH_MAX];
+    tm_text_string(&path, name);
+    for (int links = 0; !path.failed && links <= LINKS_MAX; links++) {
+        const ssize_t size =
+            is_descriptor(path.byte) ? -1 : readlink(path.byte, target, sizeof target);
+        if (size < 0)
+            return path.byte;
+        const char *slash = strrchr(path.byte, '/');
+        path.size = slash && target[0] != '/' ? (size_t)(slash + 1 - path.byte) : 0;
+        tm_text_append(&path, target, (size_t)size);
+    }
+    errno = path.failed ? ENOMEM : ELOOP;
+    tm_text_free(&path);
+    return NULL;
+}
+
+/* Makes a file in the folder of file->target, with a short name, as that may be as long
+ * as a name can be; -1 with errno where that fails. */
 static int make_temporary(output_file *file, const struct stat *old)
 {
     tm_text text = {0};
-    tm_text_format(&text, "%s.XXXXXX", file->name);
-    file->temporary = text.byte;
+    const char *slash = strrchr(file->target, '/');
+    const size_t folder = slash ? (size_t)(slash + 1 - file->target) : 0;
+    tm_text_append(&text, file->target, folder);
+    tm_text_string(&text, "termesh.XXXXXX");
     errno = ENOMEM;
-    int fd = text.failed ? -1 : mkostemp(file->temporary, O_CLOEXEC);
-    if (fd < 0)
+    int fd = text.failed ? -1 : mkostemp(text.byte, O_CLOEXEC);
+    if (fd < 0) {
+        const int cause = errno;
+        tm_text_free(&text);
+        errno = cause;
         return -1;
+    }
+    file->temporary = text.byte;
     const mode_t everyone = S_IRUSR | S_IWUSR | S_IRGRP | S_IWGRP | S_IROTH | S_IWOTH;
     mode_t mask = umask(0);
     umask(mask);
@@ -42,13 +85,26 @@ static int make_temporary(output_file *file, const struct stat *old)
     return fd;
 }
 
+/* Whether errno says that no file can be made in the folder, by this user or at all. */
+static bool folder_is_closed(void)
+{
+    return errno == EACCES || errno == EPERM || errno == EROFS;
+}
+
 static int open_file(output_file *file)
 {
     struct stat old;
-    bool exists = stat(file->name, &old) == 0;
+    const bool exists = stat(file->name, &old) == 0;
     if (exists && !S_ISREG(old.st_mode))
         return open(file->name, O_WRONLY | O_CLOEXEC);
-    return make_temporary(file, exists ? &old : NULL);
+    file->target = follow_links(file->name);
+    if (!file->target)
+        return -1;
+    const bool directly = is_descriptor(file->target);
+    const int fd = directly ? -1 : make_temporary(file, exists ? &old : NULL);
+    if (directly || (fd < 0 && exists && folder_is_closed()))
+        return open(file->target, O_WRONLY | O_TRUNC | O_CLOEXEC);
+    return fd;
 }
 
 tm_status output_files_make_folder(output_files *files, const char *name, tm_error *error)
@@ -78,7 +134,7 @@ tm_status output_files_open(output_files *files, const char *name, int *fd,
     if (!grown)
         return tm_fail_memory(error);
     files->file = grown;
-    output_file file = {strdup(name), NULL, -1};
+    output_file file = {.name = strdup(name), .fd = -1};
     if (!file.name)
         return tm_fail_memory(error);
     if (files->count == 0)
@@ -116,8 +172,8 @@ void output_files_abandon(output_files *files)
             close(files->file[i].fd);
         if (files->file[i].temporary)
             unlink(files->file[i].temporary);
-        if (files->folder)
-            unlink(files->file[i].name);
+        if (files->folder && files->file[i].target)
+            unlink(files->file[i].target);
     }
     if (files->folder)
         rmdir(files->folder);
@@ -142,7 +198,7 @@ tm_status output_files_finish(output_files *files, tm_error *error)
         status = tm_fail(error, TM_ERROR_SYSTEM, "interrupted");
     for (size_t i = 0; i < files->count && status == TM_OK; i++)
         if (files->file[i].temporary &&
-            rename(files->file[i].temporary, files->file[i].name) != 0)
+            rename(files->file[i].temporary, files->file[i].target) != 0)
             status = fail_file(files->file[i].name, error);
     if (status == TM_OK)
         release(files);

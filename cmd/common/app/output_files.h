@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Files as the output of a filter: each is written beside its name first, with the mode
- * that the shell would give, and they get their names when all are whole. Before that an
- * error, or SIGINT, SIGTERM or SIGHUP, leaves none. What is there already and is no
- * regular file, a device or a named pipe, is written directly. */
+/* Files as the output of a filter: each is written in the same folder under another name
+ * first, with the mode that the shell would give, and they get their names when all are
+ * whole. Before that an error, or SIGINT, SIGTERM or SIGHUP, leaves none. A symbolic link
+ * stays: what it leads to is written. Written directly is what is there already and is no
+ * regular file, a device or a named pipe, what is open already (/dev/stdout), and a file
+ * in a folder in which none can be made; these are not whole where the filter fails in
+ * the middle. */
 #ifndef CMD_COMMON_OUTPUT_FILES_H
 #define CMD_COMMON_OUTPUT_FILES_H
 
@@ -12,7 +15,8 @@
 #include <stddef.h>
 
 typedef struct output_file {
-    char *name;
+    char *name;      /* as it was given */
+    char *target;    /* where that leads to, through symbolic links; NULL: a device */
     char *temporary; /* NULL: written directly */
     int fd;
 } output_file;

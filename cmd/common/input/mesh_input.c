@@ -3,6 +3,7 @@
 
 #include "../../../lib/format/tetgen.h"
 #include "../../../lib/stream/coordinates.h"
+#include "left_out.h"
 
 #include <stdio.h>
 
@@ -38,13 +39,8 @@ void mesh_input_read_to_compute(const filter *f, tm_stream *stream)
 
 tm_content mesh_input_read(const filter *f, tm_stream *stream)
 {
-    tm_error error;
     filter_read(f, stream);
     const tm_content content = tm_content_of(stream);
-    if (content == TM_CONTENT_NOTHING) {
-        tm_fail(&error, TM_ERROR_INPUT, "has no nodes (.node)");
-        mesh_input_fail(f, &error);
-    }
     if (content == TM_CONTENT_TETRAHEDRA)
         mesh_input_turn(f, stream, tm_content_block(stream, content), "are turned");
     return content;
@@ -83,8 +79,9 @@ int mesh_write(filter *f, mesh_writer *write)
     mesh_input_read(f, &stream);
     if (write(&text, &stream, f->threads, &error) != TM_OK)
         mesh_input_fail(f, &error);
-    filter_write_text(f, &text);
+    mesh_leave_out(f, &stream);
     mesh_input_report(f, &stream);
+    filter_write_text(f, &text);
     tm_text_free(&text);
     tm_stream_free(&stream);
     return filter_finish(f, 0);
@@ -140,10 +137,10 @@ int mesh_import(int argc, char **argv, const char *name, const char *purpose,
     tm_stream_init(&stream);
     filter_read_bytes(&f, &bytes);
     if (read(&f, &stream, &bytes, &error) != TM_OK)
-        filter_fail(&f, &error);
+        filter_fail_file(&f, &error, &bytes, name);
     tm_text_free(&bytes);
-    write_imported(&f, &stream);
     mesh_input_report(&f, &stream);
+    write_imported(&f, &stream);
     tm_stream_free(&stream);
     return filter_finish(&f, 0);
 }

@@ -7,9 +7,9 @@
 #include "../../../lib/mesh/cell_faces.h"
 #include "../app/filter.h"
 
-/* Reads the stream from FILE or standard input and says what it holds, which is at least
- * points. Tetrahedra of .ele that are left-handed are turned, with a note; where there
- * are other elements instead, they are not looked at. Exits on failure. */
+/* Reads the stream from FILE or standard input and says what it holds. Tetrahedra of .ele
+ * that are left-handed are turned, with a note; where there are other elements instead,
+ * they are not looked at. Exits on failure. */
 tm_content mesh_input_read(const filter *f, tm_stream *stream);
 
 /* What measures a mesh reads it so: coordinates that are too large or too small to
@@ -38,8 +38,8 @@ void mesh_rows_json(tm_json *json, const tm_stream *stream);
 typedef tm_status mesh_writer(tm_text *text, const tm_stream *stream, unsigned threads,
                               tm_error *error);
 
-/* What an exporter does after its options: reads, writes, reports. For main() to return.
- */
+/* What an exporter does after its options: reads, says what it leaves out, writes,
+ * reports. For main() to return. */
 int mesh_write(filter *f, mesh_writer *write);
 
 /* Reads a foreign file into an empty stream, with notes about what it had to do. */

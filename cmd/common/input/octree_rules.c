@@ -41,7 +41,7 @@ static void add_boxes(const filter *f, octree_rules *rules, const char *file)
     tm_text bytes = {0};
     filter_read_file(f, file, &bytes);
     if (tm_reg_read(&rules->rules, bytes.byte, bytes.size, file, &error) != TM_OK)
-        filter_fail(f, &error);
+        filter_fail_file(f, &error, &bytes, "octree-mesh -");
     tm_text_free(&bytes);
 }
 
@@ -53,7 +53,7 @@ static void add_leaves(const filter *f, octree_rules *rules, const char *file)
     tm_octree_rule rule = {.kind = TM_RULE_LEAVES};
     uint32_t *leaf;
     if (tm_ref_read(&leaf, &rule.leaves, bytes.byte, bytes.size, file, &error) != TM_OK)
-        filter_fail(f, &error);
+        filter_fail_file(f, &error, &bytes, "octree-mesh -");
     tm_text_free(&bytes);
     rules->leaf_list =
         append(f, rules->leaf_list, rules->leaf_lists, sizeof *rules->leaf_list);

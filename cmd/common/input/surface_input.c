@@ -2,7 +2,10 @@
 #include "surface_input.h"
 
 #include "../../../lib/base/file.h"
+#include "../../../lib/base/input.h"
 #include "../../../lib/mesh/cell_faces.h"
+#include "../app/kinds.h"
+#include "../../../lib/surface/surface_defects.h"
 #include "../../../lib/format/tetgen.h"
 
 #include <errno.h>
@@ -11,12 +14,18 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-/* The name with .node for its suffix. */
+/* The name with .node for its suffix, or where there is no such file with .node.gz. */
 static void node_file(const char *name, tm_text *file)
 {
-    const char *dot = strrchr(name, '.');
-    tm_text_append(file, name, dot ? (size_t)(dot - name) : strlen(name));
+    const char *end = name + tm_unpacked_name(name);
+    const char *dot = memrchr(name, '.', (size_t)(end - name));
+    tm_text_append(file, name, (size_t)((dot ? dot : end) - name));
     tm_text_string(file, ".node");
+    if (file->failed || access(file->byte, F_OK) == 0)
+        return;
+    tm_text_string(file, ".gz");
+    if (!file->failed && access(file->byte, F_OK) != 0)
+        file->byte[file->size -= strlen(".gz")] = '\0';
 }
 
 /* The nodes of a .poly or .smesh file that has none itself. */
@@ -34,6 +43,8 @@ static tm_status read_nodes_beside(const filter *f, tm_polygon_surface *surface,
     filter_read_file(f, file.byte, &bytes);
     const tm_status status =
         tm_plc_read(surface, TM_PLC_NODE, bytes.byte, bytes.size, file.byte, error);
+    if (status != TM_OK)
+        filter_fail_file(f, error, &bytes, "tetgen-import");
     tm_text_free(&file);
     tm_text_free(&bytes);
     return status;
@@ -81,15 +92,21 @@ static tm_status copy_nodes(const tm_block *node, tm_polygon_surface *surface,
     return status;
 }
 
-/* A main mesh that is triangles alone becomes the part `surface`, unless there is one. */
+/* A main mesh that is triangles or points alone becomes the part `surface`, unless there
+ * is one. */
 static void rename_surface(tm_stream *stream)
 {
     if (tm_stream_find(stream, "surface.node") ||
         tm_stream_find(stream, "surface.face") ||
-        tm_content_of(stream) != TM_CONTENT_SURFACE)
+        tm_content_of(stream) > TM_CONTENT_SURFACE || !tm_stream_find(stream, ".node"))
         return;
     strcpy(tm_stream_find(stream, ".node")->name, "surface.node");
-    strcpy(tm_stream_find(stream, ".face")->name, "surface.face");
+    tm_block *face = tm_stream_find(stream, ".face");
+    if (face)
+        strcpy(face->name, "surface.face");
+    tm_block *group = tm_stream_find(stream, ".group");
+    if (group)
+        strcpy(group->name, "surface.group");
 }
 
 tm_status surface_input_of_stream(const tm_stream *stream, const char *name,
@@ -105,6 +122,11 @@ tm_status surface_input_of_stream(const tm_stream *stream, const char *name,
     tm_status status = copy_nodes(node, surface, error);
     if (status == TM_OK && face)
         status = tm_polygon_surface_add_faces(surface, face, error);
+    const tm_block *group = tm_stream_find(stream, "surface.group");
+    if (!group) /* the markers of a mesh are those of its surface */
+        group = tm_stream_find(stream, ".group");
+    if (status == TM_OK && group)
+        status = tm_group_copy(&surface->group, ".group", group, error);
     return status;
 }
 
@@ -121,6 +143,8 @@ tm_format surface_input_read(const filter *f, tm_polygon_surface *surface,
     const tm_format format = tm_format_of(bytes.byte, bytes.size, name);
     if (format == TM_FORMAT_STREAM) {
         status = read_stream(&bytes, name, stream, &error);
+        if (status == TM_OK)
+            status = kinds_check(f->name, stream, name, &error);
         if (status == TM_OK) {
             rename_surface(stream);
             status = surface_input_of_stream(stream, name, surface, &error);
@@ -133,9 +157,11 @@ tm_format surface_input_read(const filter *f, tm_polygon_surface *surface,
             status =
                 tm_format_read(surface, format, bytes.byte, bytes.size, name, &error);
     }
-    tm_text_free(&bytes);
+    if (status != TM_OK && format > TM_FORMAT_STREAM)
+        filter_fail_file(f, &error, &bytes, "tetgen-mesh");
     if (status != TM_OK)
         filter_fail(f, &error);
+    tm_text_free(&bytes);
     filter_verbose(f, "%s: %s, %zu nodes, %zu faces", name, tm_format_name(format),
                    surface->nodes, surface->facets);
     return format;
@@ -162,6 +188,48 @@ static void note_mending(const filter *f, const tm_surface *s)
                     s->crossings);
 }
 
+/* For messages: what to do with several regions. */
+static const char one_solid[] =
+    "one solid is filled; 'tetgen-mesh FILE | off-export' makes its outer surface";
+
+/* Walls inside: no edge is open, but some have an odd number of faces, so that both sides
+ * of one of these are in the solid. */
+static void refuse_walls(const filter *f, tm_polygon_surface *polygons)
+{
+    tm_error error;
+    tm_surface_defects defects;
+    size_t dropped;
+    if (tm_surface_drop_duplicates(polygons, &dropped, &error) != TM_OK ||
+        tm_surface_find_defects(polygons, &defects, &error) != TM_OK)
+        filter_fail(f, &error);
+    if (defects.open_edges > 0 || defects.odd_edges == 0)
+        return;
+    tm_fail_at(&error, TM_ERROR_INPUT, filter_input_name(f), 0, NULL,
+               "the surface has walls inside, between several regions: %zu edges have "
+               "three faces, or another odd number, and none is open (%s)",
+               defects.odd_edges, one_solid);
+    filter_fail(f, &error);
+}
+
+/* Regions are told apart by walls, or are in what would be left empty as a cavity. */
+static void check_regions(const filter *f, const tm_polygon_surface *polygons,
+                          const tm_surface *surface)
+{
+    tm_error error;
+    for (size_t r = 0; r < polygons->regions; r++) {
+        const double *p = polygons->region[r].point;
+        if (tm_surface_has_inside(surface, p))
+            continue;
+        tm_fail_at(&error, TM_ERROR_INPUT, filter_input_name(f), 0, NULL,
+                   "region %zu, at (%g, %g, %g), is outside, or in a cavity that would "
+                   "be left empty (%s)",
+                   r + 1, p[0], p[1], p[2], one_solid);
+        filter_fail(f, &error);
+    }
+    if (polygons->regions > 1)
+        filter_leave_out(f, "%zu regions (%s)", polygons->regions, one_solid);
+}
+
 void surface_input_build(const filter *f, const tm_surface_options *options,
                          tm_surface *surface, tm_stream *history)
 {
@@ -169,11 +237,15 @@ void surface_input_build(const filter *f, const tm_surface_options *options,
     tm_stream stream;
     tm_error error;
     surface_input_read(f, &polygons, &stream);
-    if (tm_surface_build(surface, &polygons, options, &error) != TM_OK) {
+    const tm_status status = tm_surface_build(surface, &polygons, options, &error);
+    if (status == TM_ERROR_INPUT || (status == TM_OK && surface->open_edges > 0))
+        refuse_walls(f, &polygons);
+    if (status != TM_OK) {
         if (!error.file[0])
             snprintf(error.file, sizeof error.file, "%s", filter_input_name(f));
         filter_fail(f, &error);
     }
+    check_regions(f, &polygons, surface);
     tm_polygon_surface_free(&polygons);
     if (history) {
         tm_stream_init(history);

@@ -11,33 +11,23 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* An unnamed file that holds the script, at its beginning; -1 with errno. A file and not
- * a pipe, so that gnuplot and we never wait for each other. */
+/* A file in memory that holds the script, at its beginning; -1 where that fails. A file
+ * and not a pipe, so that gnuplot and we never wait for each other. */
 static int script_file(const tm_text *script, tm_error *error)
 {
-    FILE *file = tmpfile();
-    if (!file) {
-        tm_fail(error, TM_ERROR_SYSTEM, "cannot make a temporary file: %s",
-                strerror(errno));
-        return -1;
-    }
-    const int fd = fcntl(fileno(file), F_DUPFD_CLOEXEC, 0);
-    const int reason = errno;
-    fclose(file);
-    if (fd < 0) {
-        tm_fail(error, TM_ERROR_SYSTEM, "cannot make a temporary file: %s",
-                strerror(reason));
-        return -1;
-    }
-    if (tm_write_all(fd, script->byte, script->size, error) != TM_OK ||
-        lseek(fd, 0, SEEK_SET) != 0) {
+    const int fd = memfd_create("script", MFD_CLOEXEC);
+    if (fd >= 0 && tm_write_all(fd, script->byte, script->size, NULL) == TM_OK &&
+        lseek(fd, 0, SEEK_SET) == 0)
+        return fd;
+    tm_fail(error, TM_ERROR_SYSTEM, "cannot hold the script for gnuplot: %s",
+            strerror(errno));
+    if (fd >= 0)
         close(fd);
-        return -1;
-    }
-    return fd;
+    return -1;
 }
 
 /* Starts gnuplot without the user's own settings. Returns 0 or what errno would say. */
@@ -60,6 +50,7 @@ static int start(int input, int output, pid_t *child)
     return reason;
 }
 
+/* Whether it ended as it should. */
 static bool wait_for(pid_t child)
 {
     int status;
@@ -68,6 +59,21 @@ static bool wait_for(pid_t child)
             return false;
     }
     return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+/* SVG from its beginning to its end. */
+static bool is_picture(const tm_text *figure)
+{
+    static const char xml[] = "<?xml", svg[] = "<svg", end[] = "</svg>";
+    size_t size = figure->size;
+    if (size < strlen(xml) + strlen(end) ||
+        (memcmp(figure->byte, xml, strlen(xml)) != 0 &&
+         memcmp(figure->byte, svg, strlen(svg)) != 0))
+        return false;
+    while (size > 0 && strchr(" \n\r\t", figure->byte[size - 1]))
+        size--;
+    return size >= strlen(end) &&
+           memcmp(figure->byte + size - strlen(end), end, strlen(end)) == 0;
 }
 
 static tm_status run(int script, tm_text *figure, tm_error *error)
@@ -88,8 +94,12 @@ static tm_status run(int script, tm_text *figure, tm_error *error)
     else
         status = tm_read_all(end[0], "gnuplot", figure, error);
     close(end[0]);
-    if (reason == 0 && (!wait_for(child) || figure->size == 0) && status == TM_OK)
+    if (reason == 0 && !wait_for(child) && status == TM_OK)
         status = tm_fail(error, TM_ERROR_SYSTEM, "gnuplot failed");
+    if (status == TM_OK && !is_picture(figure))
+        status = tm_fail(error, TM_ERROR_SYSTEM,
+                         "gnuplot ended well, but what it made is no picture (is there "
+                         "another program of that name in PATH?)");
     return status;
 }
 

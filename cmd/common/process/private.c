@@ -90,14 +90,17 @@ tm_status private_folder_open(private_folder *folder, const char *name, tm_error
     const char *parent = getenv("TMPDIR");
     if (!parent || !*parent)
         parent = "/tmp";
-    int size = snprintf(folder->path, sizeof folder->path, "%s/%s.XXXXXX", parent, name);
+    /* A program takes what begins with - for an option. */
+    int size = snprintf(folder->path, sizeof folder->path, "%s%s/%s.XXXXXX",
+                        parent[0] == '-' ? "./" : "", parent, name);
     if (size < 0 || (size_t)size >= sizeof folder->path)
         return tm_fail(error, TM_ERROR_SYSTEM, "the path in TMPDIR is too long");
     private_signals_hold();
     if (mkdtemp(folder->path))
         return TM_OK;
-    tm_status status = tm_fail(error, TM_ERROR_SYSTEM, "cannot make a folder in %s: %s",
-                               parent, strerror(errno));
+    tm_status status =
+        tm_fail(error, TM_ERROR_SYSTEM, "cannot make a folder in %s: %s%s", parent,
+                strerror(errno), getenv("TMPDIR") ? " (TMPDIR says where)" : "");
     folder->path[0] = '\0';
     private_signals_release();
     return status;
@@ -116,10 +119,11 @@ static int open_file(const private_folder *folder, const char *file, int flags)
     return fd;
 }
 
-static tm_status fail_file(const char *file, const char *what, tm_error *error)
+static tm_status fail_file(const private_folder *folder, const char *file,
+                           const char *what, tm_error *error)
 {
-    return tm_fail_at(error, TM_ERROR_SYSTEM, file, 0, NULL, "%s: %s", what,
-                      strerror(errno));
+    return tm_fail(error, TM_ERROR_SYSTEM, "%s %s/%s: %s", what, folder->path, file,
+                   strerror(errno));
 }
 
 tm_status private_folder_write(const private_folder *folder, const char *file,
@@ -129,10 +133,12 @@ tm_status private_folder_write(const private_folder *folder, const char *file,
         return tm_fail_memory(error);
     int fd = open_file(folder, file, O_WRONLY | O_CREAT | O_EXCL);
     if (fd < 0)
-        return fail_file(file, "cannot make the file", error);
-    tm_status status = tm_write_all(fd, text->byte, text->size, error);
+        return fail_file(folder, file, "cannot make", error);
+    tm_status status = tm_write_all(fd, text->byte, text->size, NULL);
+    if (status != TM_OK)
+        fail_file(folder, file, "cannot write", error);
     if (close(fd) != 0 && status == TM_OK)
-        status = fail_file(file, "cannot write", error);
+        status = fail_file(folder, file, "cannot write", error);
     return status;
 }
 
@@ -142,10 +148,24 @@ tm_status private_folder_read(const private_folder *folder, const char *file,
     int fd = open_file(folder, file, O_RDONLY);
     *exists = fd >= 0;
     if (fd < 0)
-        return errno == ENOENT ? TM_OK : fail_file(file, "cannot open", error);
+        return errno == ENOENT ? TM_OK : fail_file(folder, file, "cannot open", error);
     tm_status status = tm_read_all(fd, file, text, error);
     close(fd);
     return status;
+}
+
+int private_folder_full(const private_folder *folder)
+{
+    enum { ROOM = 1 << 16 };
+    static const char name[] = "room", byte[ROOM] = "";
+    int fd = open_file(folder, name, O_WRONLY | O_CREAT | O_TRUNC);
+    if (fd < 0)
+        return errno;
+    errno = 0;
+    int cause = tm_write_all(fd, byte, sizeof byte, NULL) == TM_OK ? 0 : errno;
+    if (close(fd) != 0 && cause == 0)
+        cause = errno;
+    return cause;
 }
 
 void private_folder_close(private_folder *folder)

@@ -34,7 +34,8 @@ typedef struct private_folder {
     char path[768];
 } private_folder;
 
-/* Makes $TMPDIR/NAME.XXXXXX, or that in /tmp, with mode 0700. */
+/* Makes $TMPDIR/NAME.XXXXXX, or that in /tmp, with mode 0700. The path, which may be
+ * relative, does not begin with -. */
 tm_status private_folder_open(private_folder *folder, const char *name, tm_error *error);
 
 /* Writes a file of the folder. */
@@ -44,6 +45,10 @@ tm_status private_folder_write(const private_folder *folder, const char *file,
 /* Reads a file of the folder; *exists is false where it is not there. */
 tm_status private_folder_read(const private_folder *folder, const char *file,
                               tm_text *text, bool *exists, tm_error *error);
+
+/* Why nothing more can be written in the folder, as errno says it, as where the disk is
+ * full; 0 where something can. */
+int private_folder_full(const private_folder *folder);
 
 /* Removes the folder with all files in it. */
 void private_folder_close(private_folder *folder);

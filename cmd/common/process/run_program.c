@@ -6,6 +6,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
@@ -59,6 +60,7 @@ _Noreturn static void become(char *const argv[], int output, int failure)
     if (nothing >= 0 && dup2(nothing, STDIN_FILENO) >= 0 &&
         dup2(output, STDOUT_FILENO) >= 0 && dup2(output, STDERR_FILENO) >= 0) {
         private_signals_unblock();
+        signal(SIGXFSZ, SIG_DFL); /* filter_start() ignores it */
         execvp(argv[0], argv);
     }
     int cause = errno;

@@ -51,10 +51,10 @@ static void show_complaints(const filter *f, const tm_text *output)
         if (is_progress(line, size))
             continue;
         if (shown++ < LINES_MAX)
-            fprintf(stderr, "%s: tetgen: %.*s\n", f->name, size, line);
+            filter_message(f, "tetgen: %.*s", size, line);
     }
     if (shown > LINES_MAX)
-        fprintf(stderr, "%s: tetgen: … and %d lines more\n", f->name, shown - LINES_MAX);
+        filter_message(f, "tetgen: … and %d lines more", shown - LINES_MAX);
 }
 
 /* With -v all of it. */
@@ -136,6 +136,15 @@ static tm_status fail_start(const tetgen_request *r, int cause, tm_error *error)
                    r->program, strerror(cause));
 }
 
+/* What TetGen made is not whole, or it failed, as there was no room for it. */
+static tm_status fail_full(const private_folder *folder, const tetgen_request *r,
+                           int cause, tm_error *error)
+{
+    return tm_fail(error, TM_ERROR_SYSTEM,
+                   "'%s' cannot write in %s: %s (TMPDIR says where)", r->program,
+                   folder->path, strerror(cause));
+}
+
 /* Of a run that failed: where the surface intersects itself that is said, whatever
  * TetGen died of. */
 static tm_status explain_failure(const filter *f, const private_folder *folder,
@@ -144,6 +153,9 @@ static tm_status explain_failure(const filter *f, const private_folder *folder,
 {
     static const char intersecting[] = "pairs of faces are intersecting";
     show_complaints(f, &end->output);
+    const int cause = private_folder_full(folder);
+    if (cause != 0)
+        return fail_full(folder, r, cause, error);
     program_end check = {0};
     bool intersects = said(&end->output, "intersect");
     if (file == input_poly && !private_signals_came() &&
@@ -163,25 +175,60 @@ static tm_status explain_failure(const filter *f, const private_folder *folder,
                    end->exit_status);
 }
 
+/* A file that is not what TetGen writes: another program made it, or it was cut off. */
+static tm_status fail_block(const private_folder *folder, const tetgen_request *r,
+                            const tm_error *cause, tm_error *error)
+{
+    const int full = private_folder_full(folder);
+    if (full != 0)
+        return fail_full(folder, r, full, error);
+    return tm_fail(error, TM_ERROR_SYSTEM,
+                   "'%s' made a file that is not TetGen's: %s:%zu: %s", r->program,
+                   cause->file, cause->line, cause->what);
+}
+
+/* A text that ends within a line was cut off there, maybe within a number. */
+static tm_status check_last_line(const tm_text *bytes, const char *file, tm_error *error)
+{
+    if (bytes->size == 0 || bytes->byte[bytes->size - 1] == '\n')
+        return TM_OK;
+    size_t line = 1;
+    for (size_t i = 0; i < bytes->size; i++)
+        line += bytes->byte[i] == '\n';
+    return tm_fail_at(error, TM_ERROR_INPUT, file, line, NULL,
+                      "the file ends within a line");
+}
+
+/* A file's bytes as a block of the stream. */
+static tm_status parse(const tm_text *bytes, const char *file, const char *name,
+                       tm_stream *mesh, tm_error *error)
+{
+    tm_block *block = tm_stream_add(mesh, name);
+    if (!block)
+        return tm_fail_memory(error);
+    const tm_block *node = tm_stream_find(mesh, ".node");
+    const tm_status status = tm_tetgen_read(block, bytes->byte, bytes->size, file,
+                                            &mesh->base, node ? node->count : 0, error);
+    return status == TM_OK ? check_last_line(bytes, file, error) : status;
+}
+
 /* Reads one of TetGen's files into a block of the stream; nothing where there is no such
  * file. */
-static tm_status read_block(const private_folder *folder, const char *name,
-                            tm_stream *mesh, tm_error *error)
+static tm_status read_block(const private_folder *folder, const tetgen_request *r,
+                            const char *name, tm_stream *mesh, tm_error *error)
 {
     char file[sizeof output_stem + TM_BLOCK_NAME];
     snprintf(file, sizeof file, "%s%s", output_stem, name);
     tm_text bytes = {0};
     bool exists = false;
-    tm_status status = private_folder_read(folder, file, &bytes, &exists, error);
-    if (status == TM_OK && exists) {
-        tm_block *block = tm_stream_add(mesh, name);
-        const tm_block *node = tm_stream_find(mesh, ".node");
-        status = block ? tm_tetgen_read(block, bytes.byte, bytes.size, file, &mesh->base,
-                                        node ? node->count : 0, error)
-                       : tm_fail_memory(error);
-    }
+    tm_error cause;
+    tm_status status = private_folder_read(folder, file, &bytes, &exists, &cause);
+    if (status == TM_OK && exists)
+        status = parse(&bytes, file, name, mesh, &cause);
     tm_text_free(&bytes);
-    return status;
+    if (status == TM_ERROR_INPUT)
+        return fail_block(folder, r, &cause, error);
+    return status == TM_OK ? TM_OK : tm_fail_as(error, &cause);
 }
 
 static tm_status read_mesh(const private_folder *folder, const tetgen_request *r,
@@ -190,13 +237,11 @@ static tm_status read_mesh(const private_folder *folder, const tetgen_request *r
     static const char *const names[] = {".node", ".ele", ".face", ".edge"};
     tm_status status = TM_OK;
     for (size_t i = 0; i < sizeof names / sizeof names[0] && status == TM_OK; i++)
-        status = read_block(folder, names[i], mesh, error);
+        status = read_block(folder, r, names[i], mesh, error);
     if (status == TM_OK && !tm_stream_find(mesh, names[0]))
         return tm_fail(error, TM_ERROR_SYSTEM,
                        "'%s' ended well, but made no %s%s (is it TetGen?)", r->program,
                        output_stem, names[0]);
-    if (status == TM_ERROR_INPUT)
-        error->status = status = TM_ERROR_INTERNAL; /* it is not the user's file */
     return status;
 }
 

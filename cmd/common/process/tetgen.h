@@ -22,8 +22,8 @@ typedef struct tetgen_request {
  * *mesh, with TetGen's numbering. Without facets in the surface TetGen makes the
  * Delaunay tetrahedra of its nodes. Notes and TetGen's complaints go to stderr. Fails
  * with TM_ERROR_INPUT where the surface intersects itself, with TM_ERROR_SYSTEM where the
- * program is missing or fails otherwise. Success does not mean that there are
- * tetrahedra. */
+ * program is missing or fails otherwise, has no room, or makes what is not TetGen's.
+ * Success does not mean that there are tetrahedra. */
 tm_status tetgen_run(const filter *f, const tetgen_request *r,
                      const tm_polygon_surface *surface, tm_stream *mesh, tm_error *error);
 

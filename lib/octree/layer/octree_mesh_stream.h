@@ -19,7 +19,8 @@ typedef enum tm_node_class {
 } tm_node_class;
 
 /* Appends .node .mix .octant .root surface.node surface.face, and, where the surface has
- * markers, .facet with the boundary faces and the marker of the closest triangle.
+ * markers, .facet with the boundary faces and the marker of the closest triangle, and
+ * with its names .group.
  * `levels`: elements have the level of their octant as attribute. Arrays of mesh and
  * surface are taken; both are to be freed still. *stream must be empty. TM_ERROR_SYSTEM
  * where memory is out. */

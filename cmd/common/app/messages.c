@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Messages on stderr. They quote the input, names, and what other programs say: what a
+ * terminal would obey is shown as \x1b. */
+#include "filter.h"
+
+#include "../../../lib/base/utf8.h"
+#include "../../../lib/stream/sniff.h"
+
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void append_shown(tm_text *line, const char *string)
+{
+    const char *end = string + strlen(string);
+    for (const char *at = string; at < end;) {
+        const size_t size = tm_utf8_size(at, end);
+        if (size > 0 && !tm_utf8_is_control(at, size))
+            tm_text_append(line, at, size);
+        else
+            for (size_t i = 0; i == 0 || i < size; i++)
+                tm_text_format(line, "\\x%02x", (unsigned char)at[i]);
+        at += size > 0 ? size : 1;
+    }
+}
+
+/* "name: …" and a line feed, at once. */
+static void print_message(const filter *f, const char *format, va_list arguments)
+{
+    char *message = NULL;
+    tm_text line = {0};
+    tm_text_format(&line, "%s: ", f->name);
+    if (vasprintf(&message, format, arguments) < 0)
+        message = NULL;
+    append_shown(&line, message ? message : format);
+    tm_text_append(&line, "\n", 1);
+    if (line.failed)
+        fputs("out of memory\n", stderr);
+    else
+        fwrite(line.byte, 1, line.size, stderr);
+    tm_text_free(&line);
+    free(message);
+}
+
+void filter_message(const filter *f, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    print_message(f, format, arguments);
+    va_end(arguments);
+}
+
+void filter_note(const filter *f, const char *format, ...)
+{
+    if (f->verbosity < 0)
+        return;
+    va_list arguments;
+    va_start(arguments, format);
+    print_message(f, format, arguments);
+    va_end(arguments);
+}
+
+void filter_verbose(const filter *f, const char *format, ...)
+{
+    if (f->verbosity < 1)
+        return;
+    va_list arguments;
+    va_start(arguments, format);
+    print_message(f, format, arguments);
+    va_end(arguments);
+}
+
+void filter_usage_error(const filter *f, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    print_message(f, format, arguments);
+    va_end(arguments);
+    filter_usage(f, stderr);
+    fprintf(stderr, "Try '%s --help'.\n", f->name);
+    exit(EXIT_USAGE);
+}
+
+void filter_fail(const filter *f, const tm_error *error)
+{
+    char line[32] = "";
+    if (error->line)
+        snprintf(line, sizeof line, ":%zu", error->line);
+    filter_message(f, "%s%s%s%s%s%s", error->file, error->file[0] ? line : "",
+                   error->file[0] ? ": " : "", error->block, error->block[0] ? ": " : "",
+                   error->what);
+    output_files_abandon(f->files);
+    exit((int)error->status);
+}
+
+void filter_fail_file(const filter *f, tm_error *error, const tm_text *bytes,
+                      const char *reader)
+{
+    const tm_look look = tm_look_at(bytes->byte, bytes->size);
+    const size_t length = strlen(error->what);
+    if (error->status == TM_ERROR_INPUT && look.advice && !strstr(look.advice, reader))
+        snprintf(error->what + length, sizeof error->what - length, "; looks like %s: %s",
+                 look.what, look.advice);
+    filter_fail(f, error);
+}
+
+void filter_leave_out(const filter *f, const char *format, ...)
+{
+    tm_error error = {.status = TM_ERROR_INPUT};
+    const size_t size = sizeof error.what;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(error.what, size, format, arguments);
+    va_end(arguments);
+    if (!f->strict) {
+        filter_note(f, "%s: %s: left out", filter_input_name(f), error.what);
+        return;
+    }
+    const size_t length = strlen(error.what);
+    snprintf(error.what + length, size - length, ": the output cannot carry it");
+    snprintf(error.file, sizeof error.file, "%s", filter_input_name(f));
+    filter_fail(f, &error);
+}

@@ -1,0 +1,306 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "left_out.h"
+
+#include "../../../lib/mesh/cell_faces.h"
+#include "../../../lib/stream/group.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What a format has a place for, beside nodes and cells. */
+enum {
+    NODE_ATTRIBUTES = 1 << 0,
+    NODE_MARKERS = 1 << 1,
+    EDGES = 1 << 2,         /* with their markers */
+    FACES = 1 << 3,         /* markers of .face and .facet: those above 0, and */
+    FACES_BELOW_0 = 1 << 4, /* those below */
+    REGIONS = 1 << 5,       /* whole numbers from 0, and */
+    OTHER_REGIONS = 1 << 6, /* all others */
+    ATTRIBUTES = 1 << 7,    /* of cells, but regions */
+    NODE_NAMES = 1 << 8,    /* in the order of tm_group_dimension */
+    EDGE_NAMES = 1 << 9,
+    FACE_NAMES = 1 << 10,
+    REGION_NAMES = 1 << 11,
+    NAMES = NODE_NAMES | EDGE_NAMES | FACE_NAMES | REGION_NAMES,
+    PARTS = 1 << 12,     /* of .node, .ele, .face, .edge and .group */
+    TETRAHEDRA = 1 << 13 /* .ele whatever else there is, and nothing else */
+};
+
+/* One row for each exporter; of one that has none all is left out. OFF is of faces alone,
+ * and .oct of octants: what nodes and cells have is not asked for there. */
+static const struct {
+    const char *filter;
+    unsigned keeps;
+} formats[] = {
+    {"getfem-export", FACES | REGIONS | FACE_NAMES | REGION_NAMES},
+    {"m3d-export", 0},
+    {"mvm-export", 0},
+    {"oct-export",
+     NODE_ATTRIBUTES | NODE_MARKERS | EDGES | REGIONS | OTHER_REGIONS | ATTRIBUTES},
+    {"off-export", REGIONS | OTHER_REGIONS | ATTRIBUTES | REGION_NAMES},
+    {"openfoam-export", FACES | FACES_BELOW_0 | REGIONS | FACE_NAMES | REGION_NAMES},
+    {"tetgen-export", NODE_ATTRIBUTES | NODE_MARKERS | EDGES | FACES | FACES_BELOW_0 |
+                          REGIONS | OTHER_REGIONS | ATTRIBUTES | NAMES | PARTS |
+                          TETRAHEDRA},
+    {"visf-export", 0},
+    {"vtk-export", ~0u & ~(unsigned)(PARTS | TETRAHEDRA)},
+    {"vtu-export", ~0u & ~(unsigned)(PARTS | TETRAHEDRA)},
+};
+
+typedef struct finder {
+    const tm_stream *stream;
+    tm_content content;
+    unsigned keeps;
+    tm_text text; /* what was found, with ", " between */
+} finder;
+
+static unsigned kept_by(const char *name)
+{
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
+        if (strcmp(formats[i].filter, name) == 0)
+            return formats[i].keeps;
+    return 0;
+}
+
+/* Adds "COUNT WHAT (BLOCK)" where there are some and the format has no place for them. */
+static void add(finder *find, unsigned place, size_t count, const char *what,
+                const char *block)
+{
+    if (count > 0 && !(find->keeps & place))
+        tm_text_format(&find->text, "%s%zu %s (%s)", find->text.size > 0 ? ", " : "",
+                       count, what, block);
+}
+
+/* The markers of a block ------------------------------------------------------------ */
+
+static size_t count_markers(const tm_block *block, bool below)
+{
+    size_t count = 0;
+    for (size_t r = 0; r < block->count; r++)
+        count += below ? block->marker[r] < 0 : block->marker[r] > 0;
+    return count;
+}
+
+/* 1 or -1 where all markers are that or 0, else 0. */
+static int32_t only_marker(const tm_block *block)
+{
+    int32_t only = 0;
+    for (size_t r = 0; r < block->count; r++) {
+        const int32_t marker = block->marker[r];
+        if (marker == 0)
+            continue;
+        if ((marker != 1 && marker != -1) || (only != 0 && marker != only))
+            return 0;
+        only = marker;
+    }
+    return only;
+}
+
+/* The nodes of row r of .face or .facet. */
+static const uint32_t *nodes_of(const tm_block *block, size_t r, size_t *k)
+{
+    *k = block->start ? block->start[r + 1] - block->start[r]
+                      : tm_block_integers(block->kind);
+    return block->start ? block->item + block->start[r] : block->integer + *k * r;
+}
+
+static bool is_inside(const tm_block *block, size_t r)
+{
+    return block->kind == TM_FACET && block->integer[2 * r + 1] != TM_NONE;
+}
+
+/* A number of an edge that hardly another one has. */
+static uint64_t edge_hash(uint32_t a, uint32_t b)
+{
+    const uint64_t factor[] = {0xBF58476D1CE4E5B9u, 0x94D049BB133111EBu};
+    enum { HALF = 32, SHIFT = 29 };
+    uint64_t h = a < b ? (uint64_t)a << HALF | b : (uint64_t)b << HALF | a;
+    for (size_t i = 0; i < 2; i++)
+        h = (h ^ h >> SHIFT) * factor[i];
+    return h ^ h >> HALF;
+}
+
+/* Whether the marked faces are those of the whole boundary, as far as that is seen
+ * without the cells: all that are listed for the boundary, each edge an even number of
+ * times. */
+static bool is_boundary(const finder *find, const tm_block *block)
+{
+    uint64_t odd = 0;
+    for (size_t r = 0, k; r < block->count; r++) {
+        if (is_inside(block, r) != (block->marker[r] == 0))
+            return false;
+        if (block->marker[r] == 0)
+            continue;
+        const uint32_t *node = nodes_of(block, r, &k);
+        for (size_t i = 0; i < k; i++)
+            odd ^= edge_hash(node[i], node[(i + 1) % k]);
+    }
+    return odd == 0 || find->content == TM_CONTENT_SURFACE;
+}
+
+static void add_faces(finder *find, const char *name)
+{
+    const tm_block *block = tm_stream_find(find->stream, name);
+    if (!block || !block->marker)
+        return;
+    if (only_marker(block) != 0 && is_boundary(find, block))
+        return;
+    add(find, FACES, count_markers(block, false), "markers of faces", name);
+    add(find, FACES_BELOW_0, count_markers(block, true), "markers of faces below 0",
+        name);
+}
+
+static void add_edges(finder *find)
+{
+    const tm_block *block = tm_stream_find(find->stream, ".edge");
+    if (!block || !block->marker)
+        return;
+    const size_t marked = count_markers(block, false) + count_markers(block, true);
+    if (only_marker(block) == 0 || marked < block->count)
+        add(find, EDGES, marked, "marked edges", block->name);
+}
+
+/* Whether the marked nodes are those of the rows of a block at the boundary; of no rows
+ * true: who knows. */
+static bool marks_nodes_of(const tm_block *node, const tm_block *block)
+{
+    unsigned char *at_boundary = calloc(node->count + 1, 1);
+    bool same = at_boundary != NULL;
+    for (size_t r = 0, k; same && r < block->count; r++) {
+        const uint32_t *corner = nodes_of(block, r, &k);
+        for (size_t i = 0; i < k && !is_inside(block, r); i++)
+            at_boundary[corner[i]] = 1;
+    }
+    for (size_t v = 0; v < node->count && same; v++)
+        same = at_boundary[v] == (node->marker[v] != 0);
+    free(at_boundary);
+    return same;
+}
+
+static void add_nodes(finder *find)
+{
+    const tm_block *node = tm_stream_find(find->stream, ".node");
+    if (!node)
+        return;
+    const size_t octree_mesh = tm_stream_find(find->stream, ".octant") ? 1 : 0;
+    if (node->count > 0 && node->attributes > octree_mesh)
+        add(find, NODE_ATTRIBUTES, node->attributes - octree_mesh, "attributes of nodes",
+            node->name);
+    if (!node->marker)
+        return;
+    const tm_block *face = tm_stream_find(
+        find->stream, find->content == TM_CONTENT_POLYHEDRA ? ".facet" : ".face");
+    const bool has_faces = face && face->count > 0;
+    if (only_marker(node) != 0 && find->content != TM_CONTENT_POINTS &&
+        (!has_faces || marks_nodes_of(node, face)))
+        return;
+    add(find, NODE_MARKERS, count_markers(node, false) + count_markers(node, true),
+        "markers of nodes", node->name);
+}
+
+/* Cells ------------------------------------------------------------------------------ */
+
+/* The region is the first attribute, but of polyhedra the second: the first one is how
+ * many tetrahedra they were. */
+static void add_regions(finder *find, const tm_block *cell)
+{
+    const size_t at = cell->kind == TM_CELL ? 1 : 0;
+    size_t whole = 0, others = 0, ones = 0;
+    if (at >= cell->attributes)
+        return;
+    for (size_t c = 0; c < cell->count; c++) {
+        const double region = cell->attribute[c * cell->attributes + at];
+        const bool is_whole = region >= 0 && region == floor(region);
+        whole += is_whole && region > 0;
+        others += !is_whole;
+        ones += is_whole && region > 0 && region < 2;
+    }
+    if (ones < cell->count) {
+        add(find, REGIONS, whole, "regions of cells", cell->name);
+        add(find, OTHER_REGIONS, others, "regions of cells that are no whole numbers",
+            cell->name);
+    }
+    add(find, ATTRIBUTES, cell->attributes - at - 1, "other attributes of cells",
+        cell->name);
+}
+
+/* The block whose cells the format takes, and the others that have some. */
+static void add_cells(finder *find)
+{
+    static const char *const name[] = {".ele", ".mix", ".cell"};
+    const tm_block *taken = find->keeps & TETRAHEDRA
+                                ? tm_stream_find(find->stream, ".ele")
+                                : tm_content_block(find->stream, find->content);
+    for (size_t i = 0; i < sizeof name / sizeof *name; i++) {
+        const tm_block *block = tm_stream_find(find->stream, name[i]);
+        if (block && block == taken)
+            add_regions(find, block);
+        else if (block)
+            add(find, 0, block->count, "cells", block->name);
+    }
+}
+
+/* Names, and whole blocks -------------------------------------------------------------
+ */
+
+static void add_names(finder *find)
+{
+    static const char *const of[] = {"names of nodes", "names of edges", "names of faces",
+                                     "names of regions"};
+    const tm_block *group = tm_stream_find(find->stream, ".group");
+    size_t count[TM_GROUP_DIMENSIONS] = {0};
+    for (size_t g = 0; group && g < group->count; g++)
+        count[tm_group_dimension_of(group, g)]++;
+    for (unsigned d = 0; d < TM_GROUP_DIMENSIONS; d++)
+        add(find, (unsigned)NODE_NAMES << d, count[d], of[d], ".group");
+}
+
+static bool is_left_out(const finder *find, const tm_block *block)
+{
+    static const char surface[] = "surface.";
+    if (block->name[0] == '.')
+        return block->kind == TM_UNKNOWN;
+    if (find->keeps & PARTS && (block->kind <= TM_EDGE || block->kind == TM_GROUP))
+        return false;
+    return !tm_stream_find(find->stream, ".octant") ||
+           strncmp(block->name, surface, sizeof surface - 1) != 0;
+}
+
+/* "2 blocks (surface.node, .notes)" */
+static void add_blocks(finder *find)
+{
+    tm_text names = {0};
+    size_t count = 0;
+    for (size_t b = 0; b < find->stream->blocks; b++) {
+        const tm_block *block = &find->stream->block[b];
+        if (is_left_out(find, block))
+            tm_text_format(&names, count++ > 0 ? ", %s" : "%s", block->name);
+    }
+    if (count > 0 && names.byte)
+        add(find, 0, count, count > 1 ? "blocks" : "block", names.byte);
+    tm_text_free(&names);
+}
+
+/* ------------------------------------------------------------------------------------ */
+
+void mesh_leave_out(const filter *f, const tm_stream *stream)
+{
+    finder find = {
+        .stream = stream, .content = tm_content_of(stream), .keeps = kept_by(f->name)};
+    add_nodes(&find);
+    add_cells(&find);
+    add_faces(&find, ".face");
+    add_faces(&find, ".facet");
+    add_edges(&find);
+    add_names(&find);
+    add_blocks(&find);
+    if (find.text.failed) {
+        tm_error error;
+        tm_fail_memory(&error);
+        filter_fail(f, &error);
+    }
+    if (find.text.size > 0)
+        filter_leave_out(f, "%s", find.text.byte);
+    tm_text_free(&find.text);
+}

@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What is to be read of a file descriptor: its bytes or, where they are gzip data (RFC
+ * 1952: they begin with 1f 8b), what is packed in them, as zcat prints it. */
+#ifndef TM_BASE_INPUT_H
+#define TM_BASE_INPUT_H
+
+#include "error.h"
+#include "extern_c.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+TM_EXTERN_C_BEGIN
+
+typedef struct tm_input {
+    int fd;
+    const char *name;
+    struct tm_gzip *gzip; /* NULL where the bytes are as they are */
+    bool begun;
+} tm_input;
+
+/* Nothing is read yet. The descriptor stays the caller's, and so does the name, which is
+ * for messages. */
+void tm_input_open(tm_input *input, int fd, const char *name);
+void tm_input_close(tm_input *input);
+
+/* The length of a file's name, without .gz at its end. */
+size_t tm_unpacked_name(const char *name);
+
+/* Reads at most `size` bytes, 2 or more, to `bytes`; bytes that are not packed go there
+ * from the descriptor. *got is how many, 0 at the end. TM_ERROR_INPUT where gzip data are
+ * damaged or cut short, or something else follows them; TM_ERROR_SYSTEM where the
+ * descriptor cannot be read. */
+tm_status tm_input_read(tm_input *input, char *bytes, size_t size, size_t *got,
+                        tm_error *error);
+
+TM_EXTERN_C_END
+
+#endif

@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "surface_defects.h"
+
+#include "../base/array.h"
+#include "point_table.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A facet that is one polygon: its nodes, ascending. */
+typedef struct sorted_facet {
+    const uint32_t *node;
+    size_t nodes;
+    size_t facet;
+} sorted_facet;
+
+static int compare_nodes(const void *a, const void *b)
+{
+    const uint32_t *p = a, *q = b;
+    return (*p > *q) - (*p < *q);
+}
+
+static int compare_polygons(const sorted_facet *p, const sorted_facet *q)
+{
+    if (p->nodes != q->nodes)
+        return p->nodes < q->nodes ? -1 : 1;
+    for (size_t i = 0; i < p->nodes; i++)
+        if (p->node[i] != q->node[i])
+            return p->node[i] < q->node[i] ? -1 : 1;
+    return 0;
+}
+
+static int compare_facets(const void *a, const void *b)
+{
+    const sorted_facet *p = a, *q = b;
+    const int order = compare_polygons(p, q);
+    return order != 0 ? order : (p->facet > q->facet) - (p->facet < q->facet);
+}
+
+/* node[i] becomes the first node where item[i] is. */
+static bool find_nodes(const tm_polygon_surface *surface, uint32_t *node)
+{
+    uint32_t *unique = tm_new(surface->nodes, sizeof *unique);
+    tm_point_table table = {0};
+    bool done = unique != NULL;
+    for (size_t v = 0; v < surface->nodes && done; v++)
+        done = tm_point_table_join(&table, surface->xyz, (uint32_t)v, &unique[v]);
+    for (size_t i = 0; i < surface->corners && done; i++)
+        node[i] = unique[surface->item[i]];
+    tm_point_table_free(&table);
+    free(unique);
+    return done;
+}
+
+/* Lists the facets of one polygon, without holes, in `sorted`; sorts their nodes. */
+static size_t sort_facets(const tm_polygon_surface *surface, uint32_t *node,
+                          sorted_facet *sorted)
+{
+    size_t count = 0;
+    for (size_t f = 0; f < surface->facets; f++) {
+        const size_t p = surface->facet_start[f];
+        if (surface->facet_start[f + 1] - p != 1 ||
+            surface->facet_hole_start[f + 1] != surface->facet_hole_start[f])
+            continue;
+        uint32_t *first = node + surface->start[p];
+        const size_t nodes = surface->start[p + 1] - surface->start[p];
+        qsort(first, nodes, sizeof *first, compare_nodes);
+        sorted[count++] = (sorted_facet){first, nodes, f};
+    }
+    qsort(sorted, count, sizeof *sorted, compare_facets);
+    return count;
+}
+
+/* Takes facets that are `gone` out of the arrays; all they hold moves up. */
+static void drop_facets(tm_polygon_surface *surface, const bool *gone)
+{
+    size_t facets = 0, polygons = 0, corners = 0;
+    for (size_t f = 0; f < surface->facets; f++) {
+        const size_t first = surface->facet_start[f], end = surface->facet_start[f + 1];
+        if (gone[f])
+            continue;
+        surface->facet_start[facets] = polygons;
+        surface->facet_hole_start[facets] = surface->facet_hole_start[f];
+        surface->facet_marker[facets++] = surface->facet_marker[f];
+        for (size_t p = first; p < end; p++) {
+            const size_t from = surface->start[p], to = surface->start[p + 1];
+            memmove(surface->item + corners, surface->item + from,
+                    (to - from) * sizeof *surface->item);
+            surface->start[polygons++] = corners;
+            corners += to - from;
+        }
+    }
+    surface->facet_start[facets] = polygons;
+    surface->facet_hole_start[facets] = surface->facet_holes;
+    surface->start[polygons] = corners;
+    surface->facets = facets;
+    surface->polygons = polygons;
+    surface->corners = corners;
+}
+
+tm_status tm_surface_drop_duplicates(tm_polygon_surface *surface, size_t *dropped,
+                                     tm_error *error)
+{
+    *dropped = 0;
+    if (surface->facets == 0)
+        return TM_OK;
+    uint32_t *node = tm_new(surface->corners, sizeof *node);
+    sorted_facet *sorted = tm_new(surface->facets, sizeof *sorted);
+    bool *gone = calloc(surface->facets, sizeof *gone);
+    const bool done = node && sorted && gone && find_nodes(surface, node);
+    const size_t count = done ? sort_facets(surface, node, sorted) : 0;
+    for (size_t i = 1; i < count; i++)
+        if (compare_polygons(&sorted[i - 1], &sorted[i]) == 0) {
+            gone[sorted[i].facet] = true;
+            ++*dropped;
+        }
+    if (*dropped > 0)
+        drop_facets(surface, gone);
+    free(node);
+    free(sorted);
+    free(gone);
+    return done ? TM_OK : tm_fail_memory(error);
+}

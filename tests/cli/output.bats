@@ -1,0 +1,255 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What all filters write, and where: reports, files and their names, terminals; and what
+# they say where it cannot be done.
+# shellcheck disable=SC2154 # run sets stderr
+
+bats_require_minimum_version 1.5.0
+
+load filters
+
+# Whether there are no other files than when this was called first.
+leaves_nothing() {
+    [ -f .before ] || ls >.before
+    ls | diff .before -
+}
+
+@test "--json where it cannot be written: exit 4, and nothing else is written" {
+    leaves_nothing
+    refuses() {
+        for place in nowhere/report /dev/full .; do
+            # shellcheck disable=SC2046 # words
+            set -- "$1" $(operands "$1" "$(input "$1")")
+            status=0
+            "$1" --json "$place" "${@:2}" >written 2>message || status=$?
+            [ "$status" -eq 4 ]
+            [ ! -s written ]
+            grep "^$1: $place: cannot write: " message
+            rm written message
+            leaves_nothing
+            ! writes_files "$1" || continue
+            echo old >file
+            status=0
+            "$1" --json "$place" -o file "$(input "$1")" 2>message || status=$?
+            [ "$status" -eq 4 ]
+            [ "$(cat file)" = old ]
+            rm file message
+            leaves_nothing
+        done
+    }
+    for_each_filter refuses
+}
+
+@test "--json FILE is an object, and what else is written is the same" {
+    reports() {
+        # shellcheck disable=SC2046 # words
+        "$1" --no-history $(operands "$1" "$(input "$1")") >expected
+        # shellcheck disable=SC2046 # words
+        "$1" --no-history --json report $(operands "$1" "$(input "$1")") >written
+        cmp written expected
+        python3 -c 'import json, sys; sys.exit(type(json.load(sys.stdin)) != dict)' <report
+    }
+    for_each_filter reports
+}
+
+@test "memory out, at any time: exit 4, or what is written is all there" {
+    case ${TM_BUILD:?} in */san) skip "the sanitizers have an allocator of their own" ;; esac
+    cat >fail.c <<'END'
+#include <stdio.h>
+#include <stdlib.h>
+extern void *__libc_malloc(size_t), *__libc_calloc(size_t, size_t);
+extern void *__libc_realloc(void *, size_t);
+static long count, fails;
+__attribute__((constructor)) static void start(void)
+{
+    const char *number = getenv("FAILS");
+    fails = number ? atol(number) : 0;
+    unsetenv("LD_PRELOAD"); /* not in other programs */
+}
+__attribute__((destructor)) static void end(void)
+{
+    FILE *file = fails ? NULL : fopen("count", "w");
+    if (file)
+        fprintf(file, "%ld\n", count), fclose(file);
+}
+void *malloc(size_t size) { return ++count == fails ? NULL : __libc_malloc(size); }
+void *calloc(size_t n, size_t size) { return ++count == fails ? NULL : __libc_calloc(n, size); }
+void *realloc(void *old, size_t size) { return ++count == fails ? NULL : __libc_realloc(old, size); }
+END
+    cc -shared -fPIC -o fail.so fail.c || skip "no such library can be made"
+    fails() {
+        ! needs_p4est "$1" || return 0 # MPI aborts
+        # shellcheck disable=SC2046 # words
+        set -- "$1" $(operands "$1" "$(input "$1")")
+        [ "$1" != lepp-improve ] || set -- "$1" -a improve -t 30 "${@:2}"
+        "$@" >expected
+        LD_PRELOAD=./fail.so "$@" >written
+        cmp written expected
+        [ "$(cat count)" -gt 5 ]
+        for ((which = 1; which <= $(cat count); which++)); do
+            status=0
+            FAILS=$which LD_PRELOAD=./fail.so "$@" >written 2>message || status=$?
+            case $status in
+            0) cmp written expected ;;
+            4) grep "^$1: .*memory" message ;;
+            *) return 1 ;;
+            esac
+        done
+    }
+    for_each_filter fails
+}
+
+# Runs a command that the permissions of folders are for, as they are not for root.
+without_privilege() {
+    if [ "$(id -u)" -eq 0 ]; then
+        setpriv --bounding-set=-dac_override,-dac_read_search "$@"
+    else
+        "$@"
+    fi
+}
+
+# Each file that filters write under a name: writes NAME, for all of them in turn.
+write_each() {
+    for filter in $filters; do
+        write() {
+            case $2 in
+            -o) "$1" --no-history -o "$3" "$(input "$1")" ;;
+            *) # shellcheck disable=SC2046 # words
+                "$1" --no-history "$2" "$3" $(operands "$1" "$(input "$1")") ;;
+            esac
+        }
+        for option in -o --json; do
+            [ "$option" != -o ] || ! writes_files "$filter" || continue
+            echo "$filter $option"
+            "$1" "$filter" "$option"
+        done
+    done
+}
+
+@test "names as long as names can be" {
+    name=$(printf 'n%.0s' {1..255})
+    leaves_nothing
+    write_long() {
+        write "$1" "$2" "$name" >standard-output
+        [ -s "$name" ]
+        rm -rf "$name" standard-output out*
+        leaves_nothing
+    }
+    write_each write_long
+    tetgen-export "${name:5}" corner.tm
+    [ -s "${name:5}.node" ]
+    [ -s "${name:5}.face" ]
+    jens-stats --histo "$name" corner.tm
+    [ -s "$name" ]
+}
+
+@test "a symbolic link is written through: it stays, what it leads to is replaced or made" {
+    mkdir -p there/deep
+    ln -s there/file link
+    ln -s ../link there/link-to-link
+    ln -s "$PWD/there/new" there/to-new
+    follows() {
+        for name in link there/link-to-link; do
+            echo old >there/file
+            write "$1" "$2" "$name" >standard-output
+            [ "$(readlink link)" = there/file ]
+            [ "$(readlink there/link-to-link)" = ../link ]
+            [ "$(cat there/file)" != old ]
+        done
+        write "$1" "$2" there/to-new >standard-output
+        [ -L there/to-new ]
+        [ -s there/new ]
+        rm there/file there/new
+        [ "$(cd there && echo *)" = "deep link-to-link to-new" ]
+    }
+    write_each follows
+    ln -s circle circle
+    run -4 --separate-stderr off-export -o circle corner.tm
+    [[ "$stderr" == "off-export: circle: cannot write: "* ]]
+}
+
+@test "-o on what leads to a descriptor, as /dev/stdout does: it is written as it is" {
+    off-export corner.tm >expected
+    ln -s /proc/self/fd/1 stdout # not that of /dev, which a fault would remove
+    off-export -o stdout corner.tm >file
+    [ -L stdout ]
+    cmp file expected
+    exec 7>file
+    off-export -o /dev/fd/7 corner.tm
+    exec 7>&-
+    cmp file expected
+    off-export -o stdout corner.tm | cmp - expected
+    [ "$(find . -name '*termesh*')" = "" ]
+}
+
+@test "a file that may be written in a folder that may not: it is written directly" {
+    mkdir closed
+    echo old >closed/file
+    chmod a-w closed
+    without_privilege sh -c ': >closed/other' 2>/dev/null && skip "all folders may be written"
+    writes_directly() {
+        echo "old, and longer than what will be there$(printf ' %.0s' {1..9999})" >closed/file
+        write "$1" "$2" expected >standard-output
+        export -f write operands input
+        without_privilege bash -c "write $1 $2 closed/file" >standard-output
+        # The seconds of a report differ.
+        diff <(sed 's/"seconds":[^,}]*//g' closed/file) <(sed 's/"seconds":[^,}]*//g' expected)
+        rm -rf out*
+    }
+    write_each writes_directly
+    run -4 --separate-stderr without_privilege off-export -o closed/other corner.tm
+    [[ "$stderr" == "off-export: closed/other: cannot write: Permission denied" ]]
+    [ "$(ls -A closed)" = file ]
+    chmod u+w closed
+}
+
+@test "binary output to a terminal is refused, but for -o -" {
+    command -v script >/dev/null || skip "there is no script(1)"
+    script -qec true /dev/null </dev/null >/dev/null || skip "script(1) has no terminal"
+    for command in "vtu-export" "visf-export --binary little" "visf-export --binary big"; do
+        run -2 script -qec "$command corner.tm" /dev/null </dev/null
+        [[ "$output" == *": the output is binary"*"-o FILE"*"-o - forces it"* ]]
+        $command corner.tm >expected
+        script -qec "stty raw -echo; $command -o - corner.tm" /dev/null </dev/null | cmp - expected
+        script -qec "$command -o file corner.tm" /dev/null </dev/null
+        cmp file expected
+        script -qec "$command corner.tm | cat >file" /dev/null </dev/null
+        cmp file expected
+    done
+    run -0 script -qec "visf-export corner.tm" /dev/null </dev/null
+}
+
+@test "--plot: what is no picture is refused, also where gnuplot says that all is well" {
+    mkdir bin
+    echo old >figure.svg
+    for made in '' 'echo nonsense' 'head -c 9999 /bin/sh' 'printf "<?xml version=\"1.0\"?>\n<svg>"' \
+        'echo "<svg></svg>"; exit 1'; do
+        printf '#!/bin/sh\n%s\n' "$made" >bin/gnuplot
+        chmod +x bin/gnuplot
+        for filter in tet-stats jens-stats poly-stats; do
+            PATH=$PWD/bin:$PATH run -4 --separate-stderr "$filter" --plot figure.svg "$(input "$filter")"
+            [ "$output" = "" ]
+            [[ "$stderr" == "$filter: gnuplot "* ]]
+            [ "$(cat figure.svg)" = old ]
+        done
+    done
+    printf '#!/bin/sh\ncat >script\necho "<svg></svg>"\n' >bin/gnuplot
+    PATH=$PWD/bin:$PATH tet-stats --plot figure.svg corner.tm
+    [ "$(cat figure.svg)" = "<svg></svg>" ]
+    grep '^unset multiplot' script
+}
+
+@test "--plot needs no folder for temporary files, and writes through a link" {
+    command -v gnuplot >/dev/null || skip "there is no gnuplot"
+    ln -s picture figure.svg
+    # shellcheck disable=SC2030
+    for TMPDIR in nowhere "$PWD"; do
+        export TMPDIR
+        tet-stats --plot figure.svg corner.tm >table
+        [ -L figure.svg ]
+        python3 -c 'import sys, xml.etree.ElementTree as x; x.parse(sys.argv[1])' picture
+        rm picture
+    done
+    run -4 --separate-stderr tet-stats --plot nowhere/figure.svg corner.tm
+    [ "$output" = "" ]
+    [[ "$stderr" == "tet-stats: nowhere/figure.svg: cannot write: "* ]]
+}

@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Several regions in one surface: octree-mesh fills one solid, and says how to get it.
+# shellcheck disable=SC2154 # run sets stderr
+
+bats_require_minimum_version 1.5.0
+
+load helpers
+
+setup() {
+    cd "$BATS_TEST_TMPDIR" || exit
+    [ -x "${TM_BUILD:?}/bin/octree-mesh" ] || skip "there is no p4est"
+}
+
+# boxes N FORMAT [each]: N x N x N unit cubes with all walls between them, once, or with
+# `each` as a skin of each cube; faces turn as chance has it, or outward for `each`. FORMAT
+# is off, poly, smesh, stl or stream; poly has a region in each cube.
+boxes() {
+    python3 - "$@" <<'END'
+import itertools, random, sys
+n, form, each = int(sys.argv[1]), sys.argv[2], len(sys.argv) > 3
+random.seed(n)
+number, quads = {}, []
+
+def node(p):
+    return number.setdefault(p, len(number))
+
+def quad(k, at):
+    u, w = (k + 1) % 3, (k + 2) % 3
+    def corner(i, j):
+        c = list(at)
+        c[u] += i
+        c[w] += j
+        return node(tuple(c))
+    return [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)]
+
+cells = list(itertools.product(range(n), repeat=3))
+for c in cells:
+    for k in range(3):
+        up = list(c)
+        up[k] += 1
+        if each:
+            quads += [quad(k, c)[::-1], quad(k, up)]
+            continue
+        quads += [quad(k, up)] + ([quad(k, c)] if c[k] == 0 else [])
+if not each:
+    quads = [q[::random.choice((1, -1))] for q in quads]
+xyz = list(number)
+
+def triangles():
+    for q in quads:
+        m = q.index(min(q)) # both sides of a wall have the same diagonal
+        q = q[m:] + q[:m]
+        yield q[0], q[1], q[2]
+        yield q[0], q[2], q[3]
+
+def rows(of):
+    return ''.join(' '.join(map(str, r)) + '\n' for r in of)
+
+if form == 'off':
+    print('OFF\n%d %d 0' % (len(xyz), len(quads)))
+    print(rows(xyz) + rows([len(q)] + q for q in quads), end='')
+elif form == 'stl':
+    print('solid s')
+    for t in triangles():
+        print('facet normal 0 0 0\nouter loop')
+        print(rows(('vertex',) + xyz[v] for v in t) + 'endloop\nendfacet')
+    print('endsolid s')
+elif form == 'stream':
+    t = list(triangles())
+    print('termesh 1\n.node\n%d 3 0 0' % len(xyz))
+    print(rows((v + 1,) + p for v, p in enumerate(xyz)), end='.face\n')
+    print('%d 0' % len(t))
+    print(rows((i + 1,) + tuple(v + 1 for v in c) for i, c in enumerate(t)), end='.end\n')
+else:
+    print('%d 3 0 0' % len(xyz))
+    print(rows((v + 1,) + p for v, p in enumerate(xyz)), end='')
+    print(len(quads), 0)
+    for q in quads:
+        print('1\n' * (form == 'poly') + rows([[4] + [v + 1 for v in q]]), end='')
+    print('0\n%d' % len(cells))
+    print(rows((i + 1, c[0] + .5, c[1] + .5, c[2] + .5, i + 1, -1) for i, c in enumerate(cells)), end='')
+END
+}
+
+volume() {
+    mesh-check --json - "$1" | python3 -c 'import json, sys; print("%.9g" % json.load(sys.stdin)["volume"])'
+}
+
+@test "walls inside are refused, also with --lenient, and what is said gives the outer surface" {
+    command -v tetgen >/dev/null || skip "there is no tetgen"
+    for n in 2 3; do
+        for boxes in "off" "off each" "poly" "smesh" "stl" "stl each" "stream"; do
+            # shellcheck disable=SC2086 # words
+            boxes "$n" $boxes >surface.in
+            for lenient in -s3 --lenient; do
+                run -3 --separate-stderr octree-mesh "$lenient" surface.in
+                [ "$output" = "" ]
+                [[ "$stderr" == "octree-mesh: surface.in: the surface has walls inside, between several regions: "*"'tetgen-mesh FILE | off-export'"* ]]
+            done
+            tetgen-mesh --quiet surface.in | off-export >outer.off
+            octree-mesh -s 3 -o mesh.tm outer.off
+            mesh-check -q mesh.tm
+            [ "$(volume mesh.tm)" = "$((n * n * n))" ]
+        done
+    done
+}
+
+# A cube in a cube, in .poly: nested REGIONS…, points on the diagonal.
+nested() {
+    python3 - "$@" <<'END'
+import sys
+v, faces = [], []
+for lo, hi in ((0, 3), (1, 2)):
+    b = len(v)
+    v += [(x, y, z) for z in (lo, hi) for y in (lo, hi) for x in (lo, hi)]
+    faces += [[i + b for i in q] for q in [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4),
+                                           (1, 3, 7, 5), (3, 2, 6, 7), (2, 0, 4, 6)]]
+print(len(v), 3, 0, 0)
+for i, x in enumerate(v):
+    print(i + 1, *x)
+print(len(faces), 0)
+for q in faces:
+    print('1\n4', *[i + 1 for i in q])
+print('0\n%d' % len(sys.argv[1:]))
+for i, p in enumerate(sys.argv[1:]):
+    print(i + 1, p, p, p, i + 1, -1)
+END
+}
+
+@test "a region in what would be a cavity is refused, one region is none, several are said" {
+    nested 0.5 1.5 >filled.poly
+    run -3 --separate-stderr octree-mesh -s 3 filled.poly
+    [ "$output" = "" ]
+    [[ "$stderr" == *"octree-mesh: filled.poly: region 2, at (1.5, 1.5, 1.5), is outside, or in a cavity that would be left empty (one solid is filled; 'tetgen-mesh FILE | off-export'"* ]]
+    nested >hollow.poly
+    octree-mesh -s 3 -o mesh.tm hollow.poly 2>silence
+    [ "$(volume mesh.tm)" = 26 ]
+    nested 0.5 >one.poly
+    octree-mesh -s 3 -o mesh.tm one.poly 2>message
+    cmp <(sed s/one/hollow/ message) silence
+    [ "$(volume mesh.tm)" = 26 ]
+    nested 0.5 2.5 >two.poly
+    run -0 --separate-stderr octree-mesh -s 3 -o mesh.tm two.poly
+    [[ "$stderr" == *"octree-mesh: two.poly: 2 regions (one solid is filled; "*"): left out"* ]]
+    run -3 octree-mesh -s 3 --strict -o strict.tm two.poly
+    [ ! -e strict.tm ]
+}
+
+@test "tetgen-mesh: of faces in one place the first is taken" {
+    command -v tetgen >/dev/null || skip "there is no tetgen"
+    boxes 2 stl each >each.stl
+    run -0 --separate-stderr tetgen-mesh -o mesh.tm each.stl
+    [ "${stderr_lines[-1]}" = \
+        "tetgen-mesh: faces in the place of an earlier one, which are dropped: 24" ]
+    mesh-check -q mesh.tm
+    [ "$(volume mesh.tm)" = 8 ]
+    surface cube off >cube.off
+    tetgen-mesh --no-history cube.off >expected
+    awk 'NR == 2 { $2 += 12 } { print } NR > 10 { print 3, $4, $2, $3 }' cube.off >twice.off
+    tetgen-mesh --no-history --quiet twice.off | cmp - expected
+}
