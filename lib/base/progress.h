@@ -15,7 +15,7 @@ TM_EXTERN_C_BEGIN
 /* Where it is; what is not known, or does not apply, is 0. */
 typedef struct tm_progress_at {
     const char *what;    /* the stage, "improving": a string that stays */
-    const char *doing;   /* what of it: another one, or NULL */
+    const char *doing;   /* what of it: another string, or NULL */
     size_t pass;         /* which of its passes, from 1 */
     size_t done, of;     /* so many of all steps of the stage or, if it has some, pass */
     bool bytes;          /* the steps are bytes of a file */
@@ -35,6 +35,17 @@ static inline void tm_progress_tell(const tm_progress *progress, const tm_progre
 
 /* A stage begins of which nothing more is said. */
 void tm_progress_stage(const tm_progress *progress, const char *what);
+
+/* Of an operation that is all one stage of another one: what it says is `doing` there.
+ * *within is to stay until it has ended. */
+typedef struct tm_progress_within {
+    tm_progress inner; /* for the operation */
+    const tm_progress *outer;
+    const char *what;
+} tm_progress_within;
+
+const tm_progress *tm_progress_begin_within(tm_progress_within *within,
+                                            const tm_progress *outer, const char *what);
 
 /* In a loop, before step `done`: tells each 64th one. */
 static inline void tm_progress_step(const tm_progress *progress, tm_progress_at *at,

@@ -17,7 +17,8 @@ runs=0
 differ=0
 
 without_seconds() {
-    find "$@" -type f -exec sed -i 's/"seconds": *[0-9.e+-]*//g' {} +
+    find "$@" -type f -exec sed -i -e 's/"seconds": *[0-9.e+-]*//g' \
+        -e '/: [0-9.]* s, [0-9.]* s of CPU, /d' {} +
 }
 
 # run_in FOLDER BIN COMMAND

@@ -219,6 +219,25 @@ static void test_partition(void **state)
     tm_stream_free(&stream);
 }
 
+static void test_within(void **state)
+{
+    (void)state;
+    record r = {0};
+    const tm_progress outer = {listen_to, &r};
+    tm_progress_within within;
+    const tm_progress *inner = tm_progress_begin_within(&within, &outer, "whole");
+    tm_progress_at at = {.what = "part", .pass = 2, .of = 1000};
+    for (size_t i = 0; i < at.of; i++)
+        tm_progress_step(inner, &at, i);
+    assert_int_equal(r.stages, 1);
+    assert_int_equal(r.times, 1 + 16); /* each 64th step */
+    assert_string_equal(r.last.what, "whole");
+    assert_string_equal(r.last.doing, "part");
+    assert_int_equal(r.last.pass, 2);
+    assert_null(tm_progress_begin_within(&within, NULL, "whole"));
+    tm_progress_step(NULL, &at, 0);
+}
+
 /* All rows are written and all bytes are read. */
 static void test_stream(void **state)
 {
@@ -256,7 +275,7 @@ int main(void)
         cmocka_unit_test(test_line),        cmocka_unit_test(test_stage_line),
         cmocka_unit_test(test_drawing),     cmocka_unit_test(test_stages),
         cmocka_unit_test(test_improvement), cmocka_unit_test(test_partition),
-        cmocka_unit_test(test_stream),
+        cmocka_unit_test(test_within),      cmocka_unit_test(test_stream),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

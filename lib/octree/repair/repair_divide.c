@@ -153,7 +153,8 @@ tm_status tm_repair_divide(tm_repair_state *state, const tm_surface *surface,
                            tm_error *error)
 {
     divider d = {.state = state, .threshold = threshold};
-    tm_repair_state made = {0};
+    tm_repair_state made = {.progress = state->progress};
+    tm_progress_stage(state->progress, "dividing elements");
     tm_status status = find_divisions(&d, error);
     if (status == TM_OK && d.divisions > 0)
         status = apply(&d, &made, error);

@@ -307,8 +307,10 @@ tm_status tm_repair_sharp_corners(tm_repair_state *state, const tm_surface *surf
 {
     corners t = {.state = state, .surface = surface, .threshold = threshold};
     const size_t old = *count;
+    tm_progress_at at = {.what = "making sharp tips anew", .of = state->mesh.nodes};
     tm_status status = begin(&t, error);
     for (uint32_t v = 0; status == TM_OK && v < state->mesh.nodes; v++) {
+        tm_progress_step(state->progress, &at, v);
         if (state->on[v] == 0 || !is_bad_at(&t, v))
             continue;
         if (is_touched_near(&t, v))
