@@ -158,8 +158,10 @@ static void erase_line(progress *p)
 
 static size_t columns_of(int fd)
 {
+    enum { USUAL = 80 };
     struct winsize size;
-    return ioctl(fd, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+    const bool known = ioctl(fd, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+    return known ? size.ws_col : USUAL;
 }
 
 /* The terminal is another job's. */
@@ -312,8 +314,9 @@ void progress_hold(progress *p)
     if (!p)
         return;
     pthread_mutex_lock(&p->lock);
-    /* It may also be that of another filter of the pipe. */
-    p->shown |= p->draws && now() - p->began >= patience;
+    /* What is there may also be the line of another filter of the pipe. */
+    if (p->draws && now() - p->began >= patience && !is_in_background(p->fd))
+        p->shown = true;
     erase_line(p);
 }
 

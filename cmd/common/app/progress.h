@@ -52,7 +52,7 @@ void progress_end(progress *p);
 
 enum { PROGRESS_LINE = 512 };
 
-/* The line, cut to the columns of a terminal, without a line break. */
+/* The line, cut to so many columns, without a line break. */
 void progress_line(char line[PROGRESS_LINE], const char *name, const tm_progress_at *at,
                    double seconds, size_t columns);
 
