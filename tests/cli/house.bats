@@ -158,7 +158,7 @@ page() {
         [ -f "$root/man/$1.1" ]
         "$1" --help | grep -oE '^ +(-[A-Za-z], )?--[a-z-]+' | grep -oE -- '--[a-z-]+' |
             sort >help
-        page "$1" | grep -oE '^ +(-[A-Za-z][^ ]*, )?--[a-z-]+' | grep -oE -- '--[a-z-]+' |
+        page "$1" | grep -oE '^ {5}(-[A-Za-z][^ ]*, )?--[a-z-]+' | grep -oE -- '--[a-z-]+' |
             sort >described
         run -0 diff help described
     }

@@ -1,0 +1,1 @@
+termesh 1
