@@ -10,6 +10,7 @@
 #include <dirent.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 static const struct option long_options[] = {FILTER_OPTIONS};
 
@@ -26,25 +27,24 @@ static const char *read_operands(filter *f)
     return folder;
 }
 
-/* Whether a file of that name will be written. */
-static bool is_ours(const char *name, const tm_text *file)
+/* Whether a file of that name will be written, if it is there. */
+static bool is_ours(const char *name)
 {
     for (int i = 0; i < TM_OPENFOAM_FILES; i++)
-        if (file[i].size > 0 && strcmp(name, tm_openfoam_name[i]) == 0)
+        if (strcmp(name, tm_openfoam_name[i]) == 0)
             return true;
     return strcmp(name, ".") == 0 || strcmp(name, "..") == 0;
 }
 
-/* OpenFOAM reads zones and whatever else is in the folder: what is of another mesh must
+/* OpenFOAM reads sets and whatever else is in the folder: what is of another mesh must
  * not be there. */
-static tm_status refuse_other_files(const char *folder, const tm_text *file,
-                                    tm_error *error)
+static tm_status refuse_other_files(const char *folder, tm_error *error)
 {
     tm_status status = TM_OK;
     DIR *entries = opendir(folder);
     const struct dirent *entry;
     while (entries && status == TM_OK && (entry = readdir(entries)))
-        if (!is_ours(entry->d_name, file))
+        if (!is_ours(entry->d_name))
             status = tm_fail_at(error, TM_ERROR_SYSTEM, folder, 0, NULL,
                                 "there is also '%s' in the folder, which may be of "
                                 "another mesh (a new folder would be right)",
@@ -54,16 +54,19 @@ static tm_status refuse_other_files(const char *folder, const tm_text *file,
     return status;
 }
 
+/* A file that is not needed is written in the place of one of another mesh only. */
 static tm_status write_file(output_files *files, const char *folder, const char *name,
-                            const tm_text *text, tm_error *error)
+                            const tm_text *text, bool is_needed, tm_error *error)
 {
     tm_text path = {0};
-    int fd;
+    int fd = -1;
     tm_text_format(&path, "%s/%s", folder, name);
     if (path.failed)
         return tm_fail_memory(error);
-    tm_status status = output_files_open(files, path.byte, &fd, error);
-    if (status == TM_OK) {
+    const bool is_written = is_needed || access(path.byte, F_OK) == 0;
+    tm_status status =
+        is_written ? output_files_open(files, path.byte, &fd, error) : TM_OK;
+    if (is_written && status == TM_OK) {
         status = tm_write_all(fd, text->byte, text->size, error);
         if (status != TM_OK)
             snprintf(error->file, sizeof error->file, "%s", path.byte);
@@ -73,15 +76,18 @@ static tm_status write_file(output_files *files, const char *folder, const char 
 }
 
 /* All files but their names: filter_finish() gives them. */
-static void write_folder(const filter *f, const char *folder, const tm_text *file)
+static void write_folder(const filter *f, const char *folder, const tm_text *file,
+                         const tm_openfoam_counts *counts)
 {
+    const bool is_needed[TM_OPENFOAM_FILES] = {
+        true, true, true, true, true, counts->cell_zones > 0, counts->face_zones > 0};
     tm_error error;
-    tm_status status = refuse_other_files(folder, file, &error);
+    tm_status status = refuse_other_files(folder, &error);
     if (status == TM_OK)
         status = output_files_make_folder(f->files, folder, &error);
     for (int i = 0; i < TM_OPENFOAM_FILES && status == TM_OK; i++)
-        if (file[i].size > 0)
-            status = write_file(f->files, folder, tm_openfoam_name[i], &file[i], &error);
+        status = write_file(f->files, folder, tm_openfoam_name[i], &file[i], is_needed[i],
+                            &error);
     if (status != TM_OK)
         filter_fail(f, &error);
 }
@@ -121,7 +127,7 @@ int main(int argc, char **argv)
     if (tm_openfoam_write(file, &stream, &counts, &error) != TM_OK)
         mesh_input_fail(&f, &error);
     mesh_leave_out(&f, &stream);
-    write_folder(&f, folder, file);
+    write_folder(&f, folder, file, &counts);
     write_json(&f, &counts);
     for (int i = 0; i < TM_OPENFOAM_FILES; i++)
         tm_text_free(&file[i]);

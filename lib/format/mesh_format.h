@@ -99,8 +99,8 @@ tm_status tm_mvm_write(tm_text *text, const tm_stream *stream, unsigned threads,
 
 enum { TM_OPENFOAM_FILES = 7 };
 
-/* points, faces, owner, neighbour, boundary; cellZones and faceZones, which stay empty
- * where there are no zones */
+/* points, faces, owner, neighbour, boundary; cellZones and faceZones, which may be lists of
+ * none */
 extern const char *const tm_openfoam_name[TM_OPENFOAM_FILES];
 
 typedef struct tm_openfoam_counts {

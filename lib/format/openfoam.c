@@ -363,8 +363,7 @@ static size_t write_zones(writer *w, int file, name_list *names, const char *typ
     qsort(member, count, sizeof *member, compare_members);
     for (size_t i = 0; i < count; i++)
         zones += i == 0 || member[i - 1].value != member[i].value;
-    if (zones > 0)
-        begin_list(w, file, zones);
+    begin_list(w, file, zones);
     for (size_t begin = 0, end; begin < count; begin = end) {
         for (end = begin; end < count && member[end].value == member[begin].value; end++)
             ;
@@ -376,8 +375,7 @@ static size_t write_zones(writer *w, int file, name_list *names, const char *typ
             write_flips(text, end - begin);
         tm_text_string(text, "    }\n");
     }
-    if (zones > 0)
-        end_list(w, file);
+    end_list(w, file);
     free_names(w, names, file);
     return zones;
 }

@@ -27,7 +27,7 @@ for t, v in enumerate(('0 1 2 3', '1 2 3 4')):
     print(t, v, {'region': 7, 'odd region': 0.5}.get(thing, 1) if t else 1, *([3] if extra else []))
 face = ['0 2 1', '0 1 3', '0 3 2', '1 2 4', '1 4 3', '2 3 4']
 if thing == 'some faces':
-    face = face[:2]
+    face = face[1::4]
 print('.face\n%d 1' % len(face))
 for f, v in enumerate(face):
     print(f, v, {'face marker': 5, 'negative face marker': -5}.get(thing, 1) if f == 1 else 1)

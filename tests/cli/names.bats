@@ -177,9 +177,10 @@ areas() {
     tr -s ' \n' ' ' <zones/faceZones | grep -q \
         '1 ( inter_face { type faceZone; faceLabels List<label> 1 ( 0 ) ; flipMap List<bool> 1 ( 0 ) ; } )'
     # zones of another mesh do not stay beside one that has none
-    cubes >cubes.tm
-    run -4 --separate-stderr openfoam-export zones cubes.tm
-    [[ "$stderr" == *"there is also '"*"Zones' in the folder"* ]]
+    cubes | sed '/^\.cell/,${s/^2 1$/2 0/; s/^\([12] 6 .*\) [12]$/\1/}' >cubes.tm
+    openfoam-export zones cubes.tm
+    [ "$(tail -n 3 zones/cellZones | tr '\n' ' ')" = '0 ( ) ' ]
+    [ "$(tail -n 3 zones/faceZones | tr '\n' ' ')" = '0 ( ) ' ]
 }
 
 @test "names go to TetGen's files and come back" {

@@ -472,7 +472,12 @@ assert abs(json.load(open("check.json"))["volume"] - 1.79) < 0.1'
         off-export oct-export mesh-check jens-stats; do
         echo "$filter"
         run -0 --separate-stderr "$filter" -o out mesh.tm
-        [ "$stderr" = "" ]
+        case $filter in
+        m3d-export | mvm-export | visf-export | off-export | oct-export)
+            [[ "$stderr" == *' markers of faces (.facet): left out' ]]
+            ;;
+        *) [ "$stderr" = "" ] ;;
+        esac
         [ -s out ]
     done
     openfoam-export foam mesh.tm

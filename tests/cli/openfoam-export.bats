@@ -168,10 +168,10 @@ $volume" ]
     openfoam-export mesh boxes.tm
     check mesh | grep '^27 8 '
     [ "$(cd mesh && echo ./*)" = './boundary ./faces ./neighbour ./owner ./points' ]
-    touch mesh/cellZones
+    touch mesh/cellLevel
     cp mesh/points points
     run -4 --separate-stderr openfoam-export mesh cubes.tm
-    [[ "$stderr" == "openfoam-export: mesh: there is also 'cellZones' in the folder"* ]]
+    [[ "$stderr" == "openfoam-export: mesh: there is also 'cellLevel' in the folder"* ]]
     cmp mesh/points points
 }
 

@@ -319,7 +319,7 @@ END
     run -2 --separate-stderr visf-export --binary middle cubes.tm
     [[ "$stderr" == "visf-export: --binary: 'middle' is none of little, big"* ]]
     run -3 --separate-stderr visf-export <(printf 'termesh 1\n.end\n')
-    [[ "$stderr" == *': holds nothing, but visf-export takes points (.node alone), '* ]]
+    [[ "$stderr" == *': holds nothing, but visf-export takes points '* ]]
     sed 's/^11 2 1 1$/11 2 1 1e39/' cubes.tm >far.tm
     run -3 --separate-stderr visf-export -o far.visf far.tm
     [ "$stderr" = 'visf-export: far.tm: .node: 1e+39 is too large for a 32-bit float, '\
