@@ -145,7 +145,7 @@ $(bin): $(BUILD)/bin/%: $(BUILD)/cmd/%.o $(common) $(library)
 $(completions): $(BUILD)/completion/bash/%: $(BUILD)/bin/% cmd/completion.sh
 	sh cmd/completion.sh $< $(BUILD)/completion
 
-$(unit_tests): $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(library)
+$(unit_tests): $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(common) $(library)
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lcmocka $(LDLIBS)
 

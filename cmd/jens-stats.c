@@ -305,6 +305,7 @@ int main(int argc, char **argv)
     tm_error error;
     tm_jens_statistics statistics = {0};
     const tm_elements elements = read_elements(&f, &stream);
+    filter_stage(&f, "measuring");
     if (tm_jens_statistics_measure(&statistics, &elements, &o.request, &error) != TM_OK)
         filter_fail(&f, &error);
     if (f.json) {

@@ -191,6 +191,7 @@ static settings read_options(filter *f)
         o.lepp.stop =
             o.lepp.algorithm == TM_LEPP_SELECTIVE ? TM_LEPP_CONVERGED : TM_LEPP_ORIGINAL;
     o.lepp.count_invalid_swaps = f->json;
+    o.lepp.progress = o.improve.progress = filter_progress(f);
     return o;
 }
 
@@ -200,6 +201,8 @@ static void measure(const filter *f, const double (*xyz)[3], size_t nodes,
                     tm_tet_statistics *statistics)
 {
     tm_error error;
+    if (f->json)
+        filter_stage(f, "measuring");
     if (f->json && tm_tet_statistics_measure(statistics, xyz, nodes, tet, tets, limit,
                                              f->threads, &error) != TM_OK)
         filter_fail(f, &error);

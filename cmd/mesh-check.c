@@ -33,6 +33,7 @@ static void examine(const filter *f, const tm_stream *stream, tm_examination *fo
     tm_error error;
     tm_status status;
     const int chosen = choose(f, stream);
+    filter_stage(f, "examining");
     if (chosen == POLYHEDRA) {
         const tm_poly_arrays mesh = tm_poly_arrays_of(stream);
         status = tm_poly_examine(found, &mesh, f->threads, &error);

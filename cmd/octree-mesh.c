@@ -192,9 +192,11 @@ int main(int argc, char **argv)
     tm_error error;
     surface_input_build(&f, &o.surface, &surface, &stream);
     mpi_environment_set(&f);
+    filter_stage(&f, "splitting octants");
     if (tm_octree_build(&octree, &surface, o.rules.rules.rule, o.rules.rules.count,
                         &error) != TM_OK ||
-        tm_octree_mesh_refine_lost(&mesh, &octree, &surface, o.resolve, &error) != TM_OK)
+        tm_octree_mesh_refine_lost(&mesh, &octree, &surface, o.resolve,
+                                   filter_progress(&f), &error) != TM_OK)
         filter_fail(&f, &error);
     octree_rules_free(&o.rules);
     note_losses(&f, &surface, &mesh.report, smallest_side(&octree));
@@ -203,6 +205,7 @@ int main(int argc, char **argv)
     const size_t nodes = mesh.assembly.mesh.nodes;
     const size_t elements = mesh.assembly.mesh.elements;
     const bool valid = mesh.report.invalid == 0;
+    filter_stage(&f, "numbering");
     if (tm_octree_mesh_to_stream(&mesh, &octree, &surface, o.levels, &stream, &error) !=
         TM_OK)
         filter_fail(&f, &error);

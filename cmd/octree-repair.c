@@ -214,10 +214,10 @@ static tm_status visit(void *context, unsigned iteration, const tm_repair_state 
     program *p = context;
     if (p->repair.method == TM_REPAIR_REFINE) {
         if (p->f.verbosity >= 0 && count > 0)
-            fprintf(stderr, "Octants to improve in iteration %u: %zu\n", iteration,
-                    count);
+            filter_print(&p->f, "Octants to improve in iteration %u: %zu", iteration,
+                         count);
         else if (p->f.verbosity >= 0)
-            fprintf(stderr, "No more Octants to improve in iteration %u.\n", iteration);
+            filter_print(&p->f, "No more Octants to improve in iteration %u.", iteration);
     } else {
         filter_verbose(&p->f, "octants to improve in iteration %u: %zu", iteration,
                        count);
@@ -288,6 +288,7 @@ static void prepare(program *p, const tm_stream *stream, tm_repair_state *state,
                     tm_repair_notes *notes)
 {
     tm_error error;
+    filter_stage(&p->f, "preparing");
     build_surface(p, stream);
     mpi_environment_set(&p->f);
     if (tm_repair_prepare(state, stream, p->has_surface ? &p->boundary : NULL, notes,
@@ -309,6 +310,7 @@ static bool run(program *p, tm_stream *stream)
     tm_repair_notes notes = {0};
     tm_repair_report report;
     const clock_t start = clock();
+    filter_stage(&p->f, "examining");
     if (tm_repair_from_stream(&state, stream, &error) != TM_OK)
         fail(p, &error);
     if (tm_repair_is_needed(&state, stream, p->repair.threshold) || p->trace)
@@ -317,6 +319,7 @@ static bool run(program *p, tm_stream *stream)
     mesh_state before = state_of(&state, stream);
     p->repair.visit = visit;
     p->repair.context = p;
+    p->repair.progress = filter_progress(&p->f);
     if (tm_repair(&state, surface, &p->repair, &report, &error) != TM_OK)
         fail(p, &error);
     mesh_state after = state_of(&state, stream);

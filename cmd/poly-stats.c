@@ -30,6 +30,7 @@ static void measure(const filter *f, const tm_stream *stream, tm_poly_statistics
 {
     tm_error error;
     const tm_poly_arrays mesh = tm_poly_arrays_of(stream);
+    filter_stage(f, "measuring");
     if (tm_poly_statistics_measure(s, &mesh, f->threads, &error) != TM_OK)
         filter_fail(f, &error);
     if (s->unmatched > 0)

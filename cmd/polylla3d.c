@@ -110,6 +110,7 @@ static settings read_options(filter *f)
     if (!p->repair && (p->star || p->absorb || p->no_swallow || p->max_tets || o.merge))
         filter_usage_error(f, "--star, --absorb, --no-swallow, --max-tets and "
                               "--merge-coplanar are of the repair: not with --no-repair");
+    o.poly.progress = filter_progress(f);
     if (o.label && o.merge)
         filter_usage_error(f, "--merge-coplanar is for faces: --label writes none");
     return o;
@@ -168,6 +169,7 @@ static void make_facets(filter *f, const settings *o, const tm_tet_mesh *mesh,
                         const tm_partition *partition, tm_block made[2], result *r)
 {
     tm_error error;
+    filter_stage(f, "finding faces");
     tm_coplanar plane = {o->degrees, tm_facet_flatness(mesh)};
     tm_status status =
         tm_partition_facets(partition, mesh, &made[0], &made[1], &r->lost, &error);
@@ -195,6 +197,7 @@ static void convert(filter *f, tm_stream *stream, const settings *o, result *r)
         filter_fail(f, &error);
     }
     tet_mesh_from_stream(f, stream, &mesh);
+    filter_stage(f, "sorting");
     if (!o->label && tm_tet_mesh_sort(&mesh, &error) != TM_OK)
         filter_fail(f, &error);
     if (o->ignore_markers)

@@ -50,6 +50,7 @@ static void measure(const filter *f, const mesh *m, const options *o,
                     tm_tet_statistics *s)
 {
     tm_error error;
+    filter_stage(f, "measuring");
     if (tm_tet_statistics_measure(s, m->xyz, m->nodes, (const uint32_t(*)[4])m->tet,
                                   m->tets, o->threshold, f->threads, &error) != TM_OK)
         filter_fail(f, &error);

@@ -62,6 +62,7 @@ static tm_status write_block(const tm_stream *stream, const tm_block *block,
 static void write_files(const tm_stream *stream, const char *base)
 {
     tm_error error;
+    filter_stage(&f, "writing");
     tm_status status = TM_OK;
     for (size_t b = 0; b < stream->blocks && status == TM_OK; b++)
         if (is_written(&stream->block[b]))

@@ -12,6 +12,7 @@
 #include "base/json.h"
 #include "base/number.h"
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "base/report.h"
 #include "base/text.h"
 #include "base/utf8.h"

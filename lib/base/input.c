@@ -45,6 +45,7 @@ static tm_status read_plain(tm_input *input, char *bytes, size_t size, size_t *g
 {
     const ptrdiff_t read = tm_read_some(input->fd, bytes, size);
     *got = read > 0 ? (size_t)read : 0;
+    input->taken += *got;
     if (read >= 0)
         return TM_OK;
     return tm_fail_at(error, TM_ERROR_SYSTEM, input->name, 0, NULL, "cannot read: %s",

@@ -17,6 +17,7 @@ typedef struct tm_input {
     const char *name;
     struct tm_gzip *gzip; /* NULL where the bytes are as they are */
     bool begun;
+    size_t taken; /* bytes of the descriptor, so far */
 } tm_input;
 
 /* Nothing is read yet. The descriptor stays the caller's, and so does the name, which is

@@ -6,6 +6,7 @@
 
 #include "../base/extern_c.h"
 #include "../base/error.h"
+#include "../base/progress.h"
 #include "../mesh/mixed_mesh.h"
 
 #include <stdbool.h>
@@ -62,6 +63,7 @@ typedef struct tm_optimise_options {
                         usual, 0 half as slow where much remains */
     size_t most_measured; /* no more is begun once so many elements were measured in all;
                              0: no limit */
+    const tm_progress *progress;
 } tm_optimise_options;
 
 typedef struct tm_optimise_report {

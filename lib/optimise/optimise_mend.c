@@ -197,8 +197,15 @@ static tm_status make_pass(tm_optimise_work *w, const pass *how, uint64_t round,
                            tm_error *error)
 {
     tm_status status = rank_bad(w, error);
+    tm_progress_at at = {.what = "moving nodes",
+                         .pass = ++w->passes,
+                         .of = w->bads,
+                         .bad = w->bads,
+                         .all_bad = w->report->bad_before};
     for (size_t b = 0; status == TM_OK && b < w->bads && !tm_optimise_is_spent(w); b++) {
         const uint32_t e = w->bad[b];
+        at.done = b;
+        tm_progress_tell(w->options->progress, &at);
         if (!w->visited[e] && w->jens[e] < tm_threshold_of(w->options, e))
             status = mend_cluster(w, e, how, round, error);
     }

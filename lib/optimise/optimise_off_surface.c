@@ -67,9 +67,13 @@ static tm_status bring(tm_optimise_work *w, uint32_t node, bool *closer, tm_erro
 tm_status tm_optimise_off_surface(tm_optimise_work *w, tm_error *error)
 {
     bool closer = true;
+    tm_progress_at at = {.what = "bringing nodes to the surface"};
     for (size_t round = 0; round < ROUNDS && closer; round++) {
         closer = false;
+        at.pass = round + 1;
+        at.of = w->mesh->nodes;
         for (uint32_t v = 0; v < w->mesh->nodes; v++) {
+            tm_progress_step(w->options->progress, &at, v);
             if (!w->rule[v].off_surface || w->rule[v].freedom == TM_MOVES_NOT ||
                 w->vicinity.start[w->vicinity.row[v]] ==
                     w->vicinity.start[w->vicinity.row[v] + 1])

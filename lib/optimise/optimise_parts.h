@@ -165,6 +165,7 @@ typedef struct tm_optimise_work {
     tm_cluster_source source;
     tm_cluster cluster;
     tm_optimise_report *report;
+    size_t passes;
 } tm_optimise_work;
 
 /* Minimises, the more sharply the closer it comes, until nothing is bad; where that

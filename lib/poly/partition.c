@@ -118,11 +118,14 @@ static tm_status take_apart(repair *r, const uint32_t *tet, size_t count)
 static tm_status take_all_apart(repair *r, size_t regions)
 {
     lists l = {0};
+    tm_progress_at at = {.what = "taking regions apart", .of = regions};
     tm_status status = TM_OK;
     if (!make_lists(&l, r->label, r->mesh->slots, regions))
         status = tm_fail_memory(r->error);
-    for (size_t k = 0; k < regions && status == TM_OK; k++)
+    for (size_t k = 0; k < regions && status == TM_OK; k++) {
+        tm_progress_step(r->options->progress, &at, k);
         status = take_apart(r, l.item + l.start[k], l.start[k + 1] - l.start[k]);
+    }
     free_lists(&l);
     return status;
 }
@@ -157,6 +160,7 @@ static tm_status absorb(repair *r)
 {
     lists l = {0};
     tm_status status = TM_OK;
+    tm_progress_stage(r->options->progress, "absorbing");
     uint32_t *size = tm_new(r->pieces, sizeof *size);
     if (!size || !make_lists(&l, r->shelling.piece, r->mesh->slots, r->pieces))
         status = tm_fail_memory(r->error);
@@ -271,6 +275,7 @@ tm_status tm_partition_make(tm_partition *partition, const tm_tet_mesh *mesh,
     *partition = (tm_partition){.cell = tm_new(mesh->slots, sizeof *partition->cell)};
     if (!partition->cell)
         return tm_fail_memory(error);
+    tm_progress_stage(options->progress, "joining tetrahedra");
     tm_status status = tm_poly_modes[options->mode].label(mesh, options, partition->cell,
                                                           &report->regions, error);
     partition->cells = report->regions;

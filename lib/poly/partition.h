@@ -13,6 +13,7 @@
 #define TM_POLY_PARTITION_H
 
 #include "../base/extern_c.h"
+#include "../base/progress.h"
 #include "../tet/mesh.h"
 
 TM_EXTERN_C_BEGIN
@@ -37,6 +38,7 @@ typedef struct tm_poly_options {
     bool absorb;     /* cells of a few tetrahedra join one beside them */
     bool no_swallow; /* no node inside of a polyhedron */
     size_t max_tets; /* in one polyhedron; 0: any number */
+    const tm_progress *progress;
 } tm_poly_options;
 
 typedef struct tm_poly_mode_row {

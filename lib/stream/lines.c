@@ -4,14 +4,33 @@
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 /* Fits the second-level cache, so that what was read is parsed there. */
 enum { WINDOW = 1 << 17 };
 
-tm_status tm_lines_open(tm_lines *lines, int fd, const char *name, tm_error *error)
+/* The bytes that are left in a regular file; 0: not known. */
+static size_t size_left(int fd)
 {
-    *lines = (tm_lines){.name = name, .capacity = WINDOW, .line = 1};
+    struct stat status;
+    if (fstat(fd, &status) != 0 || !S_ISREG(status.st_mode))
+        return 0;
+    const off_t at = lseek(fd, 0, SEEK_CUR);
+    return at >= 0 && at < status.st_size ? (size_t)(status.st_size - at) : 0;
+}
+
+tm_status tm_lines_open(tm_lines *lines, int fd, const char *name,
+                        const tm_progress *progress, tm_error *error)
+{
+    *lines = (tm_lines){.name = name,
+                        .capacity = WINDOW,
+                        .line = 1,
+                        .progress = progress,
+                        .progress_at = {.what = "reading", .bytes = true}};
     tm_input_open(&lines->input, fd, name);
+    lines->progress_at.of = progress ? size_left(fd) : 0;
+    tm_progress_tell(progress, &lines->progress_at);
     lines->buffer = malloc(WINDOW + TM_LINES_SLACK);
     if (!lines->buffer)
         return tm_fail_memory(error);
@@ -63,6 +82,8 @@ static tm_status read_more(tm_lines *lines, tm_error *error)
         lines->end = lines->filled;
         return TM_OK;
     }
+    lines->progress_at.done = lines->input.taken;
+    tm_progress_tell(lines->progress, &lines->progress_at);
     char *last = memrchr(lines->filled, '\n', got);
     lines->filled += got;
     if (last)

@@ -5,6 +5,7 @@
 
 #include "../base/error.h"
 #include "../base/input.h"
+#include "../base/progress.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -26,9 +27,12 @@ typedef struct tm_lines {
     bool ended_without_line_feed;
     bool too_long; /* a line was */
     size_t line;   /* number of the line at `at`, from 1 */
+    const tm_progress *progress;
+    tm_progress_at progress_at; /* bytes read, of those of a regular file */
 } tm_lines;
 
-tm_status tm_lines_open(tm_lines *lines, int fd, const char *name, tm_error *error);
+tm_status tm_lines_open(tm_lines *lines, int fd, const char *name,
+                        const tm_progress *progress, tm_error *error);
 void tm_lines_close(tm_lines *lines);
 
 /* Makes at < end, reading more if there is none; at == end then means the end of the

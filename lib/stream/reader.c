@@ -381,7 +381,7 @@ tm_status tm_stream_read(tm_stream *stream, int fd, const char *name, tm_error *
     tm_error unused;
     reader r = {
         .stream = stream, .names = {.stream = stream}, .error = error ? error : &unused};
-    tm_status status = tm_lines_open(&r.lines, fd, name, r.error);
+    tm_status status = tm_lines_open(&r.lines, fd, name, stream->progress, r.error);
     if (status == TM_OK)
         status = read_magic(&r);
     if (status == TM_OK)

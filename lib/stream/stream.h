@@ -7,6 +7,7 @@
 
 #include "../base/extern_c.h"
 #include "../base/error.h"
+#include "../base/progress.h"
 #include "../base/text.h"
 
 #include <stdbool.h>
@@ -56,6 +57,7 @@ typedef struct tm_stream {
     tm_text history; /* whole lines, each "# …\n" */
     size_t blocks;
     tm_block *block;
+    const tm_progress *progress; /* told when it is read and written; may be NULL */
 } tm_stream;
 
 /* Fixed columns of a row: how many reals, how many integers. */

@@ -175,12 +175,22 @@ static tm_status write_header(int fd, const tm_block *block, tm_error *error)
     return status;
 }
 
+/* What is told of how far it is; at->done counts rows. */
+typedef struct {
+    const tm_progress *progress;
+    tm_progress_at at;
+} teller;
+
 static tm_status write_rows(int fd, const tm_block *block, uint32_t base,
-                            unsigned threads, tm_text *text, tm_error *error)
+                            unsigned threads, tm_text *text, teller *tell,
+                            tm_error *error)
 {
     batch b = {.block = block, .base = base, .text = text};
     tm_status status = TM_OK;
+    const size_t before = tell->at.done;
     while (b.first < block->count && status == TM_OK) {
+        tell->at.done = before + b.first;
+        tm_progress_tell(tell->progress, &tell->at);
         size_t left = (block->count - b.first + CHUNK_ROWS - 1) / CHUNK_ROWS;
         size_t chunks = left < threads ? left : threads;
         tm_parallel(threads, chunks, format_chunk, &b);
@@ -189,6 +199,7 @@ static tm_status write_rows(int fd, const tm_block *block, uint32_t base,
                                     : tm_write_all(fd, text[c].byte, text[c].size, error);
         b.first += chunks * CHUNK_ROWS;
     }
+    tell->at.done = before + block->count;
     return status;
 }
 
@@ -209,8 +220,8 @@ static tm_status write_name(int fd, const tm_block *block, tm_error *error)
     return status == TM_OK ? tm_write_all(fd, "\n", 1, error) : status;
 }
 
-tm_status tm_block_write(const tm_block *block, unsigned base, int fd, unsigned threads,
-                         tm_error *error)
+static tm_status write_block(const tm_block *block, unsigned base, int fd,
+                             unsigned threads, teller *tell, tm_error *error)
 {
     if (block->kind == TM_UNKNOWN)
         return block->text.size > 0
@@ -223,17 +234,28 @@ tm_status tm_block_write(const tm_block *block, unsigned base, int fd, unsigned 
     if (status == TM_OK && block->kind == TM_GROUP)
         status = write_groups(fd, block, base, error);
     else if (status == TM_OK)
-        status = write_rows(fd, block, base, threads, text, error);
+        status = write_rows(fd, block, base, threads, text, tell, error);
     for (unsigned t = 0; t < threads; t++)
         free(text[t].byte);
     free(text);
     return status;
 }
 
+tm_status tm_block_write(const tm_block *block, unsigned base, int fd, unsigned threads,
+                         tm_error *error)
+{
+    teller nobody = {0};
+    return write_block(block, base, fd, threads, &nobody, error);
+}
+
 tm_status tm_stream_write(const tm_stream *stream, int fd, unsigned threads,
                           tm_error *error)
 {
     static const char magic[] = "termesh 1\n", end[] = ".end\n";
+    teller tell = {stream->progress, {.what = "writing"}};
+    for (size_t b = 0; b < stream->blocks; b++)
+        tell.at.of += stream->block[b].count;
+    tm_progress_tell(tell.progress, &tell.at);
     if (stream->history.failed)
         return tm_fail_memory(error);
     tm_status status = tm_write_all(fd, magic, sizeof magic - 1, error);
@@ -243,7 +265,7 @@ tm_status tm_stream_write(const tm_stream *stream, int fd, unsigned threads,
         const tm_block *block = &stream->block[b];
         status = write_name(fd, block, error);
         if (status == TM_OK)
-            status = tm_block_write(block, stream->base, fd, threads, error);
+            status = write_block(block, stream->base, fd, threads, &tell, error);
     }
     if (status == TM_OK)
         status = tm_write_all(fd, end, sizeof end - 1, error);

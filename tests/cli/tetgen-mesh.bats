@@ -380,8 +380,9 @@ exec tetgen "$@"
 END
     TMPDIR=$(echo folder/it*) run --separate-stderr tetgen-mesh -v --tetgen ./look cube.off
     [ "$status" -eq 0 ]
-    [ "${stderr_lines[2]}" = 'tetgen-mesh: tetgen: 700' ]
-    [[ ${stderr_lines[3]} == 'tetgen-mesh: tetgen: Opening '* ]]
+    mapfile -t said < <(sed -n 's/^tetgen-mesh: tetgen: //p' <<<"$stderr")
+    [ "${said[0]}" = 700 ]
+    [[ ${said[1]} == 'Opening '* ]]
     [ -z "$(find . -name harm)" ]
     rmdir folder/it*
 }

@@ -40,7 +40,7 @@ static inline void start_case(repair_case *c, tm_polygon_surface *p, unsigned le
     assert_ok(tm_surface_build(&surface, p, &options, &error), &error);
     assert_ok(tm_surface_build(&c->surface, p, &options, &error), &error);
     assert_ok(tm_octree_build(&octree, &surface, &rule, 1, &error), &error);
-    assert_ok(tm_octree_mesh_make(&mesh, &octree, &surface, &error), &error);
+    assert_ok(tm_octree_mesh_make(&mesh, &octree, &surface, NULL, &error), &error);
     tm_stream_init(&c->stream);
     assert_ok(
         tm_octree_mesh_to_stream(&mesh, &octree, &surface, true, &c->stream, &error),

@@ -15,7 +15,7 @@ enum { BOX_CORNERS = 8, BOX_CURVES = 12, BOX_PATCHES = 6, BOXES = 8, ROUNDS = 20
 static void make_mesh(tm_octree_mesh *mesh, const tm_octree *octree, tm_surface *surface)
 {
     tm_error error;
-    assert_ok(tm_octree_mesh_make(mesh, octree, surface, &error), &error);
+    assert_ok(tm_octree_mesh_make(mesh, octree, surface, NULL, &error), &error);
 }
 
 static const double *outer_point(const tm_octree_mesh *mesh, size_t s)
@@ -266,8 +266,8 @@ static void test_random(void **state)
         printf("round %d (TM_SEED=%" PRIu64 "): %zu leaves\n", round, seed,
                octree.leaves);
         const size_t patches = surface.patches;
-        const tm_status status =
-            tm_octree_mesh_refine_lost(&mesh, &octree, &surface, random_below(2), &error);
+        const tm_status status = tm_octree_mesh_refine_lost(
+            &mesh, &octree, &surface, random_below(2), NULL, &error);
         assert_int_equal(status, has_solid(&octree, &surface) ? TM_OK : TM_ERROR_INPUT);
         if (status == TM_OK) {
             check_elements(&mesh);
@@ -338,7 +338,7 @@ static void test_resolve(void **state)
         tm_octree_mesh mesh;
         assert_ok(tm_octree_build(&octree, &surface, &rule, 1, &error), &error);
         const tm_status status =
-            tm_octree_mesh_refine_lost(&mesh, &octree, &surface, more, &error);
+            tm_octree_mesh_refine_lost(&mesh, &octree, &surface, more, NULL, &error);
         assert_int_equal(deepest_level(&octree), LEVEL + (more < NEEDED ? more : NEEDED));
         if (more < NEEDED) {
             assert_int_equal(status, TM_ERROR_INPUT);

@@ -47,6 +47,16 @@ void filter_start(filter *f, int argc, char **argv)
         filter_print_completion(f);
 }
 
+const tm_progress *filter_progress(const filter *f)
+{
+    return progress_context(f->progress);
+}
+
+void filter_stage(const filter *f, const char *what)
+{
+    tm_progress_stage(filter_progress(f), what);
+}
+
 const char *filter_input_name(const filter *f)
 {
     return f->input ? f->input : "<stdin>";
@@ -75,6 +85,7 @@ static int open_input(const filter *f)
 static void read_bytes(const filter *f, int fd, const char *name, tm_text *bytes)
 {
     tm_error error;
+    filter_stage(f, "reading");
     if (tm_read_all(fd, name, bytes, &error) != TM_OK)
         filter_fail(f, &error);
     if (fd != STDIN_FILENO)
@@ -96,6 +107,7 @@ void filter_read(const filter *f, tm_stream *stream)
     tm_error error;
     int fd = open_input(f);
     tm_stream_init(stream);
+    stream->progress = filter_progress(f);
     if (tm_stream_read(stream, fd, filter_input_name(f), &error) != TM_OK ||
         kinds_check(f->name, stream, filter_input_name(f), &error) != TM_OK)
         filter_fail(f, &error);
@@ -122,6 +134,8 @@ static int open_output(filter *f)
     require_report(f);
     if (f->output && output_files_open(f->files, f->output, &fd, &error) != TM_OK)
         filter_fail(f, &error);
+    if (isatty(fd))
+        progress_end(f->progress); /* what is written would be in one line with it */
     return fd;
 }
 
@@ -151,27 +165,28 @@ void filter_write(filter *f, tm_stream *stream, const char *summary, ...)
     if (f->history && add_history(f, stream, done, &error) != TM_OK)
         filter_fail(f, &error);
     int fd = open_output(f);
+    stream->progress = filter_progress(f);
     if (tm_stream_write(stream, fd, f->threads, &error) != TM_OK)
         filter_fail(f, &error);
 }
 
-static void write_or_fail(const filter *f, int fd, const tm_text *text, const char *file)
+static tm_status write_text(int fd, const tm_text *text, tm_error *error)
 {
-    tm_error error;
-    tm_status status =
-        text->failed ? tm_fail_memory(&error)
-                     : tm_write_all(fd, text->byte ? text->byte : "", text->size, &error);
-    if (status == TM_OK)
-        return;
-    if (file)
-        snprintf(error.file, sizeof error.file, "%s", file);
-    filter_fail(f, &error);
+    if (text->failed)
+        return tm_fail_memory(error);
+    return tm_write_all(fd, text->byte ? text->byte : "", text->size, error);
 }
 
 void filter_write_text(filter *f, const tm_text *text)
 {
+    tm_error error;
     int fd = open_output(f);
-    write_or_fail(f, fd, text, f->output);
+    filter_stage(f, "writing");
+    if (write_text(fd, text, &error) == TM_OK)
+        return;
+    if (f->output)
+        snprintf(error.file, sizeof error.file, "%s", f->output);
+    filter_fail(f, &error);
 }
 
 bool filter_has_report(const filter *f)
@@ -186,15 +201,24 @@ tm_json *filter_json_begin(filter *f)
     return &f->json_object;
 }
 
+/* To where --json says. */
+static tm_status write_report(const filter *f, tm_error *error)
+{
+    if (strcmp(f->json, "-") != 0)
+        return output_file_write(f->json, &f->report, error);
+    progress_hold(f->progress);
+    tm_status status =
+        write_text(f->json_is_output ? STDOUT_FILENO : STDERR_FILENO, &f->report, error);
+    progress_release(f->progress);
+    return status;
+}
+
 void filter_json_end(filter *f)
 {
     tm_error error;
     tm_json_close(&f->json_object, '}');
     tm_text_string(&f->report, "\n");
-    if (f->json && strcmp(f->json, "-") == 0)
-        write_or_fail(f, f->json_is_output ? STDOUT_FILENO : STDERR_FILENO, &f->report,
-                      NULL);
-    else if (f->json && output_file_write(f->json, &f->report, &error) != TM_OK)
+    if (f->json && write_report(f, &error) != TM_OK)
         filter_fail(f, &error);
     tm_text_free(&f->report);
     f->reported = true;
@@ -210,6 +234,7 @@ int filter_finish(filter *f, int status)
 {
     tm_error error;
     require_report(f);
+    progress_end(f->progress);
     if (output_files_finish(f->files, &error) != TM_OK)
         filter_fail(f, &error);
     if (close(STDOUT_FILENO) != 0) {

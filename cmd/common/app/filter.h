@@ -22,6 +22,7 @@
 #include "../../../lib/base/version.h"
 #include "../../../lib/stream/stream.h"
 #include "output_files.h"
+#include "progress.h"
 
 #include <getopt.h>
 #include <stdbool.h>
@@ -97,6 +98,7 @@ typedef struct filter {
     char apart_option[32]; /* how that is written before its argument: "-q" */
     tm_text command;       /* the options as given, for the history */
     output_files *files;   /* -o FILE in the making */
+    progress *progress;    /* NULL until all options are known */
     tm_text report;        /* of --json, in the making */
     bool reported;         /* the report is where it belongs */
     tm_json json_object;
@@ -137,6 +139,16 @@ _Noreturn void filter_usage_error(const filter *f, const char *format, ...)
 
 /* "name: file:line: block: what", then exit with error->status. */
 _Noreturn void filter_fail(const filter *f, const tm_error *error);
+
+/* What the library is to be given where it takes a tm_progress. */
+const tm_progress *filter_progress(const filter *f);
+
+/* A stage of the filter's own begins: "drawing". */
+void filter_stage(const filter *f, const char *what);
+
+/* A line on stderr as it is. */
+void filter_print(const filter *f, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 
 /* The same of bytes that a reader refused; `reader` is the filter that reads the format.
  * Where they look like what another one reads, that is said. */

@@ -34,12 +34,25 @@ static void print_message(const filter *f, const char *format, va_list arguments
         message = NULL;
     append_shown(&line, message ? message : format);
     tm_text_append(&line, "\n", 1);
+    progress_hold(f->progress);
     if (line.failed)
         fputs("out of memory\n", stderr);
     else
         fwrite(line.byte, 1, line.size, stderr);
+    progress_release(f->progress);
     tm_text_free(&line);
     free(message);
+}
+
+void filter_print(const filter *f, const char *format, ...)
+{
+    va_list arguments;
+    progress_hold(f->progress);
+    va_start(arguments, format);
+    vfprintf(stderr, format, arguments);
+    va_end(arguments);
+    fputc('\n', stderr);
+    progress_release(f->progress);
 }
 
 void filter_message(const filter *f, const char *format, ...)
@@ -73,6 +86,7 @@ void filter_verbose(const filter *f, const char *format, ...)
 void filter_usage_error(const filter *f, const char *format, ...)
 {
     va_list arguments;
+    progress_end(f->progress);
     va_start(arguments, format);
     print_message(f, format, arguments);
     va_end(arguments);
@@ -84,6 +98,7 @@ void filter_usage_error(const filter *f, const char *format, ...)
 void filter_fail(const filter *f, const tm_error *error)
 {
     char line[32] = "";
+    progress_end(f->progress);
     if (error->line)
         snprintf(line, sizeof line, ":%zu", error->line);
     filter_message(f, "%s%s%s%s%s%s", error->file, error->file[0] ? line : "",

@@ -18,8 +18,8 @@ static const char shared_help[] =
     "      --json FILE     write a JSON report to FILE\n"
     "      --no-history    do not add a history line\n"
     "      --strict        refuse what the output cannot carry, instead of a note\n"
-    "  %s --quiet         no notes on standard error\n"
-    "  -v, --verbose       more notes\n"
+    "  %s --quiet         no notes and no progress on standard error\n"
+    "  -v, --verbose       more notes, and the time that each stage takes\n"
     "  -h, --help          this text\n"
     "  -V, --version       the version\n";
 
@@ -192,6 +192,14 @@ static void remember_apart(filter *f, int c, int index)
         snprintf(f->apart_option, sizeof f->apart_option, "-%c", c);
 }
 
+/* All options are known. */
+static void begin_work(filter *f)
+{
+    static progress p; /* that of the program: signals erase it */
+    f->progress = &p;
+    progress_start(&p, f->name, f->verbosity == -1, f->verbosity == 1);
+}
+
 int filter_option(filter *f)
 {
     for (;;) {
@@ -199,8 +207,10 @@ int filter_option(filter *f)
         int c = getopt_long(f->argc, f->argv, f->letters, f->options, &index);
         if (c == '?')
             filter_wrong_option(f);
-        if (c == -1)
+        if (c == -1) {
+            begin_work(f);
             return -1;
+        }
         if (take_shared(f, c))
             continue;
         remember(f, c, index);

@@ -77,6 +77,7 @@ int mesh_write(filter *f, mesh_writer *write)
     tm_text text = {0};
     tm_error error;
     mesh_input_read(f, &stream);
+    filter_stage(f, "formatting");
     if (write(&text, &stream, f->threads, &error) != TM_OK)
         mesh_input_fail(f, &error);
     mesh_leave_out(f, &stream);

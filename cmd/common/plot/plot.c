@@ -122,6 +122,7 @@ static tm_status draw(const tm_text *script, const char *file, tm_error *error)
 void plot_write(const filter *f, tm_text *script, const char *file)
 {
     tm_error error;
+    filter_stage(f, "drawing");
     if (draw(script, file, &error) != TM_OK)
         filter_fail(f, &error);
     tm_text_free(script);

@@ -69,7 +69,8 @@ _Noreturn static void become(char *const argv[], int output, int failure)
 }
 
 /* Reads until no process can write any more; a terminal says so by EIO. */
-static tm_status listen_to(int fd, tm_text *output, tm_error *error)
+static tm_status listen_to(int fd, program_listener *listener, void *context,
+                           tm_text *output, tm_error *error)
 {
     enum { STEP = 4096 };
     char bytes[STEP];
@@ -81,6 +82,7 @@ static tm_status listen_to(int fd, tm_text *output, tm_error *error)
             return tm_fail(error, TM_ERROR_SYSTEM, "cannot read from a program: %s",
                            strerror(errno));
         tm_text_append(output, bytes, (size_t)got);
+        listener(context, bytes, (size_t)got);
     }
 }
 
@@ -114,7 +116,8 @@ static pid_t start(char *const argv[], const channel *output, const channel *fai
     return child;
 }
 
-tm_status run_program(char *const argv[], program_end *end, tm_error *error)
+tm_status run_program(char *const argv[], program_listener *listener, void *context,
+                      program_end *end, tm_error *error)
 {
     channel output, failure;
     *end = (program_end){0};
@@ -135,7 +138,7 @@ tm_status run_program(char *const argv[], program_end *end, tm_error *error)
                          private_signals_came() ? "interrupted" : strerror(cause));
     } else {
         tm_read_some(failure.read, (char *)&end->cannot_start, sizeof end->cannot_start);
-        status = listen_to(output.read, &end->output, error);
+        status = listen_to(output.read, listener, context, &end->output, error);
         tm_status waited = wait_for(child, end, error);
         private_signals_kill(0);
         status = status == TM_OK ? waited : status;

@@ -13,9 +13,13 @@ typedef struct program_end {
     tm_text output;   /* what it wrote on stdout and stderr, in that order */
 } program_end;
 
+/* Is called with what the program writes, piece by piece. */
+typedef void program_listener(void *context, const char *bytes, size_t size);
+
 /* Runs argv[0], which is looked up in PATH, without a shell and with nothing on stdin.
  * It has a terminal on stdout, so that what it says is not lost in a buffer when it
  * aborts. While signals are held (private.h) they kill it and its children. */
-tm_status run_program(char *const argv[], program_end *end, tm_error *error);
+tm_status run_program(char *const argv[], program_listener *listener, void *context,
+                      program_end *end, tm_error *error);
 
 #endif

@@ -98,10 +98,35 @@ enum { ARGUMENTS = 8 };
 static const char input_poly[] = "surface.poly", input_node[] = "surface.node";
 static const char output_stem[] = "surface.1";
 
+/* Passes on what TetGen says that it does. */
+static void tell(void *context, const char *words, size_t size)
+{
+    static const char *const step[] = {"Delaunizing vertices",
+                                       "Creating surface mesh",
+                                       "Recovering boundaries",
+                                       "Removing exterior tetrahedra",
+                                       "Suppressing Steiner points",
+                                       "Recovering Delaunayness",
+                                       "Refining mesh",
+                                       "Optimizing mesh"};
+    const filter *f = context;
+    tm_progress_at at = {.what = "TetGen"};
+    const char *last = NULL;
+    for (size_t i = 0; i < sizeof step / sizeof *step; i++) {
+        const char *said = memmem(words, size, step[i], strlen(step[i]));
+        if (!said || (last && said < last))
+            continue;
+        last = said;
+        at.doing = step[i];
+    }
+    if (last)
+        tm_progress_tell(filter_progress(f), &at);
+}
+
 /* Runs TetGen on the file, with the request's switches or with `only` instead. */
-static tm_status run_tetgen(const private_folder *folder, const tetgen_request *r,
-                            const char *file, const char *only, program_end *end,
-                            tm_error *error)
+static tm_status run_tetgen(const filter *f, const private_folder *folder,
+                            const tetgen_request *r, const char *file, const char *only,
+                            program_end *end, tm_error *error)
 {
     char path[sizeof folder->path + sizeof input_poly + 1];
     snprintf(path, sizeof path, "%s/%s", folder->path, file);
@@ -122,7 +147,7 @@ static tm_status run_tetgen(const private_folder *folder, const tetgen_request *
             argument[count++] = r->more;
     }
     argument[count++] = path;
-    tm_status status = run_program((char *const *)argument, end, error);
+    tm_status status = run_program((char *const *)argument, tell, (void *)f, end, error);
     if (status == TM_OK && end->output.failed)
         status = tm_fail_memory(error);
     return status;
@@ -159,7 +184,7 @@ static tm_status explain_failure(const filter *f, const private_folder *folder,
     program_end check = {0};
     bool intersects = said(&end->output, "intersect");
     if (file == input_poly && !private_signals_came() &&
-        run_tetgen(folder, r, file, "-pd", &check, NULL) == TM_OK &&
+        run_tetgen(f, folder, r, file, "-pd", &check, NULL) == TM_OK &&
         said(&check.output, intersecting)) {
         intersects = true;
         show_complaints(f, &check.output);
@@ -251,6 +276,7 @@ static tm_status run_in(const private_folder *folder, const filter *f,
 {
     const char *file = surface->facets > 0 ? input_poly : input_node;
     tm_text text = {0};
+    filter_stage(f, "TetGen");
     if (surface->facets > 0)
         tm_plc_write(&text, surface);
     else
@@ -259,7 +285,7 @@ static tm_status run_in(const private_folder *folder, const filter *f,
     tm_text_free(&text);
     program_end end = {0};
     if (status == TM_OK)
-        status = run_tetgen(folder, r, file, NULL, &end, error);
+        status = run_tetgen(f, folder, r, file, NULL, &end, error);
     if (status == TM_OK && end.cannot_start)
         status = fail_start(r, end.cannot_start, error);
     else if (status == TM_OK && !private_signals_came()) {
@@ -270,6 +296,7 @@ static tm_status run_in(const private_folder *folder, const filter *f,
             show_warnings(f, &end.output);
     }
     tm_text_free(&end.output);
+    filter_stage(f, "reading what TetGen wrote");
     return status == TM_OK ? read_mesh(folder, r, mesh, error) : status;
 }
 

@@ -7,6 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* A stage. */
+static const char splitting[] = "splitting octants";
+
 /* Unmarks leaves that are as deep as they may be; returns how many are left. */
 static size_t keep_shallow(const tm_octree *octree, unsigned deepest, uint8_t *split)
 {
@@ -21,25 +24,29 @@ static size_t keep_shallow(const tm_octree *octree, unsigned deepest, uint8_t *s
 /* Splits leaves with surface but no boundary close by, until there are none; then makes
  * the mesh. */
 static tm_status make_without_loss(tm_octree_mesh *mesh, tm_octree *octree,
-                                   tm_surface *surface, unsigned deepest, tm_error *error)
+                                   tm_surface *surface, unsigned deepest,
+                                   const tm_progress *progress, tm_error *error)
 {
     tm_interior interior = {0};
     tm_status status = TM_OK;
     for (bool more = true; status == TM_OK && more;) {
         uint8_t *lost = tm_new(octree->leaves, sizeof *lost);
         tm_interior_free(&interior);
+        tm_progress_stage(progress, "choosing octants");
         status = lost ? tm_interior_choose(&interior, octree, surface, error)
                       : tm_fail_memory(error);
         if (status == TM_OK) {
             tm_interior_find_lost(&interior, octree, surface, lost);
             more = keep_shallow(octree, deepest, lost) > 0;
         }
-        if (status == TM_OK && more)
+        if (status == TM_OK && more) {
+            tm_progress_stage(progress, splitting);
             status = tm_octree_refine(octree, surface, lost, error);
+        }
         free(lost);
     }
     if (status == TM_OK)
-        return tm_octree_mesh_make_of(mesh, octree, &interior, surface, error);
+        return tm_octree_mesh_make_of(mesh, octree, &interior, surface, progress, error);
     tm_interior_free(&interior);
     return status;
 }
@@ -75,16 +82,17 @@ static uint8_t *mark_off_surface(const tm_octree_mesh *mesh, const tm_octree *oc
  * is only one at a time. */
 static tm_status try_split(tm_octree_mesh *mesh, tm_octree *octree, tm_surface *surface,
                            unsigned deepest, const uint8_t *split, bool *better,
-                           tm_error *error)
+                           const tm_progress *progress, tm_error *error)
 {
     const size_t off_surface = mesh->report.off_surface;
     tm_octree finer;
     tm_octree_mesh_free(mesh);
+    tm_progress_stage(progress, splitting);
     tm_status status = tm_octree_copy(&finer, octree, error);
     if (status == TM_OK)
         status = tm_octree_refine(&finer, surface, split, error);
     if (status == TM_OK)
-        status = make_without_loss(mesh, &finer, surface, deepest, error);
+        status = make_without_loss(mesh, &finer, surface, deepest, progress, error);
     *better = status == TM_OK && mesh->report.off_surface < off_surface;
     if (*better) {
         tm_octree_free(octree);
@@ -94,14 +102,14 @@ static tm_status try_split(tm_octree_mesh *mesh, tm_octree *octree, tm_surface *
     tm_octree_free(&finer);
     if (status == TM_OK) {
         tm_octree_mesh_free(mesh);
-        status = tm_octree_mesh_make(mesh, octree, surface, error);
+        status = tm_octree_mesh_make(mesh, octree, surface, progress, error);
     }
     return status;
 }
 
 tm_status tm_octree_mesh_refine_lost(tm_octree_mesh *mesh, tm_octree *octree,
                                      tm_surface *surface, unsigned levels,
-                                     tm_error *error)
+                                     const tm_progress *progress, tm_error *error)
 {
     unsigned deepest = 0;
     *mesh = (tm_octree_mesh){0};
@@ -111,15 +119,16 @@ tm_status tm_octree_mesh_refine_lost(tm_octree_mesh *mesh, tm_octree *octree,
     deepest += levels;
     if (deepest > TM_OCTREE_LEVEL_MAX)
         deepest = TM_OCTREE_LEVEL_MAX;
-    tm_status status = levels > 0
-                           ? make_without_loss(mesh, octree, surface, deepest, error)
-                           : tm_octree_mesh_make(mesh, octree, surface, error);
+    tm_status status =
+        levels > 0 ? make_without_loss(mesh, octree, surface, deepest, progress, error)
+                   : tm_octree_mesh_make(mesh, octree, surface, progress, error);
     for (bool better = levels > 0; status == TM_OK && better;) {
         uint8_t *split =
             mesh->report.off_surface > 0 ? mark_off_surface(mesh, octree, deepest) : NULL;
         if (!split)
             break;
-        status = try_split(mesh, octree, surface, deepest, split, &better, error);
+        status =
+            try_split(mesh, octree, surface, deepest, split, &better, progress, error);
         free(split);
     }
     return status;

@@ -101,26 +101,30 @@ static tm_status find_boundary(tm_octree_mesh *m, const tm_octree *octree,
 }
 
 static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *surface,
-                      tm_error *error)
+                      const tm_progress *progress, tm_error *error)
 {
     tm_octree_mesh_report *r = &m->report;
     tm_status status = TM_OK;
     if (m->interior.count == 0)
         status = tm_fail(error, TM_ERROR_INPUT,
                          "no leaf is inside the surface: it needs a finer level");
+    tm_progress_stage(progress, "finding the interior boundary");
     if (status == TM_OK)
         status = find_boundary(m, octree, surface, error);
     if (status == TM_OK)
         status = count_lost(m, octree, surface, error);
+    tm_progress_stage(progress, "matching features");
     if (status == TM_OK)
         status = tm_feature_find(&m->feature, &m->boundary, surface, m->at, error);
+    tm_progress_stage(progress, "assembling elements");
     if (status == TM_OK)
         status = tm_assemble(&m->assembly, octree, &m->interior, &m->boundary, error);
+    tm_progress_stage(progress, "projecting the layer");
     if (status == TM_OK)
         status = tm_project_layer(&m->assembly, &m->boundary, &m->feature, surface, m->at,
                                   error);
     if (status == TM_OK)
-        status = tm_untangle_layer(m, octree, surface, error);
+        status = tm_untangle_layer(m, octree, surface, progress, error);
     if (status != TM_OK)
         return status;
     r->corners_lost = m->feature.corners_lost;
@@ -132,19 +136,22 @@ static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *su
 }
 
 tm_status tm_octree_mesh_make(tm_octree_mesh *mesh, const tm_octree *octree,
-                              tm_surface *surface, tm_error *error)
+                              tm_surface *surface, const tm_progress *progress,
+                              tm_error *error)
 {
     tm_interior interior;
+    tm_progress_stage(progress, "choosing octants");
     tm_status status = tm_interior_choose(&interior, octree, surface, error);
     *mesh = (tm_octree_mesh){.interior = interior};
     if (status == TM_OK)
-        status = tm_octree_mesh_make_of(mesh, octree, &interior, surface, error);
+        status =
+            tm_octree_mesh_make_of(mesh, octree, &interior, surface, progress, error);
     return status;
 }
 
 tm_status tm_octree_mesh_make_of(tm_octree_mesh *mesh, const tm_octree *octree,
                                  tm_interior *interior, tm_surface *surface,
-                                 tm_error *error)
+                                 const tm_progress *progress, tm_error *error)
 {
     *mesh = (tm_octree_mesh){.interior = *interior};
     *interior = (tm_interior){0};
@@ -153,7 +160,7 @@ tm_status tm_octree_mesh_make_of(tm_octree_mesh *mesh, const tm_octree *octree,
     if (!patch)
         return tm_fail_memory(error);
     memcpy(patch, surface->patch, bytes);
-    const tm_status status = make(mesh, octree, surface, error);
+    const tm_status status = make(mesh, octree, surface, progress, error);
     memcpy(surface->patch, patch, bytes);
     free(patch);
     return status;

@@ -5,6 +5,7 @@
 #define TM_LAYER_OCTREE_MESH_H
 
 #include "../../base/extern_c.h"
+#include "../../base/progress.h"
 #include "assemble.h"
 #include "feature.h"
 
@@ -36,14 +37,15 @@ typedef struct tm_octree_mesh {
 /* Makes the mesh of an octree. The surface's patches are joined for a while where one of
  * its curves is too fine, and are as they were after. TM_ERROR_INPUT where no leaf is
  * inside; TM_ERROR_SYSTEM where memory or 32-bit ids are out. *mesh is to be freed, after
- * an error too. */
+ * an error too. `progress` may be NULL. */
 tm_status tm_octree_mesh_make(tm_octree_mesh *mesh, const tm_octree *octree,
-                              tm_surface *surface, tm_error *error);
+                              tm_surface *surface, const tm_progress *progress,
+                              tm_error *error);
 /* The same where the leaves are chosen already: tm_interior_choose() filled *interior,
  * which becomes the mesh's and is empty then. */
 tm_status tm_octree_mesh_make_of(tm_octree_mesh *mesh, const tm_octree *octree,
                                  tm_interior *interior, tm_surface *surface,
-                                 tm_error *error);
+                                 const tm_progress *progress, tm_error *error);
 void tm_octree_mesh_free(tm_octree_mesh *mesh);
 
 TM_EXTERN_C_END

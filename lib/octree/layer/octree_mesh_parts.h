@@ -58,6 +58,7 @@ tm_status tm_lattice_points(const tm_assembly *assembly, const tm_octree *octree
  * not on the surface are marked and counted. TM_ERROR_SYSTEM where memory is
  * out. */
 tm_status tm_untangle_layer(tm_octree_mesh *mesh, const tm_octree *octree,
-                            const tm_surface *surface, tm_error *error);
+                            const tm_surface *surface, const tm_progress *progress,
+                            tm_error *error);
 
 #endif

@@ -126,7 +126,8 @@ static tm_node_rule *find_rules(const tm_octree_mesh *m)
 }
 
 tm_status tm_untangle_layer(tm_octree_mesh *mesh, const tm_octree *octree,
-                            const tm_surface *surface, tm_error *error)
+                            const tm_surface *surface, const tm_progress *progress,
+                            tm_error *error)
 {
     const double threshold = 0.2;
     const tm_boundary boundary = tm_boundary_of_surface(surface);
@@ -137,7 +138,8 @@ tm_status tm_untangle_layer(tm_octree_mesh *mesh, const tm_octree *octree,
         .threshold = threshold,
         .off_surface_threshold = threshold,
         .effort = 1,
-        .most_measured = at_least + few * mesh->assembly.mesh.elements};
+        .most_measured = at_least + few * mesh->assembly.mesh.elements,
+        .progress = progress};
     tm_optimise_report report;
     tm_node_rule *rule = find_rules(mesh);
     if (!rule)

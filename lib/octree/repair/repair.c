@@ -245,6 +245,7 @@ tm_status tm_repair(tm_repair_state *state, tm_surface *surface,
 {
     *report = (tm_repair_report){.before = tm_repair_measure(state, options->threshold)};
     report->after = report->before;
+    state->progress = options->progress;
     const repair r = {.state = state,
                       .surface = surface,
                       .options = options,

@@ -26,6 +26,7 @@ typedef struct tm_repair_options {
     tm_status (*visit)(void *context, unsigned iteration, const tm_repair_state *state,
                        const uint32_t *bad, size_t count, tm_error *error);
     void *context;
+    const tm_progress *progress;
 } tm_repair_options;
 
 typedef struct tm_repair_report {

@@ -48,7 +48,8 @@ tm_status tm_repair_move(tm_repair_state *state, const tm_surface *surface,
                                    .threshold = threshold,
                                    .off_surface_threshold =
                                        fmax(off_surface_threshold, TM_REPAIR_LEAST),
-                                   .effort = effort};
+                                   .effort = effort,
+                                   .progress = state->progress};
     bool is_best = true;
     for (int round = 0; status == TM_OK && round < ROUNDS; round++) {
         set_thresholds(state, threshold, thresholds);

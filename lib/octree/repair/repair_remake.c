@@ -64,12 +64,14 @@ tm_status tm_repair_remake(tm_repair_state *to, const tm_repair_state *from,
 {
     tm_octree_mesh made = {0};
     to->remade = true;
+    to->progress = from->progress;
+    tm_progress_stage(to->progress, "splitting octants");
     tm_status status = tm_octree_copy(&to->octree, &from->octree, error);
     if (status == TM_OK)
         status = split(&to->octree, from->row, surface, octant, count, error);
     if (status != TM_OK)
         return status;
-    status = tm_octree_mesh_make(&made, &to->octree, surface, error);
+    status = tm_octree_mesh_make(&made, &to->octree, surface, to->progress, error);
     if (status == TM_OK)
         status = take_mesh(to, &made, surface, error);
     tm_octree_mesh_free(&made);

@@ -25,6 +25,7 @@ typedef struct tm_repair_state {
     uint32_t *row;      /* [leaves]: of the octant */
     bool divided;       /* some elements are parts of what they were; nodes were added */
     bool remade;        /* from another octree: all of it is new */
+    const tm_progress *progress; /* of the repair; NULL in trials */
 } tm_repair_state;
 
 /* How good it is. */

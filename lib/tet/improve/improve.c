@@ -76,6 +76,7 @@ static bool find_targets(tm_improver *m)
     for (size_t k = 0; k < count && done; k++)
         target[k] = placed[k].item;
     m->targets = count;
+    m->at.bad = bad;
     free(placed);
     return done || tm_improve_no_memory(m);
 }
@@ -102,13 +103,26 @@ static bool is_over(const tm_improver *m)
            (m->options->passes > 0 && m->report->passes >= m->options->passes);
 }
 
+/* A pass begins. Of bad tetrahedra it is told how many the result has, if there were no
+ * more. */
+static void tell_pass(tm_improver *m)
+{
+    tm_progress_at *at = &m->at;
+    at->pass = m->report->passes + 1;
+    at->of = m->targets;
+    at->bad = m->best.bad < at->bad ? m->best.bad : at->bad;
+    at->all_bad = at->bad > at->all_bad ? at->bad : at->all_bad;
+}
+
 /* Tries all bad tetrahedra once. */
 static void run_pass(tm_improver *m, tm_improve_phase phase)
 {
     if (is_over(m) || !find_targets(m))
         return;
+    tell_pass(m);
     for (size_t k = 0; k < m->targets && m->status == TM_OK; k++) {
         uint32_t t = m->target[k];
+        tm_progress_step(m->options->progress, &m->at, k);
         if (is_bad(m, t) && is_due(m, t) && !try_on(m, t, phase))
             m->tried[t] = m->change + 1;
     }

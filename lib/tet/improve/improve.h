@@ -7,6 +7,7 @@
 
 #include "../../base/extern_c.h"
 #include "../../base/json.h"
+#include "../../base/progress.h"
 #include "../../element/tet_measure.h"
 #include "../mesh.h"
 
@@ -61,6 +62,7 @@ typedef struct tm_improve_options {
     unsigned ops;           /* bits 1 << tm_improve_op */
     size_t passes;          /* over the bad tetrahedra, at most; 0: any number */
     bool converge;          /* go on while anything is gained, not only enough */
+    const tm_progress *progress;
 } tm_improve_options;
 
 typedef struct tm_improve_counts {

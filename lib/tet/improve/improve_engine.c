@@ -200,6 +200,8 @@ tm_status tm_improve_start(tm_improver *m, tm_tet_mesh *mesh,
 {
     *m =
         (tm_improver){.mesh = mesh, .options = options, .report = report, .error = error};
+    m->at.what = "improving";
+    tm_progress_tell(options->progress, &m->at);
     *report = (tm_improve_report){.tets_before = mesh->tets};
     m->most_tets = tm_tet_mesh_most(mesh, options->max_growth);
     m->cost.measure = m->options->measure;

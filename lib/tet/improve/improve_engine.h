@@ -31,6 +31,7 @@ typedef struct tm_improver {
     const tm_improve_options *options;
     tm_improve_report *report;
     tm_error *error;
+    tm_progress_at at;
     tm_status status; /* of what failed: nothing more is done then */
 
     tm_cost cost;

@@ -14,8 +14,12 @@ static tm_status improve_all(tm_lepp_engine *e)
     tm_status status = TM_OK;
     bool is_simple = e->options->path == TM_LEPP_SIMPLE;
     e->report->passes++;
+    e->at.pass = e->report->passes;
+    e->at.of = e->targets;
+    e->at.all_bad = e->at.bad > e->at.all_bad ? e->at.bad : e->at.all_bad;
     for (size_t i = 0; i < e->targets && status == TM_OK; i++) {
         uint32_t t = e->target[i];
+        tm_progress_step(e->options->progress, &e->at, i);
         if (!(e->mark[t] & TM_LEPP_BAD) || !tm_tet_lives(e->mesh, t))
             continue;
         if (is_simple && tm_lepp_is_blocked(e, t)) { /* as most are: no path at all */
@@ -54,6 +58,7 @@ static tm_status find_targets(tm_lepp_engine *e)
     if (!tm_space_sort(placed, count))
         status = tm_fail_memory(e->error);
     e->targets = 0;
+    e->at.bad = count;
     for (size_t i = 0; i < count && status == TM_OK; i++)
         if (!tm_lepp_add_target(e, placed[i].item))
             status = tm_fail_memory(e->error);
@@ -73,7 +78,7 @@ static void keep_targets(tm_lepp_engine *e)
         e->mark[t] |= TM_LEPP_QUEUED;
         e->target[kept++] = t;
     }
-    e->targets = kept;
+    e->targets = e->at.bad = kept;
     for (size_t i = 0; i < kept; i++)
         e->mark[e->target[i]] &= (uint16_t)~TM_LEPP_QUEUED;
 }
@@ -169,6 +174,8 @@ static tm_status start(tm_lepp_engine *e)
 {
     enum { SOME = 64 };
     tm_tet_mesh *mesh = e->mesh;
+    e->at.what = "improving";
+    tm_progress_tell(e->options->progress, &e->at);
     if (!tm_lepp_reserve(e, 0))
         return tm_fail_memory(e->error);
     uint32_t some[SOME];
@@ -181,7 +188,7 @@ static tm_status start(tm_lepp_engine *e)
             count = 0;
         }
     }
-    e->report->bad_before = count_bad(e);
+    e->report->bad_before = e->at.all_bad = count_bad(e);
     if (e->options->algorithm == TM_LEPP_DELAUNAY) {
         e->delaunay = tm_delaunay_for(mesh);
         e->report->not_delaunay_before = tm_tet_mesh_not_delaunay(mesh);

@@ -11,6 +11,7 @@
 
 #include "../../base/extern_c.h"
 #include "../../base/json.h"
+#include "../../base/progress.h"
 #include "../../element/tet_measure.h"
 #include "../operation/delaunay.h"
 #include "../mesh.h"
@@ -59,6 +60,7 @@ typedef struct tm_lepp_options {
     tm_lepp_path path;
     unsigned sweeps;          /* TM_SWEEP_…; 0: none. A pass is over S as it is then */
     bool count_invalid_swaps; /* costs some time */
+    const tm_progress *progress;
 } tm_lepp_options;
 
 /* selective asks for this relative gain at least: with a factor of 1 and rounded

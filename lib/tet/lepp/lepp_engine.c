@@ -45,7 +45,9 @@ bool tm_lepp_reserve(tm_lepp_engine *e, size_t more)
 
 bool tm_lepp_add_target(tm_lepp_engine *e, uint32_t t)
 {
-    return tm_append(&e->target, &e->targets, &e->target_room, t);
+    const bool appended = tm_append(&e->target, &e->targets, &e->target_room, t);
+    e->at.of = e->targets;
+    return appended;
 }
 
 bool tm_lepp_note(tm_lepp_engine *e, const uint32_t *tet, size_t count)

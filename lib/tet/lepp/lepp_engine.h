@@ -66,6 +66,7 @@ typedef struct tm_lepp_engine {
     const tm_lepp_options *options;
     tm_lepp_report *report;
     tm_error *error;
+    tm_progress_at at;
     double bad_below; /* sin² */
     tm_gain gain;     /* what selective asks for */
     size_t most_tets; /* the mesh never grows beyond */

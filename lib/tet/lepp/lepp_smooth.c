@@ -125,8 +125,12 @@ tm_status tm_lepp_smooth(tm_lepp_engine *e)
     tm_status status = tm_features_find(&s->features, e->mesh, &s->marks, e->error);
     if (status == TM_OK && !start(e))
         status = tm_fail_memory(e->error);
-    for (uint32_t v = 0; v < e->mesh->nodes && status == TM_OK; v++)
+    tm_progress_at at = {
+        .what = "smoothing", .pass = e->report->smooth.sweeps, .of = e->mesh->nodes};
+    for (uint32_t v = 0; v < e->mesh->nodes && status == TM_OK; v++) {
+        tm_progress_step(e->options->progress, &at, v);
         status = smooth_node(e, v, sweep);
+    }
     e->operations++; /* stars that paths have collected may have changed */
     return status;
 }
