@@ -171,5 +171,11 @@ bool tm_word_is_like(tm_word word, const char *string)
 
 int tm_word_shown(tm_word word)
 {
-    return word.size < SHOWN ? (int)word.size : SHOWN;
+    enum { TAIL = 0x80, TAIL_BITS = 0xC0 };
+    size_t size = word.size < SHOWN ? word.size : SHOWN;
+    /* no letter of UTF-8 is cut */
+    if (size < word.size)
+        while (size > 0 && (word.begin[size] & TAIL_BITS) == TAIL)
+            size--;
+    return (int)size;
 }

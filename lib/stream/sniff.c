@@ -99,7 +99,7 @@ static const tm_look *look_up(const row *table, size_t rows, const char *at,
             return &table[r].look;
     return NULL;
 }
-#define LOOK_UP(table, at, end) look_up(table, sizeof table / sizeof *table, at, end)
+#define LOOK_UP(table, at, end) look_up(table, sizeof(table) / sizeof *(table), at, end)
 
 size_t tm_byte_order_mark(const char *bytes, size_t size)
 {

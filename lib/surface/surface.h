@@ -75,9 +75,9 @@ typedef struct tm_surface_options {
  * TM_ERROR_INPUT, with counts and a position, in the numbers of the file, where nothing
  * is left, coordinates are too large or too small (stream/coordinates.h), a facet has
  * several polygons or holes; and unless lenient where an edge has one triangle, or more
- * than two that do not pair, where a shell cannot be oriented, or where two triangles meet
- * otherwise than in common nodes and edges, exactly (touching is meeting). With lenient
- * the surface is cut open at edges of the third and fourth kind.
+ * than two that do not pair, where a shell cannot be oriented, or where two triangles
+ * meet otherwise than in common nodes and edges, exactly (touching is meeting). With
+ * lenient the surface is cut open at edges of the third and fourth kind.
  *
  * *surface need not be initialised; tm_surface_free() also after an error.
  * O(n log n). */

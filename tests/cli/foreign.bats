@@ -285,6 +285,23 @@ same() {
     [[ "$stderr" == *'looks like gzip data within gzip data: unpack it with zcat' ]]
 }
 
+@test "gzip: damaged anywhere: exit 0 or 3" {
+    many 200 | gzip -n >whole.gz
+    for n in $(seq 100); do
+        python3 -c '
+import random, sys
+n = int(sys.argv[1])
+random.seed(n)
+data = bytearray(open("whole.gz", "rb").read())
+for _ in range(1 + n % 3):
+    data[random.randrange(2, len(data))] = random.randrange(256)
+sys.stdout.buffer.write(data)' "$n" >wrong.gz
+        status=0
+        tet-stats wrong.gz >/dev/null 2>message || status=$?
+        [ "$status" -eq 0 ] || [ "$status" -eq 3 ] || { cat message && false; }
+    done
+}
+
 # Byte order marks ---------------------------------------------------------------------
 
 @test "a byte order mark is skipped in text that others write" {
@@ -334,6 +351,14 @@ same() {
     [[ "${stderr_lines[0]}" == "lepp-improve: -a: '$shown' is none of "* ]]
     run -3 --separate-stderr tet-stats <(printf 'termesh 1\n\033[31m\n')
     [[ "$stderr" != *$'\033'* ]]
+}
+
+@test "a long word is cut between letters" {
+    for blanks in '' x xx; do
+        printf 'OFF\n1 0 0\n%s%s 0 0\n' "$blanks" "$(printf '€%.0s' $(seq 20))" >long.off
+        run -3 --separate-stderr tetgen-mesh long.off
+        [[ "$stderr" == *"'$blanks€€€"*"€' is not a number" ]]
+    done
 }
 
 @test "nor of what another program says" {

@@ -150,5 +150,5 @@ END
     run -2 octree-repair --max-growth 0.5 good.tm
     printf '%s\n' 'termesh 1' .node '0 3 0 0' .end >empty.tm
     run -3 --separate-stderr octree-repair empty.tm
-    [[ "$stderr" == 'octree-repair: empty.tm: holds nothing, but '* ]]
+    [[ "$stderr" == 'octree-repair: empty.tm: holds points (.node alone), but '* ]]
 }

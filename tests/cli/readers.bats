@@ -13,7 +13,7 @@ checked() {
     TM_CASES=300 valgrind -q --error-exitcode=99 "$TM_BUILD/tests/$1"
 }
 
-@test "files that are cut off, under valgrind" {
+@test "files that are cut off or changed, under valgrind" {
     checked test_truncation
 }
 

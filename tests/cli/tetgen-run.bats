@@ -16,6 +16,7 @@ setup() {
 
 # Makes a program of standard input; base is where TetGen's files are, without suffix.
 program() {
+    # shellcheck disable=SC2016 # for the program to expand
     { printf '#!/bin/sh\nfor last; do :; done\nbase=${last%%.poly}.1\n'; cat; } >"$1"
     chmod +x "$1"
 }

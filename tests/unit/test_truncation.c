@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Each beginning of a file is refused, or read as the whole file is, but where the sample
- * says that this cannot be seen (reader_samples.h). */
+ * says that this cannot be seen (reader_samples.h). TM_CASES of each file have bytes
+ * changed; they are read or refused. */
+#include "random.h"
 #include "reader_samples.h"
 
 /* Returns how many cuts are taken as they should not be, or the other way round. */
@@ -41,8 +43,34 @@ static void test_cuts(void **state)
     assert_int_equal(wrong, 0);
 }
 
+static void test_changed_bytes(void **state)
+{
+    (void)state;
+    const char *cases = getenv("TM_CASES");
+    for (size_t i = 0; i < READER_SAMPLES; i++) {
+        char bytes[READER_SAMPLE_MAX], changed[READER_SAMPLE_MAX];
+        bool unseen[READER_SAMPLE_MAX];
+        const size_t size = take_braces(reader_samples[i].text, bytes, unseen);
+        for (int n = cases ? atoi(cases) : 1000; n > 0; n--) {
+            memcpy(changed, bytes, size);
+            for (unsigned k = 1 + random_below(3); k > 0; k--) {
+                static const char likely[] = "0123456789-+.eE \n#[";
+                changed[random_below((unsigned)size)] =
+                    likely[random_below(sizeof likely - 1)];
+            }
+            tm_text meaning = {0};
+            const tm_status status =
+                read_copy(reader_samples[i].read, changed, size, &meaning);
+            assert_true(status == TM_OK || status == TM_ERROR_INPUT);
+            tm_text_free(&meaning);
+        }
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_cuts)};
+    random_start();
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_cuts),
+                                       cmocka_unit_test(test_changed_bytes)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
