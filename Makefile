@@ -113,7 +113,7 @@ $(BUILD)/generated/%.h: $(BUILD)/generate/%
 	$< >$@.new
 	mv $@.new $@
 
-$(BUILD)/generate/powers: lib/base/generate/powers.c
+$(BUILD)/generate/powers: lib/number/generate/powers.c
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $< $(LDFLAGS) $(LDLIBS)
 

@@ -4,7 +4,7 @@
 #include "common/input/mesh_input.h"
 #include "common/app/output_files.h"
 
-#include "../lib/base/file.h"
+#include "../lib/text/file.h"
 #include "../lib/format/mesh_format.h"
 
 #include <dirent.h>

@@ -2,7 +2,7 @@
 /* tetgen-import: TetGen's files as a stream. */
 #include "common/input/mesh_input.h"
 
-#include "../lib/base/input.h"
+#include "../lib/text/input.h"
 #include "../lib/format/tetgen.h"
 
 #include <stdlib.h>

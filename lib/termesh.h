@@ -4,19 +4,23 @@
 #ifndef TERMESH_H
 #define TERMESH_H
 
-/* base: errors, text, numbers, JSON */
+/* base: errors, threads, progress */
 #include "base/error.h"
 #include "base/extern_c.h"
-#include "base/file.h"
-#include "base/input.h"
-#include "base/json.h"
-#include "base/number.h"
 #include "base/parallel.h"
 #include "base/progress.h"
-#include "base/report.h"
-#include "base/text.h"
-#include "base/utf8.h"
 #include "base/version.h"
+
+/* number: numbers from and to text */
+#include "number/number.h"
+
+/* text: growing text, files, JSON and tables */
+#include "text/file.h"
+#include "text/input.h"
+#include "text/json.h"
+#include "text/report.h"
+#include "text/text.h"
+#include "text/utf8.h"
 
 /* geom: predicates and kernels */
 #include "geom/vector.h"

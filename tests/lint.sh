@@ -84,7 +84,7 @@ notices() {
 }
 
 # The floors of lib/, from the ground up: a folder includes from those before it only.
-floors="base geom stream element mesh surface examine format format/vtk optimise tet
+floors="base number text geom stream element mesh surface examine format format/vtk optimise tet
 tet/operation tet/improve tet/lepp octree/forest octree/transition octree/layer octree/repair poly"
 
 # Who has no use for a tm_error gives NULL: none but lib/base/error.c looks into one that a
@@ -134,6 +134,14 @@ arrows() {
     return "$found"
 }
 
+# What a folder can show at a glance.
+sizes() {
+    most=30
+    find lib cmd -name '*.[ch]' -exec dirname {} + | sort | uniq -c |
+        awk -v most="$most" '$1 > most { print $2 ": " $1 " files (" most " at most)"; bad = 1 }
+            END { exit bad }'
+}
+
 need clang-format clang-format
 need clang-tidy clang-tidy
 need cppcheck cppcheck
@@ -147,5 +155,6 @@ step "mandoc" manual
 step "notices" notices
 step "errors may be NULL" errors
 step "floors of lib/" arrows
+step "sizes of folders" sizes
 step "clang-tidy" tidy
 exit "$failed"

@@ -7,8 +7,8 @@
 #include "../base/extern_c.h"
 #include "../element/shape.h"
 #include "../base/error.h"
-#include "../base/json.h"
-#include "../base/text.h"
+#include "../text/json.h"
+#include "../text/text.h"
 #include "../stream/stream.h"
 
 #include <stdbool.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* examination.h as JSON and as text. */
-#include "../base/report.h"
+#include "../text/report.h"
 #include "examination.h"
 
 enum { LABEL_WIDTH = 24 };

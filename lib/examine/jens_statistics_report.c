@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* jens_statistics.h as JSON, as tables and as a file .histo. */
-#include "../base/report.h"
+#include "../text/report.h"
 #include "jens_statistics.h"
 
 static const char *const answer[TM_CERTIFICATES] = {"certified", "not positive",

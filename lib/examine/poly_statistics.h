@@ -6,8 +6,8 @@
 
 #include "../base/extern_c.h"
 #include "../base/error.h"
-#include "../base/json.h"
-#include "../base/text.h"
+#include "../text/json.h"
+#include "../text/text.h"
 #include "../mesh/poly_arrays.h"
 #include "poly_boundary.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* poly_statistics.h as JSON and as tables. */
-#include "../base/report.h"
+#include "../text/report.h"
 #include "poly_statistics.h"
 
 #include <math.h>

@@ -9,8 +9,8 @@
 
 #include "../base/extern_c.h"
 #include "../base/error.h"
-#include "../base/json.h"
-#include "../base/text.h"
+#include "../text/json.h"
+#include "../text/text.h"
 
 #include <stddef.h>
 #include <stdint.h>

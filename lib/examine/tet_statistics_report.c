@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* tet_statistics.h as JSON and as tables. */
-#include "../base/report.h"
+#include "../text/report.h"
 #include "../element/tet_quality.h"
 #include "tet_statistics.h"
 

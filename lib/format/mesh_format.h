@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The formats of meshes that need no header of their own (see also oct.h, tetgen.h, visf.h
- * and vtk/vtk.h). A writer appends the file to *text; `threads` format or compress, and the
- * bytes are the same for any number of them. */
+/* The formats of meshes that need no header of their own (see also oct.h, tetgen.h,
+ * visf.h and vtk/vtk.h). A writer appends the file to *text; `threads` format or
+ * compress, and the bytes are the same for any number of them. */
 #ifndef TM_FORMAT_MESH_FORMAT_H
 #define TM_FORMAT_MESH_FORMAT_H
 
 #include "../base/extern_c.h"
-#include "../base/text.h"
+#include "../text/text.h"
 #include "../stream/stream.h"
 
 #include <stdbool.h>
@@ -99,8 +99,8 @@ tm_status tm_mvm_write(tm_text *text, const tm_stream *stream, unsigned threads,
 
 enum { TM_OPENFOAM_FILES = 7 };
 
-/* points, faces, owner, neighbour, boundary; cellZones and faceZones, which may be lists of
- * none */
+/* points, faces, owner, neighbour, boundary; cellZones and faceZones, which may be lists
+ * of none */
 extern const char *const tm_openfoam_name[TM_OPENFOAM_FILES];
 
 typedef struct tm_openfoam_counts {

@@ -2,7 +2,7 @@
 #include "surface_format.h"
 
 #include "../base/array.h"
-#include "../base/number.h"
+#include "../number/number.h"
 #include "../stream/group_markers.h"
 #include "scan.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scan.h"
 
-#include "../base/number.h"
+#include "../number/number.h"
 #include "../stream/sniff.h"
 
 #include <inttypes.h>

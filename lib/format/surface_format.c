@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "surface_format.h"
 
-#include "../base/input.h"
+#include "../text/input.h"
 #include "../stream/sniff.h"
 #include "scan.h"
 #include "tetgen.h"

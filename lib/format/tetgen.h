@@ -4,15 +4,15 @@
 #define TM_FORMAT_TETGEN_H
 
 #include "../base/extern_c.h"
-#include "../base/text.h"
+#include "../text/text.h"
 #include "../stream/stream.h"
 #include "../surface/polygon_surface.h"
 
 TM_EXTERN_C_BEGIN
 
-/* The .node, .ele, .face and .edge files, and .group, which TetGen does not know: numbered from 0 or 1, with comments anywhere,
- * attributes, markers, CR LF, header fields left out. What such a file holds is what a
- * block of the stream holds. */
+/* The .node, .ele, .face and .edge files, and .group, which TetGen does not know:
+ * numbered from 0 or 1, with comments anywhere, attributes, markers, CR LF, header fields
+ * left out. What such a file holds is what a block of the stream holds. */
 
 /* Reads a file into *block, whose name and kind are set and which is otherwise empty. Of
  * kind TM_NODE, the first row tells *base (it stays as it was where there are no rows);

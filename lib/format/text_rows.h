@@ -4,15 +4,15 @@
 #ifndef TM_FORMAT_TEXT_ROWS_H
 #define TM_FORMAT_TEXT_ROWS_H
 
-#include "../base/number.h"
-#include "../base/text.h"
+#include "../number/number.h"
+#include "../text/text.h"
 #include "../stream/stream.h"
 
 typedef struct tm_text_rows {
     const void *context;
     size_t count;
     /* Most bytes that the rows first … past - 1 need, and what a number writer of
-     * base/number.h stores behind its text. */
+     * number/number.h stores behind its text. */
     size_t (*room)(const void *context, size_t first, size_t past);
     /* Writes a row and returns its end. */
     char *(*put)(const void *context, size_t row, char *to);

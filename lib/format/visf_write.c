@@ -2,7 +2,7 @@
 #include "visf.h"
 
 #include "../base/array.h"
-#include "../base/number.h"
+#include "../number/number.h"
 #include "binary.h"
 #include "../mesh/cell_faces.h"
 #include "../mesh/polygon_edges.h"

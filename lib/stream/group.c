@@ -3,7 +3,7 @@
  * text the name begins, which ends with a NUL; marker is the value. */
 #include "group.h"
 
-#include "../base/utf8.h"
+#include "../text/utf8.h"
 #include "block.h"
 #include "group_names.h"
 #include "row.h"

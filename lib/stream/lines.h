@@ -4,7 +4,7 @@
 #define TM_STREAM_LINES_H
 
 #include "../base/error.h"
-#include "../base/input.h"
+#include "../text/input.h"
 #include "../base/progress.h"
 
 #include <stdbool.h>

@@ -5,7 +5,7 @@
  * is decided before the end of a row. What is otherwise is left to row.c. */
 #include "row.h"
 
-#include "../base/digits.h"
+#include "../number/digits.h"
 
 #ifdef __SSE2__
 #include <emmintrin.h>

@@ -3,7 +3,7 @@
  * one block to another is checked by references.c when all is read. */
 #include "stream.h"
 
-#include "../base/number.h"
+#include "../number/number.h"
 #include "block.h"
 #include "lines.h"
 #include "names.h"

@@ -4,8 +4,8 @@
 #include "row.h"
 
 #include "../base/array.h"
-#include "../base/digits.h"
-#include "../base/number.h"
+#include "../number/digits.h"
+#include "../number/number.h"
 #include "block.h"
 #include "group_names.h"
 

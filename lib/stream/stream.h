@@ -8,7 +8,7 @@
 #include "../base/extern_c.h"
 #include "../base/error.h"
 #include "../base/progress.h"
-#include "../base/text.h"
+#include "../text/text.h"
 
 #include <stdbool.h>
 #include <stddef.h>

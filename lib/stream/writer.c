@@ -3,9 +3,9 @@
  * be, and written in order. */
 #include "stream.h"
 
-#include "../base/digits.h"
-#include "../base/file.h"
-#include "../base/number.h"
+#include "../number/digits.h"
+#include "../text/file.h"
+#include "../number/number.h"
 #include "../base/parallel.h"
 #include "block.h"
 #include "group_names.h"

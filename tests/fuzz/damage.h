@@ -3,7 +3,7 @@
 #ifndef TESTS_FUZZ_DAMAGE_H
 #define TESTS_FUZZ_DAMAGE_H
 
-#include "../../lib/base/text.h"
+#include "../../lib/text/text.h"
 
 #include <stdint.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* lib/base/number.h against the C++ library: std::to_chars says what the digits are,
+/* lib/number/number.h against the C++ library: std::to_chars says what the digits are,
  * std::from_chars what a text means. Exit status 1 and the first difference on stderr.
  * TM_SEED repeats a run, TM_CASES is the number of random values of each kind. */
 #include "../unit/random.h"
@@ -14,7 +14,7 @@
 #include <string>
 
 extern "C" {
-#include "../../lib/base/number.h"
+#include "../../lib/number/number.h"
 }
 
 namespace

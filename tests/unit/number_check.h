@@ -5,7 +5,7 @@
 #ifndef TESTS_UNIT_NUMBER_CHECK_H
 #define TESTS_UNIT_NUMBER_CHECK_H
 
-#include "../../lib/base/number.h"
+#include "../../lib/number/number.h"
 #include "random.h"
 
 #include <math.h>

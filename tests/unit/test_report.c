@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* report.h: a struct as a JSON object and as a table. */
-#include "../../lib/base/report.h"
+#include "../../lib/text/report.h"
 
 #include <limits.h>
 #include <math.h>

@@ -3,7 +3,7 @@
  * file, line and block. */
 #include "../../lib/stream/stream.h"
 
-#include "../../lib/base/file.h"
+#include "../../lib/text/file.h"
 #include "random.h"
 
 #include <setjmp.h>

@@ -3,7 +3,7 @@
 #include "../../lib/base/parallel.h"
 #include "../../lib/element/tet_quality.h"
 #include "../../lib/examine/tet_statistics.h"
-#include "../../lib/base/report.h"
+#include "../../lib/text/report.h"
 #include "random.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 #include "filter.h"
 #include "completion.h"
 
-#include "../../../lib/base/file.h"
+#include "../../../lib/text/file.h"
 #include "kinds.h"
 
 #include <errno.h>

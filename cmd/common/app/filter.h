@@ -17,8 +17,8 @@
 #define CMD_COMMON_FILTER_H
 
 #include "../../../lib/base/error.h"
-#include "../../../lib/base/report.h"
-#include "../../../lib/base/text.h"
+#include "../../../lib/text/report.h"
+#include "../../../lib/text/text.h"
 #include "../../../lib/base/version.h"
 #include "../../../lib/stream/stream.h"
 #include "output_files.h"

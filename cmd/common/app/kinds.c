@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "kinds.h"
 
-#include "../../../lib/base/text.h"
+#include "../../../lib/text/text.h"
 
 #include <stdbool.h>
 #include <stdio.h>

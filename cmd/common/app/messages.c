@@ -3,7 +3,7 @@
  * terminal would obey is shown as \x1b. */
 #include "filter.h"
 
-#include "../../../lib/base/utf8.h"
+#include "../../../lib/text/utf8.h"
 #include "../../../lib/stream/sniff.h"
 
 #include <stdarg.h>

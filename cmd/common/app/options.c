@@ -3,7 +3,7 @@
 #include "filter.h"
 #include "wrong_option.h"
 
-#include "../../../lib/base/number.h"
+#include "../../../lib/number/number.h"
 
 #include <stdlib.h>
 #include <string.h>

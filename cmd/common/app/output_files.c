@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "output_files.h"
 
-#include "../../../lib/base/file.h"
+#include "../../../lib/text/file.h"
 #include "../process/private.h"
 
 #include <errno.h>

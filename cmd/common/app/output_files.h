@@ -10,7 +10,7 @@
 #define CMD_COMMON_OUTPUT_FILES_H
 
 #include "../../../lib/base/error.h"
-#include "../../../lib/base/text.h"
+#include "../../../lib/text/text.h"
 
 #include <stddef.h>
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "surface_input.h"
 
-#include "../../../lib/base/file.h"
-#include "../../../lib/base/input.h"
+#include "../../../lib/text/file.h"
+#include "../../../lib/text/input.h"
 #include "../../../lib/mesh/cell_faces.h"
 #include "../app/kinds.h"
 #include "../../../lib/surface/surface_defects.h"

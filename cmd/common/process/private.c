@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "private.h"
 
-#include "../../../lib/base/file.h"
+#include "../../../lib/text/file.h"
 
 #include <dirent.h>
 #include <errno.h>

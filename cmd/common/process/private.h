@@ -5,7 +5,7 @@
 #define CMD_COMMON_PRIVATE_H
 
 #include "../../../lib/base/error.h"
-#include "../../../lib/base/text.h"
+#include "../../../lib/text/text.h"
 
 #include <stdbool.h>
 #include <sys/types.h>

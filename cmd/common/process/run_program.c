@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run_program.h"
 
-#include "../../../lib/base/file.h"
+#include "../../../lib/text/file.h"
 #include "private.h"
 
 #include <errno.h>

@@ -4,7 +4,7 @@
 #define CMD_COMMON_RUN_PROGRAM_H
 
 #include "../../../lib/base/error.h"
-#include "../../../lib/base/text.h"
+#include "../../../lib/text/text.h"
 
 typedef struct program_end {
     int cannot_start; /* errno, or 0 */

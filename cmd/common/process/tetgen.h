@@ -3,7 +3,7 @@
 #ifndef CMD_COMMON_TETGEN_H
 #define CMD_COMMON_TETGEN_H
 
-#include "../../../lib/base/number.h"
+#include "../../../lib/number/number.h"
 #include "../../../lib/surface/polygon_surface.h"
 #include "../app/filter.h"
 

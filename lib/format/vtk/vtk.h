@@ -31,7 +31,7 @@
 #define TM_FORMAT_VTK_VTK_H
 
 #include "../../base/extern_c.h"
-#include "../../base/text.h"
+#include "../../text/text.h"
 #include "../../stream/stream.h"
 
 #include <stdbool.h>

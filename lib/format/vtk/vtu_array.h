@@ -5,7 +5,7 @@
 #define TM_FORMAT_VTU_ARRAY_H
 
 #include "../../base/error.h"
-#include "../../base/text.h"
+#include "../../text/text.h"
 
 typedef enum tm_vtu_type {
     TM_VTU_FLOAT64,

@@ -6,7 +6,7 @@
 #define TM_IMPROVE_IMPROVE_H
 
 #include "../../base/extern_c.h"
-#include "../../base/json.h"
+#include "../../text/json.h"
 #include "../../base/progress.h"
 #include "../../element/tet_measure.h"
 #include "../mesh.h"

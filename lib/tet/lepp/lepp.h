@@ -10,7 +10,7 @@
 #define TM_LEPP_LEPP_H
 
 #include "../../base/extern_c.h"
-#include "../../base/json.h"
+#include "../../text/json.h"
 #include "../../base/progress.h"
 #include "../../element/tet_measure.h"
 #include "../operation/delaunay.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "../../base/report.h"
+#include "../../text/report.h"
 #include "lepp.h"
 
 #define ROW(key, member)   TM_REPORT_ROW(key, NULL, NULL, tm_lepp_report, member)

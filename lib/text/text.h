@@ -4,7 +4,7 @@
 #ifndef TM_BASE_TEXT_H
 #define TM_BASE_TEXT_H
 
-#include "extern_c.h"
+#include "../base/extern_c.h"
 
 #include <stdbool.h>
 #include <stddef.h>

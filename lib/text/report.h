@@ -12,7 +12,7 @@
 #ifndef TM_BASE_REPORT_H
 #define TM_BASE_REPORT_H
 
-#include "extern_c.h"
+#include "../base/extern_c.h"
 #include "json.h"
 
 #include <stddef.h>

@@ -10,7 +10,7 @@
 #ifndef TM_BASE_JSON_H
 #define TM_BASE_JSON_H
 
-#include "extern_c.h"
+#include "../base/extern_c.h"
 #include "text.h"
 
 #include <stdbool.h>

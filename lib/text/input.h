@@ -4,8 +4,8 @@
 #ifndef TM_BASE_INPUT_H
 #define TM_BASE_INPUT_H
 
-#include "error.h"
-#include "extern_c.h"
+#include "../base/error.h"
+#include "../base/extern_c.h"
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "file.h"
 
-#include "array.h"
+#include "../base/array.h"
 #include "input.h"
 
 #include <errno.h>

@@ -3,8 +3,8 @@
 #ifndef TM_BASE_FILE_H
 #define TM_BASE_FILE_H
 
-#include "extern_c.h"
-#include "error.h"
+#include "../base/extern_c.h"
+#include "../base/error.h"
 #include "text.h"
 
 TM_EXTERN_C_BEGIN

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "text.h"
 
-#include "array.h"
-#include "number.h"
+#include "../base/array.h"
+#include "../number/number.h"
 
 #include <stdarg.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 #ifndef TM_BASE_UTF8_H
 #define TM_BASE_UTF8_H
 
-#include "extern_c.h"
+#include "../base/extern_c.h"
 
 #include <stdbool.h>
 #include <stddef.h>

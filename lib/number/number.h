@@ -3,7 +3,7 @@
 #ifndef TM_BASE_NUMBER_H
 #define TM_BASE_NUMBER_H
 
-#include "extern_c.h"
+#include "../base/extern_c.h"
 
 #include <stdint.h>
 
