@@ -11,8 +11,8 @@ enum { TM_HEADER_ATTRIBUTES = -1, TM_HEADER_MARKERS = -2, TM_HEADER_ZERO = -3 };
 enum { TM_OCTANT_PLAIN = 4 };
 
 /* The header is the count, then `headers` numbers: fixed ones, or how many attributes,
- * or whether there are markers, or 0. A row is its number, `reals` reals, `integers` integers,
- * k and k items where there is a list, the attributes, the marker. */
+ * or whether there are markers, or 0. A row is its number, `reals` reals, `integers`
+ * integers, k and k items where there is a list, the attributes, the marker. */
 typedef struct tm_block_shape {
     const char *suffix;
     int header[3];

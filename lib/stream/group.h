@@ -27,9 +27,9 @@ const char *tm_group_name(const tm_block *group, size_t g);
 const char *tm_group_find(const tm_block *group, tm_group_dimension dimension,
                           int32_t value);
 
-/* The region of row e of .ele, .mix or .cell: the first attribute, of polyhedra the second
- * (the first is how many tetrahedra they were). False where there is none, or no whole
- * number of 32 bits. */
+/* The region of row e of .ele, .mix or .cell: the first attribute, of polyhedra the
+ * second (the first is how many tetrahedra they were). False where there is none, or no
+ * whole number of 32 bits. */
 bool tm_group_region(const tm_block *cells, size_t e, int32_t *region);
 
 /* Makes *group, which is {0} or anything else that holds no memory, a block of that name

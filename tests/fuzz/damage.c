@@ -31,6 +31,9 @@ static const char all_blocks[] = "termesh 1\n# made by hand\n.node\n"
                                  "4 0 0 1\n"
                                  "surface.face\n4 1\n1 1 3 2 5\n2 1 2 4 5\n3 2 3 4 6\n"
                                  "4 1 4 3 0\n"
+                                 ".group\n3 0\n1 2 5 inlet port\n2 3 1 steel\n"
+                                 "3 1 4 gr\xc3\xb6\xc3\x9f"
+                                 "er\n"
                                  "# a comment\n.unknown\nsome text\n\n# and more\n.end\n";
 
 /* What numbers are replaced by. */
@@ -244,6 +247,24 @@ static void damage(tm_text *text)
     }
 }
 
+/* All blocks, or those of mixed elements, or of tetrahedra: else no filter that takes
+ * these would see them. */
+static void make_blocks(tm_text *text)
+{
+    static const char *const name[] = {"\n.cell\n", "\n.facet\n", "\n.root\n",
+                                       "\n.octant\n", "\n.mix\n"};
+    const size_t gone[] = {0, 1, sizeof name / sizeof *name};
+    tm_text_string(text, all_blocks);
+    for (size_t i = 0, count = gone[random_below(3)]; i < count; i++) {
+        const char *from = strstr(text->byte, name[i]) + 1;
+        const char *to = strstr(from + 1, "\n.") ? strstr(from + 1, "\n.") + 1 : from;
+        const char *part = strstr(from, "\nsurface.");
+        if (part && part + 1 < to)
+            to = part + 1;
+        replace(text, (size_t)(from - text->byte), (size_t)(to - text->byte), "", 0);
+    }
+}
+
 void make_damaged(tm_text *text, uint64_t seed, uint64_t number)
 {
     enum { DAMAGES = 4 };
@@ -255,7 +276,7 @@ void make_damaged(tm_text *text, uint64_t seed, uint64_t number)
         make_cells(text);
         break;
     case 1:
-        tm_text_string(text, all_blocks);
+        make_blocks(text);
         break;
     default:
         make_lattice(text);

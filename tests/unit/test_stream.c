@@ -37,6 +37,9 @@ static const char all[] = "termesh 1\n"
                           "1 1 -1 3 1 2 3 0\n2 1 -1 3 1 2 4 0\n"
                           "3 1 -1 3 2 3 4 1\n4 1 -1 3 1 3 4 1\n"
                           ".cell\n1 2\n1 4 1 2 3 4 1 2\n"
+                          ".group\n4 0\n1 2 5 inlet port\n2 3 7 5 steel #1\n"
+                          "3 0 -2147483648 gr\xc3\xb6\xc3\x9f"
+                          "er\n4 1 5 inlet port\n"
                           "surface.node\n1 3 0 0\n1 0.25 0.25 0.25\n"
                           "surface.odd\nwhatever 1 2 3\n# kept\n.5 is a row, too\n"
                           ".end\n";
@@ -82,7 +85,7 @@ static void test_round_trip(void **state)
     if (read_text(&stream, all, sizeof all - 1, &error) != TM_OK)
         fail_msg("%zu: %s: %s", error.line, error.block, error.what);
     assert_int_equal(stream.base, 1);
-    assert_int_equal(stream.blocks, 11);
+    assert_int_equal(stream.blocks, 12);
     const tm_block *node = tm_stream_find(&stream, ".node");
     assert_int_equal(node->count, 5);
     assert_int_equal(node->attributes, 2);
