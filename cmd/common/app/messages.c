@@ -10,38 +10,37 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void append_shown(tm_text *line, const char *string)
+enum { MESSAGE = 4096, SHOWN = sizeof "\\x1b" - 1 };
+
+/* The string as it is shown, at most SHOWN times as long; returns its end. */
+static char *put_shown(char *to, const char *string)
 {
     const char *end = string + strlen(string);
     for (const char *at = string; at < end;) {
-        const size_t size = tm_utf8_size(at, end);
-        if (size > 0 && !tm_utf8_is_control(at, size))
-            tm_text_append(line, at, size);
-        else
-            for (size_t i = 0; i == 0 || i < size; i++)
-                tm_text_format(line, "\\x%02x", (unsigned char)at[i]);
-        at += size > 0 ? size : 1;
+        size_t size = tm_utf8_size(at, end);
+        if (size > 0 && !tm_utf8_is_control(at, size)) {
+            memcpy(to, at, size);
+            to += size;
+            at += size;
+            continue;
+        }
+        for (size = size > 0 ? size : 1; size > 0; size--, to += SHOWN)
+            snprintf(to, SHOWN + 1, "\\x%02x", (unsigned char)*at++);
     }
+    return to;
 }
 
-/* "name: …" and a line feed, at once. */
+/* "name: …" and a line feed, at once; there may be no memory left. */
 static void print_message(const filter *f, const char *format, va_list arguments)
 {
-    char *message = NULL;
-    tm_text line = {0};
-    tm_text_format(&line, "%s: ", f->name);
-    if (vasprintf(&message, format, arguments) < 0)
-        message = NULL;
-    append_shown(&line, message ? message : format);
-    tm_text_append(&line, "\n", 1);
+    char message[MESSAGE], line[SHOWN * MESSAGE + 1];
+    int size = snprintf(message, sizeof message, "%s: ", f->name);
+    vsnprintf(message + size, sizeof message - (size_t)size, format, arguments);
+    char *end = put_shown(line, message);
+    *end++ = '\n';
     progress_hold(f->progress);
-    if (line.failed)
-        fputs("out of memory\n", stderr);
-    else
-        fwrite(line.byte, 1, line.size, stderr);
+    fwrite(line, 1, (size_t)(end - line), stderr);
     progress_release(f->progress);
-    tm_text_free(&line);
-    free(message);
 }
 
 void filter_print(const filter *f, const char *format, ...)
