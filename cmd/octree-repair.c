@@ -331,8 +331,8 @@ static bool run(program *p, tm_stream *stream)
     if (tm_repair_to_stream(&state, stream, surface, &notes, &error) != TM_OK)
         filter_fail(&p->f, &error);
     if (notes.dropped[0])
-        filter_note(&p->f, "dropped, as they refer to what is no more: %s",
-                    notes.dropped);
+        filter_leave_out(&p->f, "what refers to elements that are no more (%s)",
+                         notes.dropped);
     write_json(&p->f, &before, &after, &report,
                (double)(clock() - start) / CLOCKS_PER_SEC);
     filter_write(&p->f, stream, "%zu elements of %zu, bad %zu of %zu", after.elements,

@@ -59,6 +59,7 @@ int main(int argc, char **argv)
         if (c == OPTION_PLOT)
             plot = optarg;
     filter_operands(&f);
+    filter_other_file(&f, "--plot", plot);
 
     tm_stream stream;
     tm_poly_statistics statistics;

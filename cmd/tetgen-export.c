@@ -28,6 +28,8 @@ static const char *read_operands(void)
     if (optind >= f.argc)
         filter_usage_error(&f, "BASE is missing, the name of the files without suffix");
     const char *base = f.argv[optind++];
+    if (!*base)
+        filter_usage_error(&f, "BASE is empty");
     filter_operands(&f);
     return base;
 }

@@ -72,6 +72,22 @@ static void add_file(operands *named, const char *path)
                                                 joined(path, tm_unpacked_name(path), "")};
 }
 
+/* A file of that name that is none of TetGen's, and no .node file beside it. */
+static void refuse_other_file(const char *base)
+{
+    char *node = joined(base, strlen(base), suffixes[0]);
+    const bool is_base = access(node, F_OK) == 0 || access(base, R_OK) != 0;
+    free(node);
+    if (is_base)
+        return;
+    tm_text bytes = {0};
+    filter_read_file(&f, base, &bytes);
+    tm_fail_at(
+        &error, TM_ERROR_INPUT, base, 0, NULL,
+        "the name of a file of TetGen ends in .node, .ele, .face, .edge or .group");
+    filter_fail_file(&f, &error, &bytes, f.name);
+}
+
 /* BASE stands for those of the four files that are there, or are there with .gz. */
 static void expand_base(const char *base, operands *named)
 {
@@ -105,6 +121,7 @@ static void read_operands(operands *named)
     const bool is_base = given == 1 && suffix_of(unpacked) == SUFFIXES;
     free(unpacked);
     if (is_base) {
+        refuse_other_file(f.input);
         expand_base(f.input, named);
         return;
     }

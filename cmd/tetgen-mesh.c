@@ -148,6 +148,9 @@ static void check_surface(const tm_polygon_surface *surface,
     if (defects->flat)
         fail_input("all points are in one plane (tetrahedra need a volume)");
     if (surface->facets == 0) {
+        if (format != TM_FORMAT_NODE && format != TM_FORMAT_STREAM)
+            filter_note(&f, "%s: there are no faces: it is taken for points",
+                        filter_input_name(&f));
         if (*r->quality || *r->volume || r->keep_surface)
             filter_usage_error(&f, "-q, -a and -Y need a surface, but the input has "
                                    "points alone");
@@ -200,11 +203,13 @@ static tm_status keep_parts(tm_stream *from, tm_stream *mesh, tm_error *error)
 {
     for (size_t b = 0; b < from->blocks; b++) {
         tm_block *old = &from->block[b];
-        if (old->kind == TM_GROUP && old->name[0] == '.')
+        if (old->kind == TM_GROUP && old->name[0] == '.') {
+            if (tm_stream_find(from, "surface.group"))
+                filter_leave_out(&f, "%zu names of another mesh (.group)", old->count);
             continue; /* the surface has its names */
+        }
         if (old->name[0] == '.') {
-            filter_note(&f, "%s of the input is left out: it belongs to another mesh",
-                        old->name);
+            filter_leave_out(&f, "%zu rows of another mesh (%s)", old->count, old->name);
             continue;
         }
         tm_block *moved = tm_stream_add(mesh, old->name);
@@ -240,6 +245,9 @@ int main(int argc, char **argv)
         filter_note(&f, "faces in the place of an earlier one, which are dropped: %zu",
                     dropped);
     check_surface(&surface, &defects, format, &request);
+    if (surface.regions > 0 && !strchr(more.byte ? more.byte : "", 'A'))
+        filter_leave_out(&f, "%zu regions, which --switches A would keep",
+                         surface.regions);
     tm_stream_init(&mesh);
     mesh.base = surface.base;
     if (tetgen_run(&f, &request, &surface, &mesh, &error) != TM_OK)

@@ -311,7 +311,9 @@ static void append_names(const writer *w)
         const int dimension = (int)tm_group_dimension_of(group, g);
         const int64_t number = (int64_t)tm_group_value(group, g) +
                                (dimension == TM_GROUP_REGIONS ? TM_GETFEM_ELEMENTS : 0);
-        if (dimension == TM_GROUP_REGIONS || dimension == TM_GROUP_FACES)
+        const int32_t least = dimension == TM_GROUP_REGIONS ? 0 : 1;
+        if ((dimension == TM_GROUP_REGIONS || dimension == TM_GROUP_FACES) &&
+            tm_group_value(group, g) >= least)
             tm_text_format(w->text, "%% REGION %lld: %s\n", (long long)number,
                            tm_group_name(group, g));
     }

@@ -126,22 +126,38 @@ static tm_status read_face(tm_scan *scan, tm_polygon_surface *surface, namings *
     return status;
 }
 
+/* The rest of the line, which may go on in the next one, with any #. */
+static void take_name(tm_scan *scan, tm_text *name)
+{
+    for (;;) {
+        const char *begin = scan->at, *end = begin;
+        while (end < scan->end && *end != '\n' && *end != '\r')
+            end++;
+        const bool goes_on = end > begin && end[-1] == '\\' && end < scan->end;
+        tm_text_append(name, begin, (size_t)(end - begin) - goes_on);
+        scan->at = end;
+        if (!goes_on)
+            return;
+        tm_scan_end_line(scan);
+    }
+}
+
 /* o NAME, g NAME … or usemtl NAME: of the faces that follow. */
 static tm_status read_name(tm_scan *scan, namings *n, int which, tm_error *error)
 {
-    const char *name = scan->at, *end = name;
-    while (end < scan->end && *end != '\n' && *end != '\r' && *end != '#')
-        end++;
-    tm_text clean = {0};
+    tm_text name = {0}, clean = {0};
     int32_t number = 0;
     tm_status status = TM_OK;
-    tm_group_clean(&clean, name, (size_t)(end - name));
-    if (clean.failed)
+    take_name(scan, &name);
+    if (name.byte)
+        tm_group_clean(&clean, name.byte, name.size);
+    if (name.failed || clean.failed)
         status = tm_fail_memory(error);
     else if (clean.size > 0)
         status =
             tm_group_marker(&n->number[which], clean.byte, clean.size, &number, error);
     n->now.name[which] = (uint32_t)number;
+    tm_text_free(&name);
     tm_text_free(&clean);
     return status;
 }

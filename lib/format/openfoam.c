@@ -180,12 +180,18 @@ static void end_list(writer *w, int i)
 /* Names ---------------------------------------------------------------------------- */
 
 /* Appends what OpenFOAM takes for a word: without blanks and what means something to its
- * dictionaries. */
+ * dictionaries, not like a number at the front, of less than 1024 bytes. */
 static void append_word(tm_text *word, const char *name)
 {
-    for (; *name; name++)
+    enum { WORD_MAX = 1000, OF_UTF8 = 0xC0, TAIL = 0x80 };
+    if (strchr("0123456789+-.", *name))
+        tm_text_append(word, "_", 1);
+    for (; *name; name++) {
+        if (word->size >= WORD_MAX && ((unsigned char)*name & OF_UTF8) != TAIL)
+            return;
         tm_text_append(word, strchr(" \t\"'/\\;{}()[]<>#$!*?|&,=:", *name) ? "_" : name,
                        1);
+    }
 }
 
 static bool is_taken(const name_list *names, const char *name)

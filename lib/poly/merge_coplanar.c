@@ -10,13 +10,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CORNERS = 3 };
+enum { CORNERS = 3, LEAST_FACETS = 4 };
 
 typedef struct {
     const tm_tet_mesh *mesh;
     const tm_coplanar *plane;
     const tm_block *facet; /* triangles */
-    tm_edge_map edges;     /* 4 facet + corner, of the facets of one pair of cells */
+    size_t cells;
+    unsigned char *facets_of; /* [cells]: polygons so far, LEAST_FACETS at most */
+    bool *stays;              /* [cells]: merged, it would have too few of them */
+    tm_edge_map edges;        /* 4 facet + corner, of the facets of one pair of cells */
     uint32_t (*beyond)[CORNERS]; /* the facet at edge i, i+1 of each, or TM_NONE */
     uint32_t *polygon;           /* of each facet, or TM_NONE */
     uint32_t *node_polygon;      /* [nodes]: the last one that has it */
@@ -39,6 +42,12 @@ static bool is_alike(const tm_block *facet, uint32_t f, uint32_t g)
     return memcmp(facet->integer + 2 * (size_t)f, facet->integer + 2 * (size_t)g,
                   2 * sizeof *facet->integer) == 0 &&
            (!facet->markers || facet->marker[f] == facet->marker[g]);
+}
+
+static bool is_of_staying(const merger *m, uint32_t f)
+{
+    const uint32_t *side = m->facet->integer + 2 * (size_t)f;
+    return m->stays[side[0]] || (side[1] != TM_NONE && m->stays[side[1]]);
 }
 
 static bool has_marked_edge(const merger *m, uint32_t a, uint32_t b)
@@ -64,7 +73,8 @@ static bool find_neighbours(merger *m, uint32_t from, uint32_t to)
             uint32_t *other = tm_edge_map_get(&m->edges, a, b);
             if (!other) {
                 tm_edge_map_put(&m->edges, a, b, 4 * f + i);
-            } else if (is_alike(m->facet, f, *other / 4) && !has_marked_edge(m, a, b)) {
+            } else if (is_alike(m->facet, f, *other / 4) && !has_marked_edge(m, a, b) &&
+                       !is_of_staying(m, f)) {
                 m->beyond[f][i] = *other / 4;
                 m->beyond[*other / 4][*other % 4] = f;
             }
@@ -215,6 +225,32 @@ static bool find_polygons(merger *m, size_t *polygons)
     return true;
 }
 
+static void count_facet(merger *m, uint32_t cell)
+{
+    if (cell != TM_NONE && m->facets_of[cell] < LEAST_FACETS)
+        m->facets_of[cell]++;
+}
+
+/* Whether all cells keep enough polygons; those that do not are to stay as they are. */
+static bool find_flat_cells(merger *m, size_t polygons)
+{
+    bool found = false;
+    size_t seen = 0;
+    memset(m->facets_of, 0, m->cells);
+    for (size_t f = 0; f < m->facet->count && seen < polygons; f++) {
+        if (m->polygon[f] < seen)
+            continue; /* polygons are numbered as their first facets come */
+        seen++;
+        count_facet(m, m->facet->integer[2 * f]);
+        count_facet(m, m->facet->integer[2 * f + 1]);
+    }
+    for (size_t c = 0; c < m->cells; c++) {
+        found |= m->facets_of[c] < LEAST_FACETS && !m->stays[c];
+        m->stays[c] |= m->facets_of[c] < LEAST_FACETS;
+    }
+    return found;
+}
+
 /* A facet on the border of each polygon. */
 static uint32_t *find_borders(const merger *m, size_t polygons)
 {
@@ -233,8 +269,14 @@ static tm_status merge(merger *m, tm_block *merged, tm_error *error)
     m->beyond = tm_new(facets, sizeof *m->beyond);
     m->polygon = tm_new(facets, sizeof *m->polygon);
     m->node_polygon = tm_new(m->mesh->nodes, sizeof *m->node_polygon);
-    if (!m->beyond || !m->polygon || !m->node_polygon || !find_polygons(m, &polygons))
+    m->facets_of = tm_new(m->cells, 1);
+    m->stays = calloc(m->cells + 1, sizeof *m->stays);
+    if (!m->beyond || !m->polygon || !m->node_polygon || !m->facets_of || !m->stays)
         return tm_fail_memory(error);
+    do {
+        if (!find_polygons(m, &polygons))
+            return tm_fail_memory(error);
+    } while (find_flat_cells(m, polygons));
     uint32_t *first = find_borders(m, polygons);
     tm_status status = first ? TM_OK : tm_fail_memory(error);
     if (status == TM_OK)
@@ -249,7 +291,7 @@ tm_status tm_merge_coplanar(const tm_tet_mesh *mesh, const tm_coplanar *plane,
                             tm_block *facet, tm_block *cell, size_t *joined,
                             tm_error *error)
 {
-    merger m = {.mesh = mesh, .plane = plane, .facet = facet};
+    merger m = {.mesh = mesh, .plane = plane, .facet = facet, .cells = cell->count};
     tm_block merged = *facet, cells = *cell;
     merged.integer = merged.item = NULL;
     merged.start = NULL;
@@ -259,6 +301,8 @@ tm_status tm_merge_coplanar(const tm_tet_mesh *mesh, const tm_coplanar *plane,
     free(m.beyond);
     free(m.polygon);
     free(m.node_polygon);
+    free(m.facets_of);
+    free(m.stays);
     free(m.queue);
     *joined = facet->count - merged.count;
     /* The new facets take the place of the old ones; the cells keep their attributes. */

@@ -113,8 +113,10 @@ static void append_latin1(tm_text *name, unsigned char byte)
     enum { LEAD = 0xC0, TAIL = 0x80, TAIL_BITS = 6, TAIL_MASK = 0x3F };
     const char utf8[] = {(char)(LEAD | byte >> TAIL_BITS),
                          (char)(TAIL | (byte & TAIL_MASK))};
-    const bool is_control = tm_utf8_is_control(utf8, sizeof utf8);
-    tm_text_append(name, is_control ? "_" : utf8, is_control ? 1 : sizeof utf8);
+    if (tm_utf8_is_control(utf8, sizeof utf8))
+        tm_text_format(name, "\\x%02x", byte);
+    else
+        tm_text_append(name, utf8, sizeof utf8);
 }
 
 static bool is_blank(char c)
@@ -134,7 +136,7 @@ void tm_group_clean(tm_text *name, const char *bytes, size_t size)
         if (k == 0)
             append_latin1(name, (unsigned char)*bytes);
         else if (tm_utf8_is_control(bytes, k))
-            tm_text_append(name, "_", 1);
+            tm_text_format(name, "\\x%02x", (unsigned char)bytes[k - 1]);
         else
             tm_text_append(name, bytes, k);
         bytes += k ? k : 1;

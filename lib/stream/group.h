@@ -58,7 +58,7 @@ tm_status tm_group_check(const tm_block *group, unsigned base, const char *file,
                          tm_error *error);
 
 /* Appends to an empty text what any bytes are as a name: UTF-8 (bytes that are none are
- * taken for Latin-1) with '_' for control characters and without blanks at the ends.
+ * taken for Latin-1) with control characters as \x1b and without blanks at the ends.
  * Empty where nothing is left. */
 void tm_group_clean(tm_text *name, const char *bytes, size_t size);
 

@@ -119,6 +119,69 @@ areas() {
     patches window | diff - <(printf '%s\n' 'inlet_port 1' 'outlet 1' 'wall 11.25' 'window 0.75')
 }
 
+# A cube whose top is two triangles, of two groups: cube NAME NAME [CORNER].
+cube() {
+    printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv %s\nv 0 1 1\n' "${3:-1 1 1}"
+    printf 'g %s\nf 5 6 7\ng %s\nf 5 7 8\n' "$1" "$2"
+    printf 'f %s\n' '1 4 3 2' '1 2 6 5' '2 3 7 6' '3 4 8 7' '4 1 5 8'
+}
+
+@test "a group that ends across the grid has its area, facet by facet" {
+    [ -x "$TM_BUILD/bin/octree-mesh" ] || skip "there is no p4est"
+    for level in 1 2 3 4; do
+        rm -rf mesh
+        cube half rest | octree-mesh -q -a $level | openfoam-export mesh -
+        patches mesh | diff - <(printf '%s\n' 'half 0.5' 'rest 5.5')
+    done
+}
+
+@test "names stay where octree-repair splits octants" {
+    [ -x "$TM_BUILD/bin/octree-mesh" ] || skip "there is no p4est"
+    cube half rest '1.5 1.3 1.1' | octree-mesh -q -a 2 >mesh.tm
+    for options in '--method refine -t 0.3 -i 1' '-t 0.3'; do
+        # shellcheck disable=SC2086 # words
+        octree-repair -q --strict $options mesh.tm >repaired.tm || [ $? -eq 1 ]
+        run -0 groups repaired.tm
+        [ "$output" = "$(printf '%s\n' '1 2 1 half' '2 2 2 rest')" ]
+    done
+}
+
+@test "a name that OpenFOAM takes for a number, or for too long, is made a word" {
+    command -v tetgen >/dev/null || skip "there is no tetgen"
+    for name in 1in 2 3e5 .5 -1 +3 - .. 0x10; do
+        rm -rf mesh
+        cube "$name" rest | tetgen-mesh | openfoam-export --strict mesh -
+        grep -qx "    _[^ ]*" mesh/boundary
+    done
+    rm -rf mesh
+    cube "$(printf '%1100s' '' | tr ' ' x)" "$(printf '%1101s' '' | tr ' ' x)" |
+        tetgen-mesh | openfoam-export mesh -
+    [ "$(grep -o 'x\{900,\}[_0-9]*' mesh/boundary | sort -u | wc -l)" -eq 2 ]
+    run -1 grep '.\{1030\}' mesh/boundary
+}
+
+@test "regions below 0 are regions; what a mesher has no place for it says, or refuses" {
+    printf '%s\n' 'termesh 1' .node '4 3 0 0' '1 0 0 0' '2 1 0 0' '3 0 1 0' '4 0 0 1' \
+        .ele '1 4 1' '1 1 2 3 4 -7' .group '1 0' '1 3 -7 steel' .end >below.tm
+    run -0 --separate-stderr openfoam-export --strict mesh below.tm
+    [ -z "$stderr" ]
+    grep -qx '    steel' mesh/cellZones
+    run -3 --separate-stderr getfem-export --strict below.tm
+    [[ "$stderr" == *'1 regions of cells below 0'* ]]
+    run -0 getfem-export -q below.tm
+    [[ "$output" != *REGION* ]]
+    printf '%s\n' '4 3 1 1' '1 0 0 0 1.5 8' '2 1 0 0 1.5 8' '3 0 1 0 1.5 8' '4 0 0 1 1.5 8' \
+        '4 1' '3 1 3 2 1' '3 1 2 4 2' '3 2 3 4 3' '3 1 4 3 4' 0 1 '1 .1 .1 .1 7 -1' >all.smesh
+    command -v tetgen >/dev/null || skip "there is no tetgen"
+    run -3 --separate-stderr tetgen-mesh --strict all.smesh
+    [[ "$stderr" == *'1 regions, which --switches A would keep'* ]]
+    run -0 tetgen-mesh --quiet --strict --switches A all.smesh
+    [ -x "$TM_BUILD/bin/octree-mesh" ] || skip "there is no p4est"
+    run -3 octree-mesh --strict -a 2 all.smesh
+    run -0 --separate-stderr octree-mesh -a 2 all.smesh
+    [[ "$stderr" == *'1 region, '*'1 attributes of'*'4 markers of'* ]]
+}
+
 @test "groups of OBJ: o, g and usemtl, those that tell faces apart" {
     command -v tetgen >/dev/null || skip "there is no tetgen"
     for words in 'g {}' 'o {}' 'usemtl {}' 'o part|g {}|usemtl steel' 'usemtl steel|o {}'; do
@@ -157,9 +220,9 @@ areas() {
         s/solid wall/solid größe; {x} \"\$y\"/" channel.stl >odd.stl
     tetgen-mesh odd.stl >mesh.tm
     run -0 groups mesh.tm
-    [ "$output" = "$(printf '%s\n' '1 2 1 a_b' '2 2 2 grün' '3 2 3 größe; {x} "$y"')" ]
+    [ "$output" = "$(printf '%s\n' '1 2 1 a\x01b' '2 2 2 grün' '3 2 3 größe; {x} "$y"')" ]
     rm -rf mesh && openfoam-export mesh mesh.tm
-    patches mesh | diff - <(printf '%s\n' 'a_b 1' 'grün 1' 'größe___x____y_ 12')
+    patches mesh | diff - <(printf '%s\n' 'a_x01b 1' 'grün 1' 'größe___x____y_ 12')
     sed 's/solid outlet/solid inlet_port/' channel.stl | tetgen-mesh >mesh.tm
     rm -rf mesh && openfoam-export mesh mesh.tm
     patches mesh | diff - <(printf '%s\n' 'inlet_port 1' 'inlet_port_2 1' 'wall 12')

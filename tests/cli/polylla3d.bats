@@ -339,3 +339,15 @@ END
 --nonsense
 END
 }
+
+@test "--merge-coplanar leaves four facets to each polyhedron, and a stream that is read" {
+    awk 'BEGIN { srand(5); print 1000, 3; for (i = 1; i <= 1000; i++) print i, rand(), rand(), rand() }' \
+        >"$out/random.node"
+    tetgen-mesh "$out/random.node" >"$out/random.tm"
+    for degrees in '' =5 =10 =30; do
+        polylla3d -q "--merge-coplanar$degrees" "$out/random.tm" >"$out/merged.tm"
+        vtu-export -q "$out/merged.tm" >"$out/merged.vtu"
+    done
+    printf "termesh 1\n.node\n4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 1 1 0\n.ele\n1 4 0\n1 1 2 3 4\n.end\n" |
+        polylla3d -q --merge-coplanar | vtu-export >"$out/flat.vtu"
+}

@@ -32,7 +32,7 @@ static void test_numbers_of_text(void **state)
             if (end == begin)
                 continue;
             memcpy(claimed, bytes, begin);
-            strcpy(claimed + begin, claim);
+            memcpy(claimed + begin, claim, strlen(claim));
             memcpy(claimed + begin + strlen(claim), bytes + end, size - end);
             check(reader_samples[i].read, reader_samples[i].name, claimed,
                   begin + strlen(claim) + size - end);

@@ -331,8 +331,9 @@ int main(void)
         cmocka_unit_test(test_m3d),
         cmocka_unit_test(test_oct),
     };
-    if (getenv("TM_CASES"))
-        changed_files = atoi(getenv("TM_CASES"));
+    const char *cases = getenv("TM_CASES");
+    if (cases)
+        changed_files = atoi(cases);
     make_samples(samples);
     random_start();
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -29,8 +29,8 @@ static void test_clean(void **state)
     CLEANED("", "");
     CLEANED(" \t\r\n", "");
     CLEANED(" inlet port\t\r", "inlet port");
-    CLEANED("a\tb\033[2Jc\177", "a_b_[2Jc_");
-    CLEANED("a\0b", "a_b");
+    CLEANED("a\tb\033[2Jc\177", "a\\x09b\\x1b[2Jc\\x7f");
+    CLEANED("a\0b", "a\\x00b");
     CLEANED("gr\xf6\xdf"
             "er",
             "gr\xc3\xb6\xc3\x9f"
@@ -39,10 +39,10 @@ static void test_clean(void **state)
             "er",
             "gr\xc3\xb6\xc3\x9f"
             "er");
-    CLEANED("\xc2\x85\x85", "__");           /* next line, in UTF-8 and in Latin-1 */
+    CLEANED("\xc2\x85\x85", "\\x85\\x85");           /* next line, in UTF-8 and in Latin-1 */
     CLEANED("\xc0\xaf", "\xc3\x80\xc2\xaf"); /* overlong: no UTF-8 */
-    CLEANED("\xed\xa0\x80", "\xc3\xad\xc2\xa0_");
-    CLEANED("\xf0\x9f\x98\x80\xf0\x9f", "\xf0\x9f\x98\x80\xc3\xb0_");
+    CLEANED("\xed\xa0\x80", "\xc3\xad\xc2\xa0\\x80");
+    CLEANED("\xf0\x9f\x98\x80\xf0\x9f", "\xf0\x9f\x98\x80\xc3\xb0\\x9f");
 }
 
 /* What is cleaned is a name: UTF-8, no control characters, no blanks at its ends; and
@@ -189,7 +189,9 @@ static void test_obj(void **state)
     assert_groups(POINTS "o x\nusemtl m\n" F "usemtl n\n" F, "12", "1 m;2 n;");
     assert_groups(POINTS "o x\nusemtl m\n" F "o y\n" F "usemtl n\n" F, "123",
                   "1 x/m;2 y/m;3 y/n;");
-    assert_groups(POINTS "g a # comment\r\n" F "g \xfc\n" F, "12", "1 a;2 \xc3\xbc;");
+    assert_groups(POINTS "g a #1\r\n" F "g \xfc\n" F, "12", "1 a #1;2 \xc3\xbc;");
+    assert_groups(POINTS "g M#25\n" F "g M#26\n" F, "12", "1 M#25;2 M#26;");
+    assert_groups(POINTS "g ha\\\nlf\n" F, "1", "1 half;");
     assert_groups(POINTS "g empty\ng a\n" F, "1", "1 a;");
 }
 

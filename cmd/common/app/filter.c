@@ -134,6 +134,11 @@ static int open_output(filter *f)
     require_report(f);
     if (f->output && output_files_open(f->files, f->output, &fd, &error) != TM_OK)
         filter_fail(f, &error);
+    if (f->binary && f->output && isatty(fd))
+        filter_usage_error(f,
+                           "-o: the output is binary and '%s' is a terminal (-o - "
+                           "forces it)",
+                           f->output);
     if (isatty(fd))
         progress_end(f->progress); /* what is written would be in one line with it */
     return fd;

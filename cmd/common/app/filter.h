@@ -113,6 +113,10 @@ int filter_option(filter *f);
  * input is read; if that is a terminal: usage, exit 2. So is binary output to one. */
 void filter_operands(filter *f);
 
+/* A usage error where a file that an option names is that of -o or --json, too. For
+ * --json filter_operands() does so. */
+void filter_other_file(const filter *f, const char *option, const char *file);
+
 /* Option arguments as numbers in lo..hi, else a usage error that names the option. */
 double filter_number(const filter *f, const char *option, const char *text, double lo,
                      double hi);

@@ -57,15 +57,16 @@ static const char *const words[] = {
 };
 enum { KINDS = sizeof words / sizeof words[0] };
 
-/* The kind that there is, and those above it of which there is an empty block: an empty
- * mesh is of any of these kinds. */
+/* The kind that there is. A mesh without any cell, but with the block for them, is of
+ * theirs. */
 static unsigned kinds_of(const tm_stream *stream)
 {
     const tm_content content = tm_content_of(stream);
     unsigned kinds = 1u << content;
-    for (unsigned above = content + 1u; above <= TM_CONTENT_POLYHEDRA; above++)
+    for (unsigned above = content + 1u;
+         content < TM_CONTENT_TETRAHEDRA && above <= TM_CONTENT_POLYHEDRA; above++)
         if (tm_content_block(stream, (tm_content)above))
-            kinds |= 1u << above;
+            kinds = 1u << above;
     if (tm_stream_find(stream, "surface.node"))
         kinds |= PART;
     return kinds;

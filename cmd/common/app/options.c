@@ -235,6 +235,16 @@ _Noreturn static void fail_operands(const filter *f)
                        why);
 }
 
+void filter_other_file(const filter *f, const char *option, const char *file)
+{
+    const bool is_output = file && f->output && strcmp(file, f->output) == 0;
+    const bool is_report = file && f->json && f->json != file &&
+                           strcmp(file, f->json) == 0 && strcmp(file, "-") != 0;
+    if (is_output || is_report)
+        filter_usage_error(f, "%s and %s are the same file, '%s'", option,
+                           is_output ? "-o" : "--json", file);
+}
+
 void filter_operands(filter *f)
 {
     if (optind < f->argc)
@@ -247,6 +257,7 @@ void filter_operands(filter *f)
         filter_usage(f, stderr);
         exit(EXIT_USAGE);
     }
+    filter_other_file(f, "--json", f->json);
     if (f->binary && !f->output && !f->forced && isatty(STDOUT_FILENO))
         filter_usage_error(f, "the output is binary and would go to a terminal (-o FILE "
                               "or a pipe would be right; -o - forces it)");

@@ -27,15 +27,21 @@ static void free_file(output_file *file)
     free(file->temporary);
 }
 
-/* A file that is open already, as /dev/stdout is: its link leads to the name under which
- * it was opened, not to the file. */
-static bool is_descriptor(const char *path)
+/* The number of a file that is open already, as /dev/stdout is: its link leads to the
+ * name under which it was opened, not to the file. -1 for others. */
+static int descriptor_of(const char *path)
 {
-    static const char *const folder[] = {"/proc/", "/dev/fd/"};
-    for (size_t i = 0; i < sizeof folder / sizeof *folder; i++)
-        if (strncmp(path, folder[i], strlen(folder[i])) == 0)
-            return true;
-    return false;
+    static const char *const folder[] = {"/proc/self/fd/", "/dev/fd/"};
+    for (size_t i = 0; i < sizeof folder / sizeof *folder; i++) {
+        const char *digits = path + strlen(folder[i]);
+        char *end;
+        if (strncmp(path, folder[i], strlen(folder[i])) != 0 || *digits < '0')
+            continue;
+        const long fd = strtol(digits, &end, 10);
+        if (*end == '\0' && fd <= INT_MAX)
+            return (int)fd;
+    }
+    return -1;
 }
 
 /* The file that a name leads to through symbolic links, which need not be there; NULL
@@ -47,8 +53,9 @@ static char *follow_links(const char *name)
     char target[PATH_MAX];
     tm_text_string(&path, name);
     for (int links = 0; !path.failed && links <= LINKS_MAX; links++) {
-        const ssize_t size =
-            is_descriptor(path.byte) ? -1 : readlink(path.byte, target, sizeof target);
+        const ssize_t size = descriptor_of(path.byte) >= 0
+                                 ? -1
+                                 : readlink(path.byte, target, sizeof target);
         if (size < 0)
             return path.byte;
         const char *slash = strrchr(path.byte, '/');
@@ -100,9 +107,11 @@ static int open_file(output_file *file)
     file->target = follow_links(file->name);
     if (!file->target)
         return -1;
-    const bool directly = is_descriptor(file->target);
-    const int fd = directly ? -1 : make_temporary(file, exists ? &old : NULL);
-    if (directly || (fd < 0 && exists && folder_is_closed()))
+    const int there = descriptor_of(file->target);
+    if (there >= 0)
+        return fcntl(there, F_DUPFD_CLOEXEC, 0); /* it goes on where it is */
+    const int fd = make_temporary(file, exists ? &old : NULL);
+    if (fd < 0 && exists && folder_is_closed())
         return open(file->target, O_WRONLY | O_TRUNC | O_CLOEXEC);
     return fd;
 }

@@ -196,7 +196,8 @@ static void leave(int signal_number)
     raise(signal_number); /* the handler is gone: SA_RESETHAND */
 }
 
-static const int deadly[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE};
+static const int deadly[] = {SIGINT,  SIGTERM, SIGHUP,  SIGQUIT,
+                             SIGPIPE, SIGXCPU, SIGUSR1, SIGUSR2};
 
 static void erase_at_signals(void)
 {

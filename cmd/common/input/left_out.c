@@ -12,13 +12,14 @@
 enum {
     NODE_ATTRIBUTES = 1 << 0,
     NODE_MARKERS = 1 << 1,
-    EDGES = 1 << 2,         /* with their markers */
-    FACES = 1 << 3,         /* markers of .face and .facet: those above 0, and */
-    FACES_BELOW_0 = 1 << 4, /* those below */
-    REGIONS = 1 << 5,       /* whole numbers from 0, and */
-    OTHER_REGIONS = 1 << 6, /* all others */
-    ATTRIBUTES = 1 << 7,    /* of cells, but regions */
-    NODE_NAMES = 1 << 8,    /* in the order of tm_group_dimension */
+    EDGES = 1 << 2,            /* with their markers */
+    FACES = 1 << 3,            /* markers of .face and .facet: those above 0, and */
+    FACES_BELOW_0 = 1 << 4,    /* those below */
+    REGIONS = 1 << 5,          /* whole numbers from 0, and */
+    OTHER_REGIONS = 1 << 6,    /* all others */
+    REGIONS_BELOW_0 = 1 << 14, /* whole numbers, too */
+    ATTRIBUTES = 1 << 7,       /* of cells, but regions */
+    NODE_NAMES = 1 << 8,       /* in the order of tm_group_dimension */
     EDGE_NAMES = 1 << 9,
     FACE_NAMES = 1 << 10,
     REGION_NAMES = 1 << 11,
@@ -36,13 +37,14 @@ static const struct {
     {"getfem-export", FACES | REGIONS | FACE_NAMES | REGION_NAMES},
     {"m3d-export", 0},
     {"mvm-export", 0},
-    {"oct-export",
-     NODE_ATTRIBUTES | NODE_MARKERS | EDGES | REGIONS | OTHER_REGIONS | ATTRIBUTES},
-    {"off-export", REGIONS | OTHER_REGIONS | ATTRIBUTES | REGION_NAMES},
-    {"openfoam-export", FACES | FACES_BELOW_0 | REGIONS | FACE_NAMES | REGION_NAMES},
+    {"oct-export", NODE_ATTRIBUTES | NODE_MARKERS | EDGES | REGIONS | REGIONS_BELOW_0 |
+                       OTHER_REGIONS | ATTRIBUTES},
+    {"off-export", REGIONS | REGIONS_BELOW_0 | OTHER_REGIONS | ATTRIBUTES | REGION_NAMES},
+    {"openfoam-export",
+     FACES | FACES_BELOW_0 | REGIONS | REGIONS_BELOW_0 | FACE_NAMES | REGION_NAMES},
     {"tetgen-export", NODE_ATTRIBUTES | NODE_MARKERS | EDGES | FACES | FACES_BELOW_0 |
-                          REGIONS | OTHER_REGIONS | ATTRIBUTES | NAMES | PARTS |
-                          TETRAHEDRA},
+                          REGIONS | REGIONS_BELOW_0 | OTHER_REGIONS | ATTRIBUTES | NAMES |
+                          PARTS | TETRAHEDRA},
     {"visf-export", 0},
     {"vtk-export", ~0u & ~(unsigned)(PARTS | TETRAHEDRA)},
     {"vtu-export", ~0u & ~(unsigned)(PARTS | TETRAHEDRA)},
@@ -206,18 +208,20 @@ static void add_nodes(finder *find)
 static void add_regions(finder *find, const tm_block *cell)
 {
     const size_t at = cell->kind == TM_CELL ? 1 : 0;
-    size_t whole = 0, others = 0, ones = 0;
+    size_t whole = 0, below = 0, others = 0, ones = 0;
     if (at >= cell->attributes)
         return;
     for (size_t c = 0; c < cell->count; c++) {
         const double region = cell->attribute[c * cell->attributes + at];
-        const bool is_whole = region >= 0 && region == floor(region);
+        const bool is_whole = region == floor(region);
         whole += is_whole && region > 0;
+        below += is_whole && region < 0;
         others += !is_whole;
-        ones += is_whole && region > 0 && region < 2;
+        ones += region == 1;
     }
     if (ones < cell->count) {
         add(find, REGIONS, whole, "regions of cells", cell->name);
+        add(find, REGIONS_BELOW_0, below, "regions of cells below 0", cell->name);
         add(find, OTHER_REGIONS, others, "regions of cells that are no whole numbers",
             cell->name);
     }

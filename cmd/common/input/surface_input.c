@@ -228,6 +228,29 @@ static void check_regions(const filter *f, const tm_polygon_surface *polygons,
     }
     if (polygons->regions > 1)
         filter_leave_out(f, "%zu regions (%s)", polygons->regions, one_solid);
+    else if (polygons->regions > 0)
+        filter_leave_out(f, "1 region, whose attribute elements would have");
+}
+
+/* What of the surface and its stream an octree's mesh has no place for. */
+static void leave_out(const filter *f, const tm_polygon_surface *polygons,
+                      const tm_stream *stream)
+{
+    const tm_block *other = tm_stream_find(stream, ".group");
+    size_t markers = 0, names = 0;
+    for (size_t v = 0; v < polygons->nodes && polygons->node_marker; v++)
+        markers += polygons->node_marker[v] != 0;
+    for (size_t g = 0; g < polygons->group.count; g++)
+        names += tm_group_dimension_of(&polygons->group, g) != TM_GROUP_FACES;
+    if (polygons->attributes > 0)
+        filter_leave_out(f, "%zu attributes of the surface's nodes",
+                         polygons->attributes);
+    if (markers > 0)
+        filter_leave_out(f, "%zu markers of the surface's nodes", markers);
+    if (names > 0)
+        filter_leave_out(f, "%zu names of other than faces (.group)", names);
+    if (other && tm_stream_find(stream, "surface.group"))
+        filter_leave_out(f, "%zu names of another mesh (.group)", other->count);
 }
 
 void surface_input_build(const filter *f, const tm_surface_options *options,
@@ -247,6 +270,8 @@ void surface_input_build(const filter *f, const tm_surface_options *options,
         filter_fail(f, &error);
     }
     check_regions(f, &polygons, surface);
+    if (history)
+        leave_out(f, &polygons, &stream);
     tm_polygon_surface_free(&polygons);
     if (history) {
         tm_stream_init(history);

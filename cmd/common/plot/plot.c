@@ -15,12 +15,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* A file in memory that holds the script, at its beginning; -1 where that fails. A file
- * and not a pipe, so that gnuplot and we never wait for each other. */
-static int script_file(const tm_text *script, tm_error *error)
+/* A file in memory that holds the script, at its beginning, or an empty one for NULL; -1
+ * where that fails. A file and not a pipe, so that gnuplot and we never wait for each
+ * other. */
+static int memory_file(const tm_text *script, tm_error *error)
 {
-    const int fd = memfd_create("script", MFD_CLOEXEC);
-    if (fd >= 0 && tm_write_all(fd, script->byte, script->size, NULL) == TM_OK &&
+    const int fd = memfd_create("gnuplot", MFD_CLOEXEC);
+    if (fd >= 0 &&
+        (!script || tm_write_all(fd, script->byte, script->size, NULL) == TM_OK) &&
         lseek(fd, 0, SEEK_SET) == 0)
         return fd;
     tm_fail(error, TM_ERROR_SYSTEM, "cannot hold the script for gnuplot: %s",
@@ -31,7 +33,7 @@ static int script_file(const tm_text *script, tm_error *error)
 }
 
 /* Starts gnuplot without the user's own settings. Returns 0 or what errno would say. */
-static int start(int input, int output, pid_t *child)
+static int start(int input, int output, int complaints, pid_t *child)
 {
     char *const arguments[] = {"gnuplot", "-d", NULL};
     /* In the C locale gnuplot complains that it cannot write a degree sign. */
@@ -45,20 +47,36 @@ static int start(int input, int output, pid_t *child)
     if (reason == 0)
         reason = posix_spawn_file_actions_adddup2(&actions, output, STDOUT_FILENO);
     if (reason == 0)
+        reason = posix_spawn_file_actions_adddup2(&actions, complaints, STDERR_FILENO);
+    if (reason == 0)
         reason = posix_spawnp(child, arguments[0], &actions, NULL, arguments, environ);
     posix_spawn_file_actions_destroy(&actions);
     return reason;
 }
 
-/* Whether it ended as it should. */
-static bool wait_for(pid_t child)
+/* Waits for its end, which must be as it should; else what it said of that is in the
+ * error, the first of it. */
+static tm_status wait_for(pid_t child, int complaints, tm_error *error)
 {
     int status;
+    char said[256];
     while (waitpid(child, &status, 0) < 0) {
         if (errno != EINTR)
-            return false;
+            return tm_fail(error, TM_ERROR_SYSTEM, "cannot wait for gnuplot: %s",
+                           strerror(errno));
     }
-    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 0)
+        return TM_OK;
+    const ssize_t size = pread(complaints, said, sizeof said - 1, 0);
+    said[size > 0 ? size : 0] = '\0';
+    const char *line = said + strspn(said, " \n\r\t");
+    const int length = (int)strcspn(line, "\n\r");
+    if (WIFSIGNALED(status))
+        return tm_fail(error, TM_ERROR_SYSTEM,
+                       "gnuplot was ended by signal %d (%s)%s%.*s", WTERMSIG(status),
+                       strsignal(WTERMSIG(status)), length > 0 ? ": " : "", length, line);
+    return tm_fail(error, TM_ERROR_SYSTEM, "gnuplot failed with exit status %d%s%.*s",
+                   WEXITSTATUS(status), length > 0 ? ": " : "", length, line);
 }
 
 /* SVG from its beginning to its end. */
@@ -76,13 +94,13 @@ static bool is_picture(const tm_text *figure)
            memcmp(figure->byte + size - strlen(end), end, strlen(end)) == 0;
 }
 
-static tm_status run(int script, tm_text *figure, tm_error *error)
+static tm_status run(int script, int complaints, tm_text *figure, tm_error *error)
 {
     int end[2];
     if (pipe2(end, O_CLOEXEC) != 0)
         return tm_fail(error, TM_ERROR_SYSTEM, "cannot run gnuplot: %s", strerror(errno));
     pid_t child = -1;
-    const int reason = start(script, end[1], &child);
+    const int reason = start(script, end[1], complaints, &child);
     close(end[1]);
     tm_status status = TM_OK;
     if (reason == ENOENT)
@@ -94,8 +112,11 @@ static tm_status run(int script, tm_text *figure, tm_error *error)
     else
         status = tm_read_all(end[0], "gnuplot", figure, error);
     close(end[0]);
-    if (reason == 0 && !wait_for(child) && status == TM_OK)
-        status = tm_fail(error, TM_ERROR_SYSTEM, "gnuplot failed");
+    if (reason == 0) {
+        const tm_status ended =
+            wait_for(child, complaints, status == TM_OK ? error : NULL);
+        status = status == TM_OK ? ended : status;
+    }
     if (status == TM_OK && !is_picture(figure))
         status = tm_fail(error, TM_ERROR_SYSTEM,
                          "gnuplot ended well, but what it made is no picture (is there "
@@ -107,12 +128,15 @@ static tm_status draw(const tm_text *script, const char *file, tm_error *error)
 {
     if (script->failed || script->size == 0)
         return tm_fail_memory(error);
-    const int fd = script_file(script, error);
-    if (fd < 0)
-        return TM_ERROR_SYSTEM;
+    const int fd = memory_file(script, error);
+    const int complaints = fd < 0 ? -1 : memory_file(NULL, error);
     tm_text figure = {0};
-    tm_status status = run(fd, &figure, error);
-    close(fd);
+    tm_status status =
+        complaints < 0 ? TM_ERROR_SYSTEM : run(fd, complaints, &figure, error);
+    if (complaints >= 0)
+        close(complaints);
+    if (fd >= 0)
+        close(fd);
     if (status == TM_OK)
         status = output_file_write(file, &figure, error);
     tm_text_free(&figure);

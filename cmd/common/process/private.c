@@ -15,7 +15,7 @@
 
 /* Signals -------------------------------------------------------------------------- */
 
-static const int held[] = {SIGINT, SIGTERM, SIGHUP};
+static const int held[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU, SIGUSR1, SIGUSR2};
 enum { HELD = sizeof held / sizeof held[0] };
 
 static struct sigaction before[HELD];
@@ -90,6 +90,10 @@ tm_status private_folder_open(private_folder *folder, const char *name, tm_error
     const char *parent = getenv("TMPDIR");
     if (!parent || !*parent)
         parent = "/tmp";
+    if (strchr(parent, '\n'))
+        return tm_fail(error, TM_ERROR_SYSTEM,
+                       "the path in TMPDIR has a line break, which TetGen's files cannot "
+                       "name");
     /* A program takes what begins with - for an option. */
     int size = snprintf(folder->path, sizeof folder->path, "%s%s/%s.XXXXXX",
                         parent[0] == '-' ? "./" : "", parent, name);

@@ -11,6 +11,7 @@
 #include <string.h>
 #include <sys/wait.h>
 #include <termios.h>
+#include <sys/prctl.h>
 #include <unistd.h>
 
 /* A pair of descriptors: what is written to `write` can be read from `read`. */
@@ -56,6 +57,7 @@ static bool open_terminal(channel *c)
 _Noreturn static void become(char *const argv[], int output, int failure)
 {
     setpgid(0, 0);
+    prctl(PR_SET_PDEATHSIG, SIGKILL); /* where we are killed ourselves */
     int nothing = open("/dev/null", O_RDONLY);
     if (nothing >= 0 && dup2(nothing, STDIN_FILENO) >= 0 &&
         dup2(output, STDOUT_FILENO) >= 0 && dup2(output, STDERR_FILENO) >= 0) {

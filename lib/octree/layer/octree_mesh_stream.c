@@ -55,30 +55,29 @@ typedef struct {
     size_t facets, items;
 } facet_writer;
 
-static void add_facet(facet_writer *w, const tm_octree_mesh *m, uint32_t element,
-                      int32_t marker, unsigned k, const uint32_t *corner)
-{
-    w->block->integer[2 * w->facets] = element;
-    w->block->integer[2 * w->facets + 1] = TM_NONE;
-    w->block->marker[w->facets] = marker;
-    w->block->start[w->facets++] = w->items;
-    for (unsigned i = 0; i < k; i++)
-        w->block->item[w->items++] = m->assembly.outer + corner[i];
-}
-
-/* The marker of a face: that of the triangle closest to its middle. */
-static int32_t marker_of(const tm_octree_mesh *m, const tm_surface *surface, size_t f)
+/* The marker of a polygon of the boundary: that of the triangle closest to its middle. */
+static int32_t marker_of(const tm_octree_mesh *m, const tm_surface *surface, unsigned k,
+                         const uint32_t *corner)
 {
     const double(*xyz)[3] = (const double(*)[3])m->assembly.mesh.xyz + m->assembly.outer;
-    const unsigned k = tm_boundary_face_corners(&m->boundary, f);
-    const uint32_t *face = m->boundary.face[f];
     double middle[3] = {0, 0, 0};
     for (unsigned c = 0; c < k; c++)
         for (int i = 0; i < 3; i++)
-            middle[i] += xyz[face[c]][i] / k;
-    tm_surface_point at = {.triangle = m->at[face[0]].triangle};
+            middle[i] += xyz[corner[c]][i] / k;
+    tm_surface_point at = {.triangle = m->at[corner[0]].triangle};
     tm_surface_closest(surface, middle, TM_NONE, &at);
     return surface->marker[at.triangle];
+}
+
+static void add_facet(facet_writer *w, const tm_octree_mesh *m, const tm_surface *surface,
+                      uint32_t element, unsigned k, const uint32_t *corner)
+{
+    w->block->integer[2 * w->facets] = element;
+    w->block->integer[2 * w->facets + 1] = TM_NONE;
+    w->block->marker[w->facets] = marker_of(m, surface, k, corner);
+    w->block->start[w->facets++] = w->items;
+    for (unsigned i = 0; i < k; i++)
+        w->block->item[w->items++] = m->assembly.outer + corner[i];
 }
 
 /* The boundary faces as rows of .facet: a quadrilateral, a triangle, or two triangles. */
@@ -102,16 +101,15 @@ static tm_status facets_to_stream(const tm_octree_mesh *m, const tm_surface *sur
     facet_writer w = {.block = facet};
     for (size_t f = 0; f < boundary->faces; f++) {
         const uint32_t *face = boundary->face[f];
-        const int32_t marker = marker_of(m, surface, f);
         const uint32_t element = m->assembly.layer[f];
         if (boundary->cut[f] == TM_UNCUT) {
-            add_facet(&w, m, element, marker, tm_boundary_face_corners(boundary, f),
+            add_facet(&w, m, surface, element, tm_boundary_face_corners(boundary, f),
                       face);
             continue;
         }
         for (uint32_t t = 0; t < 2; t++) {
             const uint8_t *corner = tm_cut_triangles[boundary->cut[f]][t];
-            add_facet(&w, m, element + t, marker, 3,
+            add_facet(&w, m, surface, element + t, 3,
                       (uint32_t[]){face[corner[0]], face[corner[1]], face[corner[2]]});
         }
     }

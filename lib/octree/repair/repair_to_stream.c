@@ -109,6 +109,7 @@ static bool stays(const tm_block *block, bool remade)
     case TM_OCTANT:
     case TM_ROOT:
     case TM_FACET:
+    case TM_GROUP:
         return true;
     case TM_FACE:
     case TM_EDGE:
