@@ -2,6 +2,7 @@
 #include "lines.h"
 
 #include <ctype.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -113,10 +114,13 @@ const char *tm_lines_quote(const char *at, char text[TM_QUOTE_CHARS])
 {
     enum { MOST = 24 };
     size_t size = 0;
-    while (size < MOST && isprint((unsigned char)at[size])) {
-        text[size] = at[size];
-        size++;
+    for (; size < MOST && *at != '\n'; at++) {
+        if (isprint((unsigned char)*at))
+            text[size++] = *at;
+        else
+            size += (size_t)snprintf(text + size, TM_QUOTE_CHARS - size, "\\x%02x",
+                                     (unsigned char)*at);
     }
-    memcpy(text + size, size == MOST ? "…" : "", size == MOST ? sizeof "…" : 1);
+    memcpy(text + size, size >= MOST ? "…" : "", size >= MOST ? sizeof "…" : 1);
     return text;
 }

@@ -44,7 +44,8 @@ static inline bool tm_is_blank(char c)
     return c == ' ' || c == '\t';
 }
 
-/* Copies the line at `at` for a message: its first printable bytes. Returns text. */
+/* Copies the line at `at` for a message: its first bytes, as \x1b
+ * those that are not printable. Returns text. */
 enum { TM_QUOTE_CHARS = 32 };
 const char *tm_lines_quote(const char *at, char text[TM_QUOTE_CHARS]);
 

@@ -60,6 +60,7 @@ export_it() {
 
 # Prints x where the exporter leaves something of with.tm out, else '.'.
 leaves_out() {
+    set -e # which $() has not
     local status=0
     export_it "$1" 2>note
     [ -n "$(ls made)" ]
@@ -68,6 +69,7 @@ leaves_out() {
         echo .
         return
     fi
+    cat note >&2
     [ "$(wc -l <note)" -eq 1 ]
     grep -Eq "^$1-export: with.tm: [1-9].*\): left out\$" note
     export_it "$1" -q 2>quiet

@@ -253,3 +253,38 @@ write_each() {
     [ "$output" = "" ]
     [[ "$stderr" == "tet-stats: nowhere/figure.svg: cannot write: "* ]]
 }
+
+@test "one file for two outputs: exit 2, and the two options" {
+    same() {
+        writes_files "$1" ||
+            run -2 --separate-stderr "$1" -o same --json same "$(input "$1")"
+        writes_files "$1" || [[ "$stderr" == "$1: --json and -o are the same file, 'same'"* ]]
+        [ ! -e same ]
+    }
+    for_each_filter same
+    for filter in tet-stats jens-stats poly-stats; do
+        run -2 "$filter" --plot same --json same "$(input "$filter")"
+        run -2 "$filter" --plot same -o same "$(input "$filter")"
+    done
+    run -2 jens-stats --histo same -o same corner.tm
+    [ ! -e same ]
+}
+
+@test "-o /dev/stdout goes on where standard output is" {
+    { echo head && off-export -o /dev/stdout corner.tm && echo tail; } >whole
+    { echo head && off-export corner.tm && echo tail; } | cmp - whole
+    echo before >grown
+    off-export -o /dev/fd/1 corner.tm >>grown
+    { echo before && off-export corner.tm; } | cmp - grown
+}
+
+@test "gnuplot's end is told, with the first of what it said, escaped" {
+    mkdir bin
+    for end in 'exit 3' 'kill -TERM $$'; do
+        printf '#!/bin/sh\nprintf "\\033[31mbad\\nmore\\n" >&2\n%s\n' "$end" >bin/gnuplot
+        chmod +x bin/gnuplot
+        PATH=$PWD/bin:$PATH run -4 --separate-stderr tet-stats --plot figure.svg corner.tm
+        [[ "$stderr" == 'tet-stats: gnuplot '*'status 3: \x1b[31mbad' ||
+            "$stderr" == 'tet-stats: gnuplot '*'signal 15 (Terminated): \x1b[31mbad' ]]
+    done
+}

@@ -137,7 +137,8 @@ END
     [ "$(volume mesh.tm)" = 26 ]
     nested 0.5 >one.poly
     octree-mesh -s 3 -o mesh.tm one.poly 2>message
-    cmp <(sed s/one/hollow/ message) silence
+    sed 's/one/hollow/; /1 region, whose attribute elements would have: left out$/d' message |
+        cmp - silence
     [ "$(volume mesh.tm)" = 26 ]
     nested 0.5 2.5 >two.poly
     run -0 --separate-stderr octree-mesh -s 3 -o mesh.tm two.poly

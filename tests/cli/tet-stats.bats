@@ -282,7 +282,7 @@ END
     chmod +x fake/gnuplot
     echo old >figure.svg
     run -4 --separate-stderr env PATH="$PWD/fake:$PATH" tet-stats --plot figure.svg two.tm
-    [ "$stderr" = "tet-stats: gnuplot failed" ]
+    [ "$stderr" = "tet-stats: gnuplot failed with exit status 1" ]
     [ "$(cat figure.svg)" = old ]
     [ "$(find . -name 'figure*' | wc -l)" -eq 1 ]
 }

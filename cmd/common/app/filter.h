@@ -114,7 +114,7 @@ int filter_option(filter *f);
 void filter_operands(filter *f);
 
 /* A usage error where a file that an option names is that of -o or --json, too. For
- * --json filter_operands() does so. */
+ * --json filter_option() does so. */
 void filter_other_file(const filter *f, const char *option, const char *file);
 
 /* Option arguments as numbers in lo..hi, else a usage error that names the option. */

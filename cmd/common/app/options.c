@@ -208,6 +208,7 @@ int filter_option(filter *f)
         if (c == '?')
             filter_wrong_option(f);
         if (c == -1) {
+            filter_other_file(f, "--json", f->json);
             begin_work(f);
             return -1;
         }
@@ -257,7 +258,6 @@ void filter_operands(filter *f)
         filter_usage(f, stderr);
         exit(EXIT_USAGE);
     }
-    filter_other_file(f, "--json", f->json);
     if (f->binary && !f->output && !f->forced && isatty(STDOUT_FILENO))
         filter_usage_error(f, "the output is binary and would go to a terminal (-o FILE "
                               "or a pipe would be right; -o - forces it)");
