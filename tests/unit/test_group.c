@@ -39,7 +39,7 @@ static void test_clean(void **state)
             "er",
             "gr\xc3\xb6\xc3\x9f"
             "er");
-    CLEANED("\xc2\x85\x85", "\\x85\\x85");           /* next line, in UTF-8 and in Latin-1 */
+    CLEANED("\xc2\x85\x85", "\\x85\\x85");   /* next line, in UTF-8 and in Latin-1 */
     CLEANED("\xc0\xaf", "\xc3\x80\xc2\xaf"); /* overlong: no UTF-8 */
     CLEANED("\xed\xa0\x80", "\xc3\xad\xc2\xa0\\x80");
     CLEANED("\xf0\x9f\x98\x80\xf0\x9f", "\xf0\x9f\x98\x80\xc3\xb0\\x9f");
