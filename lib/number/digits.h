@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Decimal digits, eight at a time in a 64-bit word. */
-#ifndef TM_BASE_DIGITS_H
-#define TM_BASE_DIGITS_H
+#ifndef TM_NUMBER_DIGITS_H
+#define TM_NUMBER_DIGITS_H
 
 #include <stdint.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Numbers to and from text, without the locale, without a terminating NUL. */
-#ifndef TM_BASE_NUMBER_H
-#define TM_BASE_NUMBER_H
+#ifndef TM_NUMBER_NUMBER_H
+#define TM_NUMBER_NUMBER_H
 
 #include "../base/extern_c.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The last resort of tm_read_double: comparison of big integers. */
-#ifndef TM_BASE_NUMBER_EXACT_H
-#define TM_BASE_NUMBER_EXACT_H
+#ifndef TM_NUMBER_NUMBER_EXACT_H
+#define TM_NUMBER_NUMBER_EXACT_H
 
 #include <stdint.h>
 

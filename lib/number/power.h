@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Powers of ten in binary, for reading and for writing doubles. */
-#ifndef TM_BASE_POWER_H
-#define TM_BASE_POWER_H
+#ifndef TM_NUMBER_POWER_H
+#define TM_NUMBER_POWER_H
 
 #include <stdint.h>
 

@@ -8,15 +8,6 @@
 #include <string.h>
 #include <unistd.h>
 
-ptrdiff_t tm_read_some(int fd, char *bytes, size_t size)
-{
-    ssize_t got;
-    do
-        got = read(fd, bytes, size);
-    while (got < 0 && errno == EINTR);
-    return got;
-}
-
 tm_status tm_read_all(int fd, const char *name, tm_text *text, tm_error *error)
 {
     enum { STEP = 1 << 16 };

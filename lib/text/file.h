@@ -1,17 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bytes from and to file descriptors, complete and checked. */
-#ifndef TM_BASE_FILE_H
-#define TM_BASE_FILE_H
+#ifndef TM_TEXT_FILE_H
+#define TM_TEXT_FILE_H
 
 #include "../base/extern_c.h"
 #include "../base/error.h"
 #include "text.h"
 
 TM_EXTERN_C_BEGIN
-
-/* Reads at most size bytes, again after an interrupt. Returns how many, 0 at the end;
- * on failure -1 with errno. */
-ptrdiff_t tm_read_some(int fd, char *bytes, size_t size);
 
 /* Appends all that is left to read to *text, of gzip data what is in them (input.h).
  * `name` is for the message. */

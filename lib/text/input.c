@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "input.h"
 
-#include "file.h"
-
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -38,6 +36,15 @@ size_t tm_unpacked_name(const char *name)
     const size_t size = strlen(name), length = sizeof suffix - 1;
     return size > length && strcmp(name + size - length, suffix) == 0 ? size - length
                                                                       : size;
+}
+
+ptrdiff_t tm_read_some(int fd, char *bytes, size_t size)
+{
+    ssize_t got;
+    do
+        got = read(fd, bytes, size);
+    while (got < 0 && errno == EINTR);
+    return got;
 }
 
 static tm_status read_plain(tm_input *input, char *bytes, size_t size, size_t *got,

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is to be read of a file descriptor: its bytes or, where they are gzip data (RFC
  * 1952: they begin with 1f 8b), what is packed in them, as zcat prints it. */
-#ifndef TM_BASE_INPUT_H
-#define TM_BASE_INPUT_H
+#ifndef TM_TEXT_INPUT_H
+#define TM_TEXT_INPUT_H
 
 #include "../base/error.h"
 #include "../base/extern_c.h"
@@ -19,6 +19,10 @@ typedef struct tm_input {
     bool begun;
     size_t taken; /* bytes of the descriptor, so far */
 } tm_input;
+
+/* Reads at most size bytes, again after an interrupt. Returns how many, 0 at the end;
+ * on failure -1 with errno. */
+ptrdiff_t tm_read_some(int fd, char *bytes, size_t size);
 
 /* Nothing is read yet. The descriptor stays the caller's, and so does the name, which is
  * for messages. */

@@ -7,8 +7,8 @@
  *     tm_json_integer(&json, "tets", 12);
  *     tm_json_close(&json, '}');
  */
-#ifndef TM_BASE_JSON_H
-#define TM_BASE_JSON_H
+#ifndef TM_TEXT_JSON_H
+#define TM_TEXT_JSON_H
 
 #include "../base/extern_c.h"
 #include "text.h"

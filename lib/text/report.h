@@ -9,8 +9,8 @@
  *     tm_report_json(&json, rows, &statistics);
  *     tm_report_table(&text, rows, (const void *[]){&statistics}, 1, TM_LABEL_WIDTH);
  */
-#ifndef TM_BASE_REPORT_H
-#define TM_BASE_REPORT_H
+#ifndef TM_TEXT_REPORT_H
+#define TM_TEXT_REPORT_H
 
 #include "../base/extern_c.h"
 #include "json.h"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A growing string. Appending never fails at once: a text that ran out of memory has
  * `failed` set, ignores what follows, and is asked about once at the end. */
-#ifndef TM_BASE_TEXT_H
-#define TM_BASE_TEXT_H
+#ifndef TM_TEXT_TEXT_H
+#define TM_TEXT_TEXT_H
 
 #include "../base/extern_c.h"
 

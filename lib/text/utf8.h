@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Characters of UTF-8 (RFC 3629). */
-#ifndef TM_BASE_UTF8_H
-#define TM_BASE_UTF8_H
+#ifndef TM_TEXT_UTF8_H
+#define TM_TEXT_UTF8_H
 
 #include "../base/extern_c.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run_program.h"
 
-#include "../../../lib/text/file.h"
+#include "../../../lib/text/input.h"
 #include "private.h"
 
 #include <errno.h>

@@ -123,7 +123,5 @@ tm_status tm_vtk_cell_data(const tm_vtk_grid *grid, tm_vtk_take *take, void *con
         status = write_attributes(grid, take, context, error);
     if (status == TM_OK)
         status = write_markers(grid, take, context, error);
-    if (status == TM_OK && grid->options.quality)
-        status = tm_vtk_quality(grid, take, context, error);
     return status;
 }

@@ -85,8 +85,6 @@ tm_status tm_vtk_point_data(const tm_vtk_grid *grid, tm_vtk_take *take, void *co
 tm_status tm_vtk_cell_data(const tm_vtk_grid *grid, tm_vtk_take *take, void *context,
                            tm_error *error);
 
-/* vtk_quality.c: the columns of quality, a part of tm_vtk_cell_data(). */
-
 /* A column for all cells, of reals or of integers; false where memory is out. */
 bool tm_vtk_column_new(tm_vtk_column *column, const char *name, size_t count,
                        bool integers);
@@ -96,6 +94,7 @@ bool tm_vtk_column_new(tm_vtk_column *column, const char *name, size_t count,
 tm_status tm_vtk_finish(const tm_vtk_grid *grid, tm_vtk_column *column, int none,
                         tm_status status, tm_vtk_take *take, void *context);
 
+/* vtk_quality.c: the columns of quality of cells, where they are wanted. */
 tm_status tm_vtk_quality(const tm_vtk_grid *grid, tm_vtk_take *take, void *context,
                          tm_error *error);
 

@@ -184,6 +184,8 @@ static tm_status append_grid(const tm_vtk_grid *grid, tm_text *text, tm_error *e
     append_cells(grid, text);
     tm_status status = tm_vtk_cell_data(grid, append_column, &cells, error);
     if (status == TM_OK)
+        status = tm_vtk_quality(grid, append_column, &cells, error);
+    if (status == TM_OK)
         status = tm_vtk_point_data(grid, append_column, &points, error);
     return status == TM_OK && text->failed ? tm_fail_memory(error) : status;
 }

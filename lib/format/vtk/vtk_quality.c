@@ -104,6 +104,8 @@ tm_status tm_vtk_quality(const tm_vtk_grid *grid, tm_vtk_take *take, void *conte
                          tm_error *error)
 {
     tm_status status = TM_OK;
+    if (!grid->options.quality)
+        return status;
     switch (grid->content) {
     case TM_CONTENT_TETRAHEDRA:
         return write_measure(grid, "dihedral_quality", dihedral_quality, take, context,

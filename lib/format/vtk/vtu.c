@@ -30,7 +30,10 @@ static tm_status write_point_data(writer *w)
 
 static tm_status write_cell_data(writer *w)
 {
-    return tm_vtk_cell_data(&w->grid, write_column, &w->arrays, w->error);
+    const tm_status status =
+        tm_vtk_cell_data(&w->grid, write_column, &w->arrays, w->error);
+    return status == TM_OK ? tm_vtk_quality(&w->grid, write_column, &w->arrays, w->error)
+                           : status;
 }
 
 /* Cells ---------------------------------------------------------------------------- */
