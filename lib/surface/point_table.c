@@ -85,3 +85,14 @@ void tm_point_table_free(tm_point_table *table)
     free(table->slot);
     *table = (tm_point_table){0};
 }
+
+bool tm_points_weld(double (*xyz)[3], size_t count, uint32_t *unique, size_t *joined)
+{
+    tm_point_table table = {0};
+    bool done = true;
+    for (size_t v = 0; v < count && done; v++)
+        done = tm_point_table_join(&table, xyz, (uint32_t)v, &unique[v]);
+    *joined = count - table.points;
+    tm_point_table_free(&table);
+    return done;
+}

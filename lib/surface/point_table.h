@@ -22,6 +22,11 @@ typedef struct tm_point_table {
 bool tm_point_table_join(tm_point_table *table, double (*xyz)[3], uint32_t id,
                          uint32_t *first);
 
+/* unique[v] becomes the id of the first point with the coordinates of point v, of count
+ * points; *joined is how many had another one before them. False where memory is out.
+ * Expected O(count). */
+bool tm_points_weld(double (*xyz)[3], size_t count, uint32_t *unique, size_t *joined);
+
 /* The id of the first point with those coordinates, or UINT32_MAX. */
 uint32_t tm_point_table_find(const tm_point_table *table, double (*xyz)[3],
                              const double point[3]);

@@ -20,19 +20,6 @@ static int compare_edges(const void *a, const void *b)
     return (p[1] > q[1]) - (p[1] < q[1]);
 }
 
-/* unique[v] becomes the first node with v's coordinates. */
-static bool find_unique(const tm_polygon_surface *surface, uint32_t *unique,
-                        size_t *duplicates)
-{
-    tm_point_table table = {0};
-    bool done = true;
-    for (size_t v = 0; v < surface->nodes && done; v++)
-        done = tm_point_table_join(&table, surface->xyz, (uint32_t)v, &unique[v]);
-    *duplicates = surface->nodes - table.points;
-    tm_point_table_free(&table);
-    return done;
-}
-
 static void count_unused(const tm_polygon_surface *surface, const uint32_t *unique,
                          bool *used, tm_surface_defects *defects)
 {
@@ -132,8 +119,9 @@ tm_status tm_surface_find_defects(const tm_polygon_surface *surface,
     uint32_t *unique = tm_new(surface->nodes, sizeof *unique);
     bool *used = tm_new(surface->nodes, sizeof *used);
     edge *edges = tm_new(surface->corners, sizeof *edges);
-    bool done = unique && used && edges &&
-                find_unique(surface, unique, &defects->duplicate_nodes);
+    bool done =
+        unique && used && edges &&
+        tm_points_weld(surface->xyz, surface->nodes, unique, &defects->duplicate_nodes);
     if (done) {
         count_unused(surface, unique, used, defects);
         count_edges(surface, unique, edges, defects);

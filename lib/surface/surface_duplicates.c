@@ -41,13 +41,11 @@ static int compare_facets(const void *a, const void *b)
 static bool find_nodes(const tm_polygon_surface *surface, uint32_t *node)
 {
     uint32_t *unique = tm_new(surface->nodes, sizeof *unique);
-    tm_point_table table = {0};
-    bool done = unique != NULL;
-    for (size_t v = 0; v < surface->nodes && done; v++)
-        done = tm_point_table_join(&table, surface->xyz, (uint32_t)v, &unique[v]);
+    size_t joined;
+    const bool done =
+        unique && tm_points_weld(surface->xyz, surface->nodes, unique, &joined);
     for (size_t i = 0; i < surface->corners && done; i++)
         node[i] = unique[surface->item[i]];
-    tm_point_table_free(&table);
     free(unique);
     return done;
 }

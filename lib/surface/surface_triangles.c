@@ -37,18 +37,6 @@ static tm_status check_facets(const tm_polygon_surface *from, tm_error *error)
                                 error);
 }
 
-/* unique[v] becomes the first node with v's coordinates. */
-static bool weld(const tm_polygon_surface *from, uint32_t *unique, size_t *welded)
-{
-    tm_point_table table = {0};
-    bool done = true;
-    for (size_t v = 0; v < from->nodes && done; v++)
-        done = tm_point_table_join(&table, from->xyz, (uint32_t)v, &unique[v]);
-    *welded = from->nodes - table.points;
-    tm_point_table_free(&table);
-    return done;
-}
-
 /* Polygons into triangles by cutting off ears (G. H. Meisters, Polygons have ears, The
  * American Mathematical Monthly 82, 1975), the one with the shortest diagonal first. What
  * is an ear is seen in the coordinate plane that the polygon is nearest to. */
@@ -351,7 +339,8 @@ tm_status tm_surface_triangulate(tm_surface *surface, const tm_polygon_surface *
     if (status != TM_OK)
         return status;
     uint32_t *unique = tm_new(polygons->nodes, sizeof *unique);
-    if (!unique || !weld(polygons, unique, &surface->welded))
+    if (!unique ||
+        !tm_points_weld(polygons->xyz, polygons->nodes, unique, &surface->welded))
         status = tm_fail_memory(error);
     if (status == TM_OK)
         status = make_triangles(surface, polygons, unique, error);
