@@ -4,7 +4,6 @@
 #include "common/input/mesh_input.h"
 #include "common/app/output_files.h"
 
-#include "../lib/text/file.h"
 #include "../lib/format/mesh_format.h"
 
 #include <dirent.h>
@@ -59,18 +58,12 @@ static tm_status write_file(output_files *files, const char *folder, const char 
                             const tm_text *text, bool is_needed, tm_error *error)
 {
     tm_text path = {0};
-    int fd = -1;
     tm_text_format(&path, "%s/%s", folder, name);
     if (path.failed)
         return tm_fail_memory(error);
     const bool is_written = is_needed || access(path.byte, F_OK) == 0;
-    tm_status status =
-        is_written ? output_files_open(files, path.byte, &fd, error) : TM_OK;
-    if (is_written && status == TM_OK) {
-        status = tm_write_all(fd, text->byte, text->size, error);
-        if (status != TM_OK)
-            snprintf(error->file, sizeof error->file, "%s", path.byte);
-    }
+    const tm_status status =
+        is_written ? output_files_write(files, path.byte, text, error) : TM_OK;
     tm_text_free(&path);
     return status;
 }

@@ -169,8 +169,7 @@ static tm_status write_header(int fd, const tm_block *block, tm_error *error)
             tm_text_format(&text, " %d", shape->header[i]);
     }
     tm_text_string(&text, "\n");
-    tm_status status = text.failed ? tm_fail_memory(error)
-                                   : tm_write_all(fd, text.byte, text.size, error);
+    const tm_status status = tm_write_text(fd, &text, error);
     tm_text_free(&text);
     return status;
 }
@@ -195,8 +194,7 @@ static tm_status write_rows(int fd, const tm_block *block, uint32_t base,
         size_t chunks = left < threads ? left : threads;
         tm_parallel(threads, chunks, format_chunk, &b);
         for (size_t c = 0; c < chunks && status == TM_OK; c++)
-            status = text[c].failed ? tm_fail_memory(error)
-                                    : tm_write_all(fd, text[c].byte, text[c].size, error);
+            status = tm_write_text(fd, &text[c], error);
         b.first += chunks * CHUNK_ROWS;
     }
     tell->at.done = before + block->count;
@@ -208,8 +206,7 @@ static tm_status write_groups(int fd, const tm_block *block, uint32_t base,
 {
     tm_text text = {0};
     tm_group_write(&text, block, base);
-    const tm_status status = text.failed ? tm_fail_memory(error)
-                                         : tm_write_all(fd, text.byte, text.size, error);
+    const tm_status status = tm_write_text(fd, &text, error);
     tm_text_free(&text);
     return status;
 }
@@ -224,9 +221,7 @@ static tm_status write_block(const tm_block *block, unsigned base, int fd,
                              unsigned threads, teller *tell, tm_error *error)
 {
     if (block->kind == TM_UNKNOWN)
-        return block->text.size > 0
-                   ? tm_write_all(fd, block->text.byte, block->text.size, error)
-                   : TM_OK;
+        return tm_write_text(fd, &block->text, error);
     tm_text *text = calloc(threads, sizeof *text);
     if (!text)
         return tm_fail_memory(error);
@@ -259,8 +254,8 @@ tm_status tm_stream_write(const tm_stream *stream, int fd, unsigned threads,
     if (stream->history.failed)
         return tm_fail_memory(error);
     tm_status status = tm_write_all(fd, magic, sizeof magic - 1, error);
-    if (status == TM_OK && stream->history.size > 0)
-        status = tm_write_all(fd, stream->history.byte, stream->history.size, error);
+    if (status == TM_OK)
+        status = tm_write_text(fd, &stream->history, error);
     for (size_t b = 0; b < stream->blocks && status == TM_OK; b++) {
         const tm_block *block = &stream->block[b];
         status = write_name(fd, block, error);

@@ -44,3 +44,10 @@ tm_status tm_write_all(int fd, const char *bytes, size_t size, tm_error *error)
     }
     return TM_OK;
 }
+
+tm_status tm_write_text(int fd, const tm_text *text, tm_error *error)
+{
+    if (text->failed)
+        return tm_fail_memory(error);
+    return text->size > 0 ? tm_write_all(fd, text->byte, text->size, error) : TM_OK;
+}

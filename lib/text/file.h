@@ -16,6 +16,9 @@ tm_status tm_read_all(int fd, const char *name, tm_text *text, tm_error *error);
 /* Writes all bytes. TM_ERROR_SYSTEM with errno's message where that fails. */
 tm_status tm_write_all(int fd, const char *bytes, size_t size, tm_error *error);
 
+/* The same of a text; where that has failed, as for memory that is out. */
+tm_status tm_write_text(int fd, const tm_text *text, tm_error *error);
+
 TM_EXTERN_C_END
 
 #endif

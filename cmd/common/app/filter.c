@@ -175,19 +175,12 @@ void filter_write(filter *f, tm_stream *stream, const char *summary, ...)
         filter_fail(f, &error);
 }
 
-static tm_status write_text(int fd, const tm_text *text, tm_error *error)
-{
-    if (text->failed)
-        return tm_fail_memory(error);
-    return tm_write_all(fd, text->byte ? text->byte : "", text->size, error);
-}
-
 void filter_write_text(filter *f, const tm_text *text)
 {
     tm_error error;
     int fd = open_output(f);
     filter_stage(f, "writing");
-    if (write_text(fd, text, &error) == TM_OK)
+    if (tm_write_text(fd, text, &error) == TM_OK)
         return;
     if (f->output)
         snprintf(error.file, sizeof error.file, "%s", f->output);
@@ -212,8 +205,8 @@ static tm_status write_report(const filter *f, tm_error *error)
     if (strcmp(f->json, "-") != 0)
         return output_file_write(f->json, &f->report, error);
     progress_hold(f->progress);
-    tm_status status =
-        write_text(f->json_is_output ? STDOUT_FILENO : STDERR_FILENO, &f->report, error);
+    tm_status status = tm_write_text(f->json_is_output ? STDOUT_FILENO : STDERR_FILENO,
+                                     &f->report, error);
     progress_release(f->progress);
     return status;
 }

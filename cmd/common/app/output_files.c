@@ -216,18 +216,26 @@ tm_status output_files_finish(output_files *files, tm_error *error)
     return status;
 }
 
+tm_status output_files_write(output_files *files, const char *name, const tm_text *text,
+                             tm_error *error)
+{
+    int fd = -1;
+    tm_status status =
+        text->failed ? tm_fail_memory(error) : output_files_open(files, name, &fd, error);
+    if (status != TM_OK)
+        return status;
+    status = tm_write_text(fd, text, error);
+    if (status != TM_OK)
+        snprintf(error->file, sizeof error->file, "%s", name);
+    return status;
+}
+
 tm_status output_file_write(const char *name, const tm_text *text, tm_error *error)
 {
     output_files files = {0};
-    int fd = -1;
-    tm_status status = text->failed ? tm_fail_memory(error)
-                                    : output_files_open(&files, name, &fd, error);
-    if (status == TM_OK) {
-        status = tm_write_all(fd, text->byte ? text->byte : "", text->size, error);
-        if (status == TM_OK)
-            return output_files_finish(&files, error);
-        snprintf(error->file, sizeof error->file, "%s", name);
-    }
+    const tm_status status = output_files_write(&files, name, text, error);
+    if (status == TM_OK)
+        return output_files_finish(&files, error);
     output_files_abandon(&files);
     return status;
 }

@@ -37,13 +37,17 @@ tm_status output_files_make_folder(output_files *files, const char *name,
 tm_status output_files_open(output_files *files, const char *name, int *fd,
                             tm_error *error);
 
+/* A file of the set that is a text. */
+tm_status output_files_write(output_files *files, const char *name, const tm_text *text,
+                             tm_error *error);
+
 /* Closes all and gives them their names. */
 tm_status output_files_finish(output_files *files, tm_error *error);
 
 /* Removes all that was begun. */
 void output_files_abandon(output_files *files);
 
-/* A text as one file. */
+/* A text as one file, a set of its own. */
 tm_status output_file_write(const char *name, const tm_text *text, tm_error *error);
 
 #endif
