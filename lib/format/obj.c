@@ -130,12 +130,10 @@ static tm_status read_face(tm_scan *scan, tm_polygon_surface *surface, namings *
 static void take_name(tm_scan *scan, tm_text *name)
 {
     for (;;) {
-        const char *begin = scan->at, *end = begin;
-        while (end < scan->end && *end != '\n' && *end != '\r')
-            end++;
-        const bool goes_on = end > begin && end[-1] == '\\' && end < scan->end;
-        tm_text_append(name, begin, (size_t)(end - begin) - goes_on);
-        scan->at = end;
+        const tm_word rest = tm_scan_rest(scan);
+        const bool goes_on =
+            rest.size > 0 && rest.begin[rest.size - 1] == '\\' && scan->at < scan->end;
+        tm_text_append(name, rest.begin, rest.size - goes_on);
         if (!goes_on)
             return;
         tm_scan_end_line(scan);

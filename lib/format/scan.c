@@ -38,10 +38,18 @@ bool tm_scan_more(tm_scan *scan)
            !(scan->comment && *scan->at == scan->comment);
 }
 
-void tm_scan_end_line(tm_scan *scan)
+tm_word tm_scan_rest(tm_scan *scan)
 {
+    tm_word rest = {scan->at, 0};
     while (scan->at < scan->end && !is_line_end(*scan->at))
         scan->at++;
+    rest.size = (size_t)(scan->at - rest.begin);
+    return rest;
+}
+
+void tm_scan_end_line(tm_scan *scan)
+{
+    tm_scan_rest(scan);
     if (scan->at == scan->end)
         return;
     char first = *scan->at++;

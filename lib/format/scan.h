@@ -41,6 +41,9 @@ bool tm_scan_seek(tm_scan *scan);
 /* The next word of the line; an empty one where the line has no more. */
 tm_word tm_scan_word(tm_scan *scan);
 
+/* The rest of the line, with what else would be a comment; then comes its end. */
+tm_word tm_scan_rest(tm_scan *scan);
+
 /* The next word of the line as a number. `what` says in messages what it stands for:
  * "the x coordinate". Only finite numbers are taken. */
 tm_status tm_scan_double(tm_scan *scan, const char *what, double *value, tm_error *error);

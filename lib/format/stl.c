@@ -147,13 +147,8 @@ static tm_status read_facet(tm_scan *scan, tm_polygon_surface *surface,
 static tm_status begin_solid(tm_scan *scan, tm_polygon_surface *surface,
                              tm_group_markers *markers, tm_error *error)
 {
-    const char *name = scan->at;
-    tm_scan_end_line(scan);
-    const char *end = name;
-    while (end < scan->at && *end != '\n' && *end != '\r')
-        end++;
-    return tm_group_marker(markers, name, (size_t)(end - name), &surface->next_marker,
-                           error);
+    const tm_word name = tm_scan_rest(scan);
+    return tm_group_marker(markers, name.begin, name.size, &surface->next_marker, error);
 }
 
 /* A file of one solid without a name has no groups. */
@@ -177,6 +172,7 @@ static tm_status read_text(tm_polygon_surface *surface, tm_point_table *table,
         status = expect(&scan, "solid", error);
         if (status == TM_OK)
             status = begin_solid(&scan, surface, &markers, error);
+        tm_scan_end_line(&scan);
         bool open = status == TM_OK;
         while (open && status == TM_OK) {
             tm_scan_seek(&scan);
