@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Prints powers.h: the table of powers of ten that lib/base/power.c holds. For every k
+/* Prints powers.h: the table of powers of ten that lib/number/power.c holds. For every k
  * in [POWER_MIN, POWER_MAX] it has the 128 leading bits of 10^k, cut off (not rounded):
  *     10^k = (significand + rest)·2^(floor(log2 10^k) - 127),   0 <= rest < 1,
  * with 2^127 <= significand < 2^128, and the lower 64 of them not all ones, so that the
@@ -39,7 +39,7 @@ int main(void)
 {
     mpz_t significand, half;
     mpz_inits(significand, half, NULL);
-    printf("/* Made by lib/base/generate/powers.c. The 128 leading bits of 10^k. */\n");
+    printf("/* Made by lib/number/generate/powers.c. The 128 leading bits of 10^k. */\n");
     printf("enum { POWER_MIN = %d, POWER_MAX = %d };\n", POWER_MIN, POWER_MAX);
     printf("const tm_power tm_powers[POWER_MAX - POWER_MIN + 1] = {\n");
     for (int k = POWER_MIN; k <= POWER_MAX; k++) {
