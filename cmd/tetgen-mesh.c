@@ -186,17 +186,6 @@ _Noreturn static void fail_empty(const tm_polygon_surface *surface,
 
 /* The result ----------------------------------------------------------------------- */
 
-/* TetGen hands markers and regions on, but knows no names. */
-static tm_status add_names(const tm_polygon_surface *from, tm_stream *mesh,
-                           tm_error *error)
-{
-    if (from->group.count == 0)
-        return TM_OK;
-    tm_block *group = tm_group_of_stream(mesh, ".group");
-    return group ? tm_group_copy(group, ".group", &from->group, error)
-                 : tm_fail_memory(error);
-}
-
 /* Moves the blocks of parts (the surface that came in) and the history behind the new
  * mesh; other blocks belong to a mesh that is no longer there. */
 static tm_status keep_parts(tm_stream *from, tm_stream *mesh, tm_error *error)
@@ -254,7 +243,8 @@ int main(int argc, char **argv)
         filter_fail(&f, &error);
     if (mesh_rows(&mesh, ".ele") == 0)
         fail_empty(&surface, &defects);
-    if (add_names(&surface, &mesh, &error) != TM_OK)
+    /* TetGen hands markers and regions on, but knows no names. */
+    if (tm_group_to_stream(&surface.group, &mesh, ".group", &error) != TM_OK)
         filter_fail(&f, &error);
     tm_turned turned =
         tm_tetgen_orient(tm_stream_find(&mesh, ".node"), tm_stream_find(&mesh, ".ele"));

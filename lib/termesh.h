@@ -4,9 +4,10 @@
 #ifndef TERMESH_H
 #define TERMESH_H
 
-/* base: errors, threads, progress */
+/* base: errors, hashes, threads, progress */
 #include "base/error.h"
 #include "base/extern_c.h"
+#include "base/hash.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/version.h"

@@ -10,9 +10,13 @@
 #ifndef TM_BASE_HASH_H
 #define TM_BASE_HASH_H
 
+#include "extern_c.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 #define TM_HASH_FREE UINT32_MAX
 
@@ -43,6 +47,14 @@ static inline uint64_t tm_hash(uint64_t h, uint64_t bits)
     return h ^ h >> HALF;
 }
 
+static inline uint64_t tm_hash_string(const char *string)
+{
+    uint64_t h = 0;
+    for (; *string; string++)
+        h = tm_hash(h, (unsigned char)*string);
+    return h;
+}
+
 /* Where to look first, and then. */
 static inline uint32_t *tm_hash_slot(const tm_hash_table *table, uint64_t hash)
 {
@@ -53,5 +65,7 @@ static inline uint32_t *tm_hash_next(const tm_hash_table *table, const uint32_t 
 {
     return &table->slot[(size_t)(slot - table->slot + 1) & table->mask];
 }
+
+TM_EXTERN_C_END
 
 #endif

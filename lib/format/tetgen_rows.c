@@ -5,8 +5,6 @@
 #include "../stream/group.h"
 #include "scan.h"
 
-#include <string.h>
-
 /* Columns that `tetgen -nn` adds. */
 enum { FACE_NEIGHBOURS = 2, EDGE_NEIGHBOURS = 1 };
 
@@ -184,10 +182,8 @@ static tm_status read_group(reader *r)
     if (status != TM_OK)
         return status;
     tm_text name = {0};
-    const char *begin = r->scan->at;
-    const char *feed = memchr(begin, '\n', (size_t)(r->scan->end - begin));
-    const char *end = feed ? feed : r->scan->end;
-    tm_group_clean(&name, begin, (size_t)(end - begin));
+    const tm_word rest = tm_scan_rest(r->scan);
+    tm_group_clean(&name, rest.begin, rest.size);
     if (name.failed)
         status = tm_fail_memory(r->error);
     else if (name.size == 0)
@@ -204,9 +200,6 @@ static tm_status read_groups(reader *r)
 {
     int64_t count = 0, zero = 0;
     unsigned first = 0;
-    char name[TM_BLOCK_NAME];
-    memcpy(name, r->block->name, sizeof name);
-    tm_group_init(r->block, name);
     tm_status status = tm_scan_next_integer(r->scan, "the number of rows", 0, UINT32_MAX,
                                             &count, r->error);
     if (status == TM_OK)

@@ -35,15 +35,4 @@ static inline char *tm_put_number(char *to, uint32_t number)
     return tm_write_uint32(to, number);
 }
 
-/* The nodes of element e of .ele, .face or .mix, and how many there are. */
-static inline const uint32_t *tm_row_nodes(const tm_block *block, size_t e, size_t *k)
-{
-    if (block->start) {
-        *k = block->start[e + 1] - block->start[e];
-        return block->item + block->start[e];
-    }
-    *k = tm_block_integers(block->kind);
-    return block->integer + *k * e;
-}
-
 #endif

@@ -37,9 +37,14 @@ const char *tm_group_find(const tm_block *group, tm_group_dimension dimension,
     return NULL;
 }
 
+size_t tm_group_region_attribute(const tm_block *cells)
+{
+    return cells->kind == TM_CELL ? 1 : 0;
+}
+
 bool tm_group_region(const tm_block *cells, size_t e, int32_t *region)
 {
-    const size_t which = cells->kind == TM_CELL;
+    const size_t which = tm_group_region_attribute(cells);
     if (which >= cells->attributes)
         return false;
     const double value = cells->attribute[e * cells->attributes + which];
@@ -60,23 +65,27 @@ void tm_group_free(tm_block *group)
     tm_block_clear(group);
 }
 
-tm_status tm_group_copy(tm_block *to, const char *name, const tm_block *from,
-                        tm_error *error)
+tm_status tm_group_append(tm_block *group, const tm_block *from,
+                          tm_group_dimension dimension, tm_error *error)
 {
     tm_status status = TM_OK;
-    tm_group_init(to, name);
-    for (size_t g = 0; g < from->count && status == TM_OK; g++)
-        status = tm_group_add(to, tm_group_dimension_of(from, g), from->marker[g],
-                              tm_group_name(from, g), error);
+    for (size_t g = 0; g < from->count && status == TM_OK; g++) {
+        const tm_group_dimension of = tm_group_dimension_of(from, g);
+        if (dimension == of || dimension == TM_GROUP_DIMENSIONS)
+            status =
+                tm_group_add(group, of, from->marker[g], tm_group_name(from, g), error);
+    }
     return status;
 }
 
-tm_block *tm_group_of_stream(tm_stream *stream, const char *name)
+tm_status tm_group_to_stream(const tm_block *from, tm_stream *stream, const char *name,
+                             tm_error *error)
 {
-    tm_block *group = tm_stream_find(stream, name);
-    if (!group && (group = tm_stream_add(stream, name)))
-        tm_group_init(group, name);
-    return group;
+    if (from->count == 0)
+        return TM_OK;
+    tm_block *group = tm_stream_add(stream, name);
+    return group ? tm_group_append(group, from, TM_GROUP_DIMENSIONS, error)
+                 : tm_fail_memory(error);
 }
 
 /* Sets row g, for which there is room. */

@@ -27,9 +27,11 @@ const char *tm_group_name(const tm_block *group, size_t g);
 const char *tm_group_find(const tm_block *group, tm_group_dimension dimension,
                           int32_t value);
 
-/* The region of row e of .ele, .mix or .cell: the first attribute, of polyhedra the
- * second (the first is how many tetrahedra they were). False where there is none, or no
- * whole number of 32 bits. */
+/* Which attribute of .ele, .mix or .cell is the region: the first, of polyhedra the
+ * second (the first is how many tetrahedra they were). There may be fewer. */
+size_t tm_group_region_attribute(const tm_block *cells);
+
+/* The region of row e; false where there is none, or no whole number of 32 bits. */
 bool tm_group_region(const tm_block *cells, size_t e, int32_t *region);
 
 /* Makes *group, which is {0} or anything else that holds no memory, a block of that name
@@ -38,13 +40,15 @@ void tm_group_init(tm_block *group, const char *name);
 
 void tm_group_free(tm_block *group);
 
-/* Makes *to, as above, the same rows under another block's name. TM_ERROR_SYSTEM where
- * memory is out. */
-tm_status tm_group_copy(tm_block *to, const char *name, const tm_block *from,
-                        tm_error *error);
+/* Appends the rows of that dimension of another one, or with TM_GROUP_DIMENSIONS all;
+ * none of their names and values is there yet. TM_ERROR_SYSTEM where memory is out. */
+tm_status tm_group_append(tm_block *group, const tm_block *from,
+                          tm_group_dimension dimension, tm_error *error);
 
-/* The block of that name, a new one if need be; NULL where memory is out. */
-tm_block *tm_group_of_stream(tm_stream *stream, const char *name);
+/* Adds all of them as a block of that name, which is not there yet; none where there are
+ * none. TM_ERROR_SYSTEM where memory is out. */
+tm_status tm_group_to_stream(const tm_block *from, tm_stream *stream, const char *name,
+                             tm_error *error);
 
 /* Appends a row: the name is as tm_group_clean() leaves it, and neither it nor the value
  * is there yet in that dimension. TM_ERROR_SYSTEM where memory is out. O(1) on average.

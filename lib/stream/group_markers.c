@@ -6,19 +6,11 @@
 
 #include <string.h>
 
-static uint64_t hash_name(const char *name)
-{
-    uint64_t h = 0;
-    for (; *name; name++)
-        h = tm_hash(h, (unsigned char)*name);
-    return h;
-}
-
 /* The slot of a name in a dimension, or the free one where it belongs. */
 static uint32_t *slot_of(const tm_hash_table *table, const tm_block *group,
                          tm_group_dimension dimension, const char *name)
 {
-    uint32_t *slot = tm_hash_slot(table, tm_hash(hash_name(name), dimension));
+    uint32_t *slot = tm_hash_slot(table, tm_hash(tm_hash_string(name), dimension));
     while (*slot != TM_HASH_FREE && (tm_group_dimension_of(group, *slot) != dimension ||
                                      strcmp(tm_group_name(group, *slot), name) != 0))
         slot = tm_hash_next(table, slot);

@@ -6,10 +6,7 @@
 /* The slot of a name, or the free one where it belongs. */
 static uint32_t *slot_of(const tm_block_names *names, const char *name)
 {
-    uint64_t h = 0;
-    for (const char *c = name; *c; c++)
-        h = tm_hash(h, (unsigned char)*c);
-    uint32_t *slot = tm_hash_slot(&names->table, h);
+    uint32_t *slot = tm_hash_slot(&names->table, tm_hash_string(name));
     while (*slot != TM_HASH_FREE && strcmp(names->stream->block[*slot].name, name) != 0)
         slot = tm_hash_next(&names->table, slot);
     return slot;

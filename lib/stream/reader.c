@@ -329,7 +329,6 @@ static tm_status read_block(reader *r, const char *name)
     next_line(r);
     if (block->kind == TM_UNKNOWN)
         return read_unknown(r, block);
-    block->markers = block->kind == TM_GROUP; /* its values */
     status = read_header(r, block, &rows);
     if (status == TM_OK)
         status = read_rows(r, block, rows, limit);

@@ -41,6 +41,7 @@ tm_block *tm_stream_add(tm_stream *stream, const char *name)
     }
     tm_block *block = &stream->block[stream->blocks++];
     *block = (tm_block){.kind = tm_block_kind_of(name)};
+    block->markers = block->kind == TM_GROUP; /* its values */
     snprintf(block->name, sizeof block->name, "%s", name);
     return block;
 }

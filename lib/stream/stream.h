@@ -64,6 +64,17 @@ typedef struct tm_stream {
 size_t tm_block_reals(tm_block_kind kind);
 size_t tm_block_integers(tm_block_kind kind);
 
+/* The nodes of row r of .ele, .face, .edge, .mix or .facet, and how many there are. */
+static inline const uint32_t *tm_row_nodes(const tm_block *block, size_t r, size_t *k)
+{
+    if (block->start) {
+        *k = block->start[r + 1] - block->start[r];
+        return block->item + block->start[r];
+    }
+    *k = tm_block_integers(block->kind);
+    return block->integer + *k * r;
+}
+
 /* The kind that a name says: by what follows its last dot. */
 tm_block_kind tm_block_kind_of(const char *name);
 

@@ -250,17 +250,6 @@ static size_t put_fan(const tm_polygon_surface *surface, size_t p, int32_t marke
     return t;
 }
 
-static tm_status group_to_stream(const tm_polygon_surface *surface, tm_stream *stream,
-                                 const char *part, tm_error *error)
-{
-    tm_block *group = add_block(stream, part, ".group");
-    if (!group)
-        return tm_fail_memory(error);
-    char name[TM_BLOCK_NAME];
-    memcpy(name, group->name, sizeof name);
-    return tm_group_copy(group, name, &surface->group, error);
-}
-
 tm_status tm_polygon_surface_to_stream(const tm_polygon_surface *surface,
                                        tm_stream *stream, const char *part,
                                        tm_error *error)
@@ -281,7 +270,9 @@ tm_status tm_polygon_surface_to_stream(const tm_polygon_surface *surface,
     for (size_t f = 0; f < surface->facets && status == TM_OK; f++)
         for (size_t p = surface->facet_start[f]; p < surface->facet_start[f + 1]; p++)
             t = put_fan(surface, p, surface->facet_marker[f], face, t);
-    if (status == TM_OK && surface->group.count > 0)
-        status = group_to_stream(surface, stream, part, error);
+    char name[TM_BLOCK_NAME];
+    snprintf(name, sizeof name, "%s.group", part);
+    if (status == TM_OK)
+        status = tm_group_to_stream(&surface->group, stream, name, error);
     return status;
 }

@@ -80,24 +80,15 @@ static tm_status prepare(tm_surface *surface, const tm_surface_options *options,
     return status;
 }
 
-static tm_status copy_names(tm_surface *surface, const tm_block *from, tm_error *error)
-{
-    tm_status status = TM_OK;
-    tm_group_init(&surface->group, ".group");
-    for (size_t g = 0; g < from->count && status == TM_OK; g++)
-        if (tm_group_dimension_of(from, g) == TM_GROUP_FACES)
-            status = tm_group_add(&surface->group, TM_GROUP_FACES,
-                                  tm_group_value(from, g), tm_group_name(from, g), error);
-    return status;
-}
-
 tm_status tm_surface_build(tm_surface *surface, const tm_polygon_surface *polygons,
                            const tm_surface_options *options, tm_error *error)
 {
     *surface = (tm_surface){0};
     tm_status status = tm_surface_triangulate(surface, polygons, error);
-    if (status == TM_OK && polygons->group.count > 0)
-        status = copy_names(surface, &polygons->group, error);
+    tm_group_init(&surface->group, ".group");
+    if (status == TM_OK)
+        status =
+            tm_group_append(&surface->group, &polygons->group, TM_GROUP_FACES, error);
     if (status == TM_OK)
         status = shape(surface, options, polygons->base, error);
     if (status == TM_OK)

@@ -125,7 +125,8 @@ static void test_check(void **state)
     assert_string_equal(error.what, "rows 0 and 2 have the same name (each may be there "
                                     "once in a dimension)");
     tm_block copy;
-    assert_int_equal(tm_group_copy(&copy, "surface.group", &group, NULL), TM_OK);
+    tm_group_init(&copy, "surface.group");
+    assert_int_equal(tm_group_append(&copy, &group, TM_GROUP_DIMENSIONS, NULL), TM_OK);
     assert_string_equal(copy.name, "surface.group");
     assert_int_equal(copy.count, 3);
     assert_int_equal(tm_group_dimension_of(&copy, 1), TM_GROUP_EDGES);

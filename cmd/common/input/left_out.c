@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "left_out.h"
 
+#include "../../../lib/base/hash.h"
 #include "../../../lib/mesh/cell_faces.h"
 #include "../../../lib/stream/group.h"
 
@@ -12,20 +13,21 @@
 enum {
     NODE_ATTRIBUTES = 1 << 0,
     NODE_MARKERS = 1 << 1,
-    EDGES = 1 << 2,            /* with their markers */
-    FACES = 1 << 3,            /* markers of .face and .facet: those above 0, and */
-    FACES_BELOW_0 = 1 << 4,    /* those below */
-    REGIONS = 1 << 5,          /* whole numbers from 0, and */
-    OTHER_REGIONS = 1 << 6,    /* all others */
-    REGIONS_BELOW_0 = 1 << 14, /* whole numbers, too */
-    ATTRIBUTES = 1 << 7,       /* of cells, but regions */
-    NODE_NAMES = 1 << 8,       /* in the order of tm_group_dimension */
-    EDGE_NAMES = 1 << 9,
-    FACE_NAMES = 1 << 10,
-    REGION_NAMES = 1 << 11,
+    EDGES = 1 << 2,           /* with their markers */
+    FACES = 1 << 3,           /* markers of .face and .facet: those above 0, and */
+    FACES_BELOW_0 = 1 << 4,   /* those below */
+    REGIONS = 1 << 5,         /* whole numbers from 0, */
+    REGIONS_BELOW_0 = 1 << 6, /* others, and */
+    OTHER_REGIONS = 1 << 7,   /* what is no whole number */
+    ALL_REGIONS = REGIONS | REGIONS_BELOW_0 | OTHER_REGIONS,
+    ATTRIBUTES = 1 << 8, /* of cells, but regions */
+    NODE_NAMES = 1 << 9, /* in the order of tm_group_dimension */
+    EDGE_NAMES = 1 << 10,
+    FACE_NAMES = 1 << 11,
+    REGION_NAMES = 1 << 12,
     NAMES = NODE_NAMES | EDGE_NAMES | FACE_NAMES | REGION_NAMES,
-    PARTS = 1 << 12,     /* of .node, .ele, .face, .edge and .group */
-    TETRAHEDRA = 1 << 13 /* .ele whatever else there is, and nothing else */
+    PARTS = 1 << 13,     /* of .node, .ele, .face, .edge and .group */
+    TETRAHEDRA = 1 << 14 /* .ele whatever else there is, and nothing else */
 };
 
 /* One row for each exporter; of one that has none all is left out. OFF is of faces alone,
@@ -37,14 +39,12 @@ static const struct {
     {"getfem-export", FACES | REGIONS | FACE_NAMES | REGION_NAMES},
     {"m3d-export", 0},
     {"mvm-export", 0},
-    {"oct-export", NODE_ATTRIBUTES | NODE_MARKERS | EDGES | REGIONS | REGIONS_BELOW_0 |
-                       OTHER_REGIONS | ATTRIBUTES},
-    {"off-export", REGIONS | REGIONS_BELOW_0 | OTHER_REGIONS | ATTRIBUTES | REGION_NAMES},
+    {"oct-export", NODE_ATTRIBUTES | NODE_MARKERS | EDGES | ALL_REGIONS | ATTRIBUTES},
+    {"off-export", ALL_REGIONS | ATTRIBUTES | REGION_NAMES},
     {"openfoam-export",
      FACES | FACES_BELOW_0 | REGIONS | REGIONS_BELOW_0 | FACE_NAMES | REGION_NAMES},
     {"tetgen-export", NODE_ATTRIBUTES | NODE_MARKERS | EDGES | FACES | FACES_BELOW_0 |
-                          REGIONS | REGIONS_BELOW_0 | OTHER_REGIONS | ATTRIBUTES | NAMES |
-                          PARTS | TETRAHEDRA},
+                          ALL_REGIONS | ATTRIBUTES | NAMES | PARTS | TETRAHEDRA},
     {"visf-export", 0},
     {"vtk-export", ~0u & ~(unsigned)(PARTS | TETRAHEDRA)},
     {"vtu-export", ~0u & ~(unsigned)(PARTS | TETRAHEDRA)},
@@ -63,6 +63,12 @@ static unsigned kept_by(const char *name)
         if (strcmp(formats[i].filter, name) == 0)
             return formats[i].keeps;
     return 0;
+}
+
+/* Whether the format has all of these: then nobody need look for them. */
+static bool is_kept(const finder *find, unsigned places)
+{
+    return (find->keeps & places) == places;
 }
 
 /* Adds "COUNT WHAT (BLOCK)" where there are some and the format has no place for them. */
@@ -99,14 +105,6 @@ static int32_t only_marker(const tm_block *block)
     return only;
 }
 
-/* The nodes of row r of .face or .facet. */
-static const uint32_t *nodes_of(const tm_block *block, size_t r, size_t *k)
-{
-    *k = block->start ? block->start[r + 1] - block->start[r]
-                      : tm_block_integers(block->kind);
-    return block->start ? block->item + block->start[r] : block->integer + *k * r;
-}
-
 static bool is_inside(const tm_block *block, size_t r)
 {
     return block->kind == TM_FACET && block->integer[2 * r + 1] != TM_NONE;
@@ -115,12 +113,7 @@ static bool is_inside(const tm_block *block, size_t r)
 /* A number of an edge that hardly another one has. */
 static uint64_t edge_hash(uint32_t a, uint32_t b)
 {
-    const uint64_t factor[] = {0xBF58476D1CE4E5B9u, 0x94D049BB133111EBu};
-    enum { HALF = 32, SHIFT = 29 };
-    uint64_t h = a < b ? (uint64_t)a << HALF | b : (uint64_t)b << HALF | a;
-    for (size_t i = 0; i < 2; i++)
-        h = (h ^ h >> SHIFT) * factor[i];
-    return h ^ h >> HALF;
+    return tm_hash(tm_hash(0, a < b ? a : b), a < b ? b : a);
 }
 
 /* Whether the marked faces are those of the whole boundary, as far as that is seen
@@ -134,7 +127,7 @@ static bool is_boundary(const finder *find, const tm_block *block)
             return false;
         if (block->marker[r] == 0)
             continue;
-        const uint32_t *node = nodes_of(block, r, &k);
+        const uint32_t *node = tm_row_nodes(block, r, &k);
         for (size_t i = 0; i < k; i++)
             odd ^= edge_hash(node[i], node[(i + 1) % k]);
     }
@@ -144,7 +137,7 @@ static bool is_boundary(const finder *find, const tm_block *block)
 static void add_faces(finder *find, const char *name)
 {
     const tm_block *block = tm_stream_find(find->stream, name);
-    if (!block || !block->marker)
+    if (!block || !block->marker || is_kept(find, FACES | FACES_BELOW_0))
         return;
     if (only_marker(block) != 0 && is_boundary(find, block))
         return;
@@ -156,7 +149,7 @@ static void add_faces(finder *find, const char *name)
 static void add_edges(finder *find)
 {
     const tm_block *block = tm_stream_find(find->stream, ".edge");
-    if (!block || !block->marker)
+    if (!block || !block->marker || is_kept(find, EDGES))
         return;
     const size_t marked = count_markers(block, false) + count_markers(block, true);
     if (only_marker(block) == 0 || marked < block->count)
@@ -170,7 +163,7 @@ static bool marks_nodes_of(const tm_block *node, const tm_block *block)
     unsigned char *at_boundary = calloc(node->count + 1, 1);
     bool same = at_boundary != NULL;
     for (size_t r = 0, k; same && r < block->count; r++) {
-        const uint32_t *corner = nodes_of(block, r, &k);
+        const uint32_t *corner = tm_row_nodes(block, r, &k);
         for (size_t i = 0; i < k && !is_inside(block, r); i++)
             at_boundary[corner[i]] = 1;
     }
@@ -189,7 +182,7 @@ static void add_nodes(finder *find)
     if (node->count > 0 && node->attributes > octree_mesh)
         add(find, NODE_ATTRIBUTES, node->attributes - octree_mesh, "attributes of nodes",
             node->name);
-    if (!node->marker)
+    if (!node->marker || is_kept(find, NODE_MARKERS))
         return;
     const tm_block *face = tm_stream_find(
         find->stream, find->content == TM_CONTENT_POLYHEDRA ? ".facet" : ".face");
@@ -203,14 +196,11 @@ static void add_nodes(finder *find)
 
 /* Cells ------------------------------------------------------------------------------ */
 
-/* The region is the first attribute, but of polyhedra the second: the first one is how
- * many tetrahedra they were. */
+/* A region 1 of all cells is as good as none. */
 static void add_regions(finder *find, const tm_block *cell)
 {
-    const size_t at = cell->kind == TM_CELL ? 1 : 0;
+    const size_t at = tm_group_region_attribute(cell);
     size_t whole = 0, below = 0, others = 0, ones = 0;
-    if (at >= cell->attributes)
-        return;
     for (size_t c = 0; c < cell->count; c++) {
         const double region = cell->attribute[c * cell->attributes + at];
         const bool is_whole = region == floor(region);
@@ -219,12 +209,21 @@ static void add_regions(finder *find, const tm_block *cell)
         others += !is_whole;
         ones += region == 1;
     }
-    if (ones < cell->count) {
-        add(find, REGIONS, whole, "regions of cells", cell->name);
-        add(find, REGIONS_BELOW_0, below, "regions of cells below 0", cell->name);
-        add(find, OTHER_REGIONS, others, "regions of cells that are no whole numbers",
-            cell->name);
-    }
+    if (ones == cell->count)
+        return;
+    add(find, REGIONS, whole, "regions of cells", cell->name);
+    add(find, REGIONS_BELOW_0, below, "regions of cells below 0", cell->name);
+    add(find, OTHER_REGIONS, others, "regions of cells that are no whole numbers",
+        cell->name);
+}
+
+static void add_attributes(finder *find, const tm_block *cell)
+{
+    const size_t at = tm_group_region_attribute(cell);
+    if (at >= cell->attributes)
+        return;
+    if (!is_kept(find, ALL_REGIONS))
+        add_regions(find, cell);
     add(find, ATTRIBUTES, cell->attributes - at - 1, "other attributes of cells",
         cell->name);
 }
@@ -239,7 +238,7 @@ static void add_cells(finder *find)
     for (size_t i = 0; i < sizeof name / sizeof *name; i++) {
         const tm_block *block = tm_stream_find(find->stream, name[i]);
         if (block && block == taken)
-            add_regions(find, block);
+            add_attributes(find, block);
         else if (block)
             add(find, 0, block->count, "cells", block->name);
     }

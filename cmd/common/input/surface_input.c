@@ -58,7 +58,7 @@ static tm_status read_stream(const tm_text *bytes, const char *name, tm_stream *
     if (fd < 0)
         return tm_fail(error, TM_ERROR_SYSTEM, "cannot hold the input: %s",
                        strerror(errno));
-    tm_status status = tm_write_all(fd, bytes->byte, bytes->size, error);
+    tm_status status = tm_write_text(fd, bytes, error);
     if (status == TM_OK && lseek(fd, 0, SEEK_SET) != 0)
         status =
             tm_fail(error, TM_ERROR_SYSTEM, "cannot hold the input: %s", strerror(errno));
@@ -126,7 +126,7 @@ tm_status surface_input_of_stream(const tm_stream *stream, const char *name,
     if (!group) /* the markers of a mesh are those of its surface */
         group = tm_stream_find(stream, ".group");
     if (status == TM_OK && group)
-        status = tm_group_copy(&surface->group, ".group", group, error);
+        status = tm_group_append(&surface->group, group, TM_GROUP_DIMENSIONS, error);
     return status;
 }
 

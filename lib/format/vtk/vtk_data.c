@@ -2,6 +2,7 @@
 #include "vtk_grid.h"
 
 #include "../../base/array.h"
+#include "../../stream/group.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -77,18 +78,16 @@ tm_status tm_vtk_point_data(const tm_vtk_grid *grid, tm_vtk_take *take, void *co
     return take_and_free(&column, TM_OK, take, context);
 }
 
-/* The region is the first one; of polyhedra this is how many tetrahedra they were. */
+/* What is before the region is how many tetrahedra a polyhedron was. */
 static tm_status write_attributes(const tm_vtk_grid *grid, tm_vtk_take *take,
                                   void *context, tm_error *error)
 {
-    const bool polyhedra = grid->content == TM_CONTENT_POLYHEDRA;
     const tm_block *cell = grid->cell;
+    const size_t region = tm_group_region_attribute(cell);
     tm_status status = TM_OK;
     tm_vtk_column column;
     for (size_t i = 0; i < cell->attributes && status == TM_OK; i++) {
-        const char *name = i == (polyhedra ? 1 : 0) ? "region" : NULL;
-        if (polyhedra && i == 0)
-            name = "tetrahedra";
+        const char *name = i == region ? "region" : i < region ? "tetrahedra" : NULL;
         status = new_attribute(&column, cell, i, name, tm_vtk_cells(grid))
                      ? tm_vtk_finish(grid, &column, 0, TM_OK, take, context)
                      : tm_fail_memory(error);

@@ -135,14 +135,7 @@ static tm_status surface_to_stream(tm_surface *surface, tm_stream *stream,
     face->markers = surface->marker != NULL;
     face->marker = surface->marker;
     surface->marker = NULL;
-    if (surface->group.count == 0)
-        return TM_OK;
-    tm_block *group = tm_stream_add(stream, ".group");
-    if (!group)
-        return tm_fail_memory(error);
-    *group = surface->group;
-    tm_group_init(&surface->group, ".group");
-    return TM_OK;
+    return tm_group_to_stream(&surface->group, stream, ".group", error);
 }
 
 tm_status tm_octree_mesh_to_stream(tm_octree_mesh *mesh, const tm_octree *octree,
