@@ -415,6 +415,10 @@ need_vtk() {
     "$vtk_python" -c 'import vtk' 2>/dev/null || skip "there is no python3-vtk9"
 }
 
+need_meshio() {
+    "$vtk_python" -c 'import meshio' 2>/dev/null || skip "there is no python3-meshio"
+}
+
 # vtk FILE EXPRESSION: prints it, of g, the grid that VTK reads of a .vtk or .vtu file,
 # volume and area of its cells by vtkCellSizeFilter, point and cell, the arrays by their
 # names, within(ARRAY, A, B), the cells with values A to B by vtkThreshold: their types,

@@ -97,7 +97,7 @@ END
     vtk sphere.vtu "'\\n'.join('%.4f' % q for q in cell['dihedral_quality'])" >quality
     paste expected quality |
         awk '$1 - $2 > 2e-4 || $2 - $1 > 2e-4 { print; wrong = 1 } END { exit wrong }'
-    "$vtk_python" -c 'import meshio' 2>/dev/null || skip "there is no python3-meshio"
+    need_meshio
     [ "$("$vtk_python" -c 'import meshio
 m = meshio.read("sphere.vtu")
 print(len(m.points), len(m.cells_dict["tetra"]), sep=",")' | tail -n 1)" = "$counts" ]
@@ -150,98 +150,4 @@ print(len(m.points), len(m.cells_dict["tetra"]), sep=",")' | tail -n 1)" = "$cou
     [ "$stderr" = 'vtu-export: wrong.tm: .facet: row 5: cell 1 does not have this facet' ]
     sed 's/^6 1 2 4/6 1 1 4/' cubes.tm >wrong.tm
     run -3 --separate-stderr vtu-export wrong.tm
-}
-
-@test "tetrahedra: marked faces and edges are cells, with the data of the cells they bound" {
-    need_vtk
-    two_boxes >two.poly
-    tetgen-mesh --quiet --switches A two.poly | sed '$d' >two.tm
-    printf '.group\n2 0\n1 2 20 between "us" & 50%%\n2 3 7 Größe\n.end\n' >>two.tm
-    vtu-export -j 3 two.tm >two.vtu
-    vtu-export two.tm | cmp - two.vtu
-    # cells by dimension; those of a marker are found by it, volume cells by 0
-    [ "$(vtk two.vtu '[types.count(t) for t in (10, 5, 3)]')" = \
-        "[$(rows .ele two.tm | wc -l), $(rows .face two.tm | awk '$5' | wc -l), $(
-            rows .edge two.tm | awk '$4' | wc -l)]" ]
-    [ "$(vtk two.vtu '[within("marker", m, m) for m in (0, 11, 13, 20)]')" = \
-        '[([10], 2.0, 0.0), ([5], 0.0, 1.0), ([5], 0.0, 2.0), ([5], 0.0, 1.0)]' ]
-    # the boxes with the faces and edges that are theirs: 1 below, 4 around
-    [ "$(vtk two.vtu '[within("region", r, r)[1] for r in (3, 7)]')" = '[1.0, 1.0]' ]
-    [ "$(vtk two.vtu '[{float(r) for r, m in zip(cell["region"], cell["marker"]) if m == w}
-        for w in (11, 12)]')" = '[{3.0}, {7.0}]' ]
-    [ "$(vtk two.vtu 'all(q in set(cell["dihedral_quality"][:types.count(10)])
-        for q in cell["dihedral_quality"])')" = True ]
-    [ "$(vtk two.vtu 'names')" = "['2 20 between \"us\" & 50%', '3 7 Größe']" ]
-    # without them it is as it was, but for the names
-    vtu-export --no-boundary --no-quality --no-names two.tm >plain.vtu
-    [ "$(vtk plain.vtu 'set(types), sorted(cell), names')" = "({10}, ['region'], None)" ]
-    awk '/^\.(face|edge|group)/ { skip = 1 } /^\.end/ { skip = 0 } !skip' two.tm |
-        vtu-export --no-quality | cmp - plain.vtu
-    "$vtk_python" -c 'import meshio' 2>/dev/null || skip "there is no python3-meshio"
-    vtu-export --no-names two.tm >two.vtu
-    [ "$("$vtk_python" -c 'import meshio
-m = meshio.read("two.vtu")
-print(sum(abs(d).sum() for b, d in zip(m.cells, m.cell_data["marker"]) if b.type == "tetra"),
-    sum((d == 20).sum() for b, d in zip(m.cells, m.cell_data["marker"]) if b.type == "triangle"),
-    sum(len(b.data) for b in m.cells if b.type == "line"))' | tail -n 1)" = \
-        "0 2 $(rows .edge two.tm | awk '$4' | wc -l)" ]
-}
-
-@test "mixed elements: quadrilaterals, triangles, lines; J_ENS, and the level of octants" {
-    need_vtk
-    mixed | sed '$d' >mixed.tm
-    printf '%s\n' .facet '4 1' '1 1 -1 4 3 2 1 4 5' '2 4 -1 3 12 6 7 -7' '3 1 -1 3 1 2 3 8' \
-        '4 1 2 4 5 6 7 8 0' .face '2 1' '1 6 7 12 3' '2 1 2 4 0' .edge '2 1' '1 10 11 4' \
-        '2 1 11 6' .end >>mixed.tm
-    vtu-export mixed.tm >mixed.vtu
-    [ "$(vtk mixed.vtu 'types, cell["marker"].tolist(), cell["region"].tolist()')" = \
-        '([12, 14, 13, 10, 5, 9, 5, 5, 3, 3], [0, 0, 0, 0, 3, 5, -7, 8, 4, 6], '\
-'[1.0, 1.0, 2.0, 3.0, 3.0, 1.0, 3.0, 1.0, 2.0, 0.0])' ]
-    jens-stats -j mixed.tm >jens
-    [ "$(vtk mixed.vtu "'\\n'.join('%.9f' % q for q in cell['jens'][:4])")" = \
-        "$(awk '{ printf "%.9f\n", $2 }' jens)" ]
-    [ "$(vtk mixed.vtu '[round(12 * v, 9) + 0 for v in volume.tolist()][:4]')" = \
-        '[12.0, 4.0, 6.0, 1.0]' ]
-    command -v octree-mesh >/dev/null || skip "octree-mesh is not built"
-    surface sphere off | octree-mesh -q -u -s 4 >sphere.tm
-    vtu-export sphere.tm >sphere.vtu
-    [ "$(vtk sphere.vtu 'sorted(cell), bool((cell["level"] == cell["region"]).all())')" = \
-        "(['jens', 'level', 'region'], True)" ]
-}
-
-@test "polyhedra: polygons, volume, the ball in the kernel; regions" {
-    need_vtk
-    cubes >cubes.tm
-    vtu-export cubes.tm >cubes.vtu
-    [ "$(vtk cubes.vtu '(types, cell["volume"].tolist()[:2],
-        [round(12 * r * r, 9) for r in cell["kernel_radius"].tolist()])')" = \
-        "([42, 42$(printf ', 9%.0s' {1..10})], [1.0, 1.0], [1.0$(printf ', 1.0%.0s' {1..11})])" ]
-    [ "$(vtk cubes.vtu 'within("marker", 0, 0), within("marker", 2, 2)')" = \
-        '(([42], 2.0, 0.0), ([9], 0.0, 4.0))' ]
-    [ "$(vtk cubes.vtu '[set(cell["tetrahedra"][cell["marker"] == m].tolist())
-        for m in (1, 5)]')" = '[{1.0}, {2.0}]' ]
-    boxes 3 0.2 >boxes.tm
-    vtu-export -j 2 boxes.tm >boxes.vtu
-    poly-stats --json boxes.json boxes.tm >/dev/null
-    "$vtk_python" -c 'import json, sys
-volume, radius = map(float, sys.argv[1].split())
-of = json.load(open("boxes.json"))
-assert abs(volume / of["volume"] - 1) < 1e-12 and radius == of["kernel_radius"]["min"]' \
-        "$(vtk boxes.vtu "'%.17g %.17g' % (sum(cell['volume']), min(cell['kernel_radius']))")"
-    two_boxes >two.poly
-    tetgen-mesh --quiet --switches A two.poly | polylla3d -q --absorb --merge-coplanar |
-        vtu-export >two.vtu
-    [ "$(vtk two.vtu 'within("region", 3, 3)[1], within("marker", 20, 20)')" = \
-        '(1.0, ([9], 0.0, 1.0))' ]
-}
-
-@test "points and a surface with marked edges" {
-    need_vtk
-    printf '%s\n' 'termesh 1' .node '4 3 0 0' '1 0 0 0' '2 1 0 0' '3 0 1 0' '4 0 0 1' \
-        .face '2 1' '1 1 3 2 -7' '2 1 2 4 8' .edge '2 1' '1 1 2 3' '2 3 4 0' .end >surface.tm
-    vtu-export surface.tm >surface.vtu
-    [ "$(vtk surface.vtu 'types, cell["marker"].tolist()')" = '([5, 5, 3], [-7, 8, 3])' ]
-    sed '/^\.face/,/^2 1 2/d' surface.tm | vtu-export >points.vtu
-    [ "$(vtk points.vtu 'types, cell["marker"].tolist()')" = \
-        '([1, 1, 1, 1, 3], [0, 0, 0, 0, 3])' ]
 }
