@@ -273,7 +273,7 @@ static void add_effects(const tm_improve_report *r, char *text, size_t size)
 {
     static const char *const words[TM_IMPROVE_EFFECTS] = {
         "%zu edges and ", "%zu faces removed, ", "%zu times a node moved, ",
-        "%zu points inserted, ", "%zu nodes removed"};
+        "%zu points inserted, ", "%zu nodes removed", ", %zu cavities filled anew"};
     for (int k = 0; k < TM_IMPROVE_EFFECTS; k++)
         add(text, size, words[k], tm_improve_effects(r, (tm_improve_effect)k));
 }

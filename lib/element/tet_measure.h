@@ -99,6 +99,7 @@ typedef struct tm_cost {
     tm_tet_measure measure;
     double target;          /* by measure: what is as good costs nothing */
     double weight;          /* of how bad it is, beside 1 for being bad */
+    double steep;           /* above 0: see tm_cost_of() */
     tm_angle_limits limits; /* no angle may be beyond */
 } tm_cost;
 
@@ -118,11 +119,15 @@ static inline double tm_cost_quality(const tm_cost *cost, double least, const do
 }
 
 /* What a tetrahedron of that quality costs: 0 from the target on, 1 just below, and
- * 1 + weight for the worst. */
+ * 1 + weight for the worst. With `steep` the worst count most: what is `steep` times the
+ * target costs half of the weight, and more than twice that costs little. */
 static inline double tm_cost_of(const tm_cost *cost, double quality)
 {
     if (quality >= cost->target)
         return 0;
+    if (cost->steep > 0)
+        return 1 + cost->weight * cost->steep /
+                       (cost->steep + sqrt(quality / cost->target));
     return 1 + cost->weight * (1 - sqrt(quality / cost->target));
 }
 

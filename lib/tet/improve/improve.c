@@ -81,8 +81,7 @@ static bool find_targets(tm_improver *m)
     return done || tm_improve_no_memory(m);
 }
 
-/* Tries the operations of a phase until something is done. */
-static bool try_on(tm_improver *m, uint32_t t, tm_improve_phase phase)
+bool tm_improve_try(tm_improver *m, uint32_t t, tm_improve_phase phase)
 {
     bool (*tried)(tm_improver *, uint32_t) = NULL;
     for (int op = 0; op < TM_IMPROVE_OPS; op++) {
@@ -123,7 +122,7 @@ static void run_pass(tm_improver *m, tm_improve_phase phase)
     for (size_t k = 0; k < m->targets && m->status == TM_OK; k++) {
         uint32_t t = m->target[k];
         tm_progress_step(m->options->progress, &m->at, k);
-        if (is_bad(m, t) && is_due(m, t) && !try_on(m, t, phase))
+        if (is_bad(m, t) && is_due(m, t) && !tm_improve_try(m, t, phase))
             m->tried[t] = m->change + 1;
     }
     m->report->passes++;
@@ -314,6 +313,7 @@ tm_status tm_improve(tm_tet_mesh *mesh, const tm_improve_options *options,
     if (status == TM_OK) {
         report->bad_before = count_bad_angles(m);
         run(m);
+        tm_improve_worst(m);
         status = m->status;
         report->bad_after = count_bad_angles(m);
         report->too_large = mesh->tets > m->most_tets;

@@ -32,7 +32,9 @@ TM_EXTERN_C_BEGIN
     /* of an edge: removes a node */                                                     \
     ROW(CONTRACTION, "contraction", "contractions", NODES_REMOVED, SHRINK, contract)     \
     /* of a node, at the best point of a cavity, or on an edge */                        \
-    ROW(INSERTION, "insertion", "insertions", POINTS_INSERTED, ALL, insert)
+    ROW(INSERTION, "insertion", "insertions", POINTS_INSERTED, ALL, insert)              \
+    /* of the tetrahedra in a cavity: the best of all ways to fill it */                 \
+    ROW(RECONNECTION, "reconnection", "reconnections", CAVITIES_FILLED, LAST, reconnect)
 
 #define TM_IMPROVE_ROW(op, name, key, effect, phase, function) TM_OP_##op,
 typedef enum tm_improve_op {
@@ -50,6 +52,7 @@ typedef enum tm_improve_effect {
     TM_EFFECT_NODES_MOVED,
     TM_EFFECT_POINTS_INSERTED,
     TM_EFFECT_NODES_REMOVED,
+    TM_EFFECT_CAVITIES_FILLED,
     TM_IMPROVE_EFFECTS
 } tm_improve_effect;
 

@@ -14,6 +14,9 @@ static const double cost_weight = 3;
  * measure, if it costs less in all. */
 static const double looseness = 0.5, kick_looseness = 0.25;
 
+/* Or, of the last ones, has to be better by this factor. */
+static const double strictness = 1.01;
+
 bool tm_improve_no_memory(tm_improver *m)
 {
     m->status = tm_fail_memory(m->error);
@@ -117,7 +120,9 @@ double tm_improve_old_cost(const tm_improver *m, const uint32_t *old, size_t cou
         sum += tm_cost_of(&m->cost, quality);
         worst = quality < worst ? quality : worst;
     }
-    *least = worst * (m->price < 0 ? kick_looseness : looseness);
+    *least = worst * (m->last        ? strictness
+                      : m->price < 0 ? kick_looseness
+                                     : looseness);
     return sum;
 }
 

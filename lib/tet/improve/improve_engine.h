@@ -9,6 +9,7 @@
 #include "../../geom/space_order.h"
 #include "../operation/ball.h"
 #include "../operation/cavity.h"
+#include "../operation/cavity_search.h"
 #include "../operation/edge_removal.h"
 #include "../operation/face_removal.h"
 #include "../operation/features.h"
@@ -38,6 +39,7 @@ typedef struct tm_improver {
     double degrees;   /* the target, by the angle or, for volume, a hundredth of it */
     double price;     /* of one more tetrahedron; negative to kick */
     unsigned fails;   /* kicks without success, since one had it */
+    bool last;        /* the worst ones are worked on: nothing made is as bad as they */
     size_t most_tets; /* the mesh never grows beyond */
 
     /* By tetrahedron: its quality by cost.measure; the change after which it was tried.
@@ -64,6 +66,7 @@ typedef struct tm_improver {
     tm_cavity cavity;
     tm_edge_removal removal[2]; /* for the two sides of a facet */
     tm_face_removal face_removal;
+    tm_cavity_search search;
     tm_replacement_table table;
     uint32_t (*node)[4]; /* of tetrahedra to be made */
     uint32_t *created;
@@ -99,8 +102,20 @@ void tm_improve_forbid(tm_improver *m, double degrees);
 void tm_improve_set_price(tm_improver *m, double price);
 
 /* What a pass tries: what neither adds nor removes nodes; what makes the mesh smaller
- * too; all. */
-typedef enum { TM_PHASE_MOVE, TM_PHASE_SHRINK, TM_PHASE_ALL } tm_improve_phase;
+ * too; what makes it larger; what takes long. */
+typedef enum {
+    TM_PHASE_MOVE,
+    TM_PHASE_SHRINK,
+    TM_PHASE_ALL,
+    TM_PHASE_LAST
+} tm_improve_phase;
+
+/* Tries the operations of a phase on t until something is done. */
+bool tm_improve_try(tm_improver *m, uint32_t t, tm_improve_phase phase);
+
+/* Works on the worst tetrahedra, one by one. No operation makes one as bad as the worst
+ * that it replaces, or more bad ones than those. */
+void tm_improve_worst(tm_improver *m);
 
 /* The functions of the table: each tries its operations on tetrahedron t, or at its
  * nodes; whether one was done. */
@@ -111,6 +126,9 @@ TM_IMPROVE_TABLE(TM_IMPROVE_ROW)
 
 /* Tries to contract one of the edges of node a, a corner of t. */
 bool tm_improve_contract_node(tm_improver *m, uint32_t t, uint32_t a);
+
+/* Whether an edge with a marker would go with m->cavity. */
+bool tm_improve_has_marked_edge(const tm_improver *m);
 
 /* Room for an operation that makes so many tetrahedra and nodes; false, with m->status
  * set, where memory is out. */

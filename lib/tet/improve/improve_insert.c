@@ -82,8 +82,7 @@ static bool boundary_has_edge(const tm_cavity *cavity, uint32_t a, uint32_t b)
     return false;
 }
 
-/* Whether an edge with a marker would go with the cavity. */
-static bool has_marked_edge(const tm_improver *m)
+bool tm_improve_has_marked_edge(const tm_improver *m)
 {
     const tm_cavity *cavity = &m->cavity;
     for (size_t k = 0; k < cavity->size && m->mesh->inner_marked_edges; k++)
@@ -126,7 +125,7 @@ static bool fill(tm_improver *m, const double p[3])
     tm_tet_mesh *mesh = m->mesh;
     size_t faces = m->cavity.faces, swallowed, width = mesh->node_attributes;
     tm_cavity_boundary boundary = tm_boundary_of_cavity(&m->cavity, mesh);
-    if (!tm_cavity_boundary_sees(&boundary, p) || has_marked_edge(m) ||
+    if (!tm_cavity_boundary_sees(&boundary, p) || tm_improve_has_marked_edge(m) ||
         !tm_improve_reserve(m, faces + m->cavity.size, 1) ||
         !find_swallowed(m, &swallowed))
         return false;

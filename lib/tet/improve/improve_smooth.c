@@ -37,7 +37,7 @@ static bool is_gain(const tm_improver *m, const tm_cavity_boundary *boundary,
 static bool find_point(const tm_improver *m, const tm_cavity_boundary *boundary,
                        const tm_freedom *freedom, double least, double most, double p[3])
 {
-    enum { STEPS = 2 };
+    enum { STEPS = 2, LAST_STEPS = 8 };
     const double *from = m->mesh->xyz[m->ball.node];
     memcpy(p, from, sizeof m->mesh->xyz[0]);
     go_to_centre(boundary, freedom, p);
@@ -45,7 +45,8 @@ static bool find_point(const tm_improver *m, const tm_cavity_boundary *boundary,
         return true;
     memcpy(p, from, sizeof m->mesh->xyz[0]);
     tm_cavity_boundary_climb(boundary, m->cost.measure, freedom,
-                             m->cost.target * beyond_target, STEPS, p);
+                             m->cost.target * beyond_target, m->last ? LAST_STEPS : STEPS,
+                             p);
     return is_gain(m, boundary, least, most, p);
 }
 
