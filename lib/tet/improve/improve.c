@@ -20,6 +20,9 @@ enum { PASSES_MAX = 8, KICKS_MAX = 1000, FEW = 100, MANY = 1000 };
 enum { CYCLE = 12, FAILS_MAX = 3 * CYCLE };
 static const double wider_by = 1.5;
 
+/* In the time of a unit of work, see improve_engine.h. */
+static const size_t tets_scanned = 8192;
+
 /* The table of operations, as far as it says when what is tried. */
 #define ROW(op, name, key, effect, phase, function)                                      \
     {TM_PHASE_##phase, tm_improve_##function},
@@ -95,10 +98,10 @@ bool tm_improve_try(tm_improver *m, uint32_t t, tm_improve_phase phase)
     return false;
 }
 
-/* Whether no pass is left. */
+/* Whether no pass or no time is left. */
 static bool is_over(const tm_improver *m)
 {
-    return m->status != TM_OK ||
+    return m->status != TM_OK || m->work >= m->work_most ||
            (m->options->passes > 0 && m->report->passes >= m->options->passes);
 }
 
@@ -126,6 +129,7 @@ static void run_pass(tm_improver *m, tm_improve_phase phase)
             m->tried[t] = m->change + 1;
     }
     m->report->passes++;
+    m->work += m->targets + m->mesh->slots / tets_scanned;
 }
 
 /* Whether so many bad ones are enough less than before. */
@@ -313,7 +317,7 @@ tm_status tm_improve(tm_tet_mesh *mesh, const tm_improve_options *options,
     if (status == TM_OK) {
         report->bad_before = count_bad_angles(m);
         run(m);
-        tm_improve_worst(m);
+        tm_improve_worst(m, reach);
         status = m->status;
         report->bad_after = count_bad_angles(m);
         report->too_large = mesh->tets > m->most_tets;

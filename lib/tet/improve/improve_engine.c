@@ -17,6 +17,10 @@ static const double looseness = 0.5, kick_looseness = 0.25;
 /* Or, of the last ones, has to be better by this factor. */
 static const double strictness = 1.01;
 
+/* So many tetrahedra are copied in the time of a unit of work; they are measured, too,
+ * when they are restored. */
+static const size_t tets_kept = 512;
+
 bool tm_improve_no_memory(tm_improver *m)
 {
     m->status = tm_fail_memory(m->error);
@@ -165,6 +169,7 @@ void tm_improve_snapshot(tm_improver *m, tm_improve_state *state, size_t bad)
     if (m->status != TM_OK)
         return;
     state->bad = bad;
+    m->work += m->mesh->slots / tets_kept;
     state->done = m->report->done;
     m->status = tm_tet_mesh_copy(&state->mesh, m->mesh, m->error);
     if (m->status == TM_OK && !tm_features_copy(&state->features, &m->features))
@@ -176,6 +181,7 @@ void tm_improve_restore(tm_improver *m, const tm_improve_state *state)
     if (m->status != TM_OK)
         return;
     m->report->done = state->done;
+    m->work += 2 * (m->mesh->slots / tets_kept);
     m->status = tm_tet_mesh_copy(m->mesh, &state->mesh, m->error);
     if (m->status == TM_OK && !tm_features_copy(&m->features, &state->features))
         tm_improve_no_memory(m);
@@ -208,6 +214,7 @@ tm_status tm_improve_start(tm_improver *m, tm_tet_mesh *mesh,
     m->at.what = "improving";
     tm_progress_tell(options->progress, &m->at);
     *report = (tm_improve_report){.tets_before = mesh->tets};
+    m->work_most = SIZE_MAX;
     m->most_tets = tm_tet_mesh_most(mesh, options->max_growth);
     m->cost.measure = m->options->measure;
     m->cost.weight = cost_weight;
@@ -235,7 +242,7 @@ void tm_improve_finish(tm_improver *m)
         free(list[k]);
     free(m->quality);
     free(m->node);
-    tm_improve_state *state[] = {&m->best, &m->reached, &m->input};
+    tm_improve_state *state[] = {&m->best, &m->reached, &m->input, &m->kept};
     for (size_t k = 0; k < sizeof state / sizeof state[0]; k++) {
         tm_tet_mesh_free(&state[k]->mesh);
         tm_features_free(&state[k]->features);

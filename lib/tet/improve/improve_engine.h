@@ -40,6 +40,8 @@ typedef struct tm_improver {
     double price;     /* of one more tetrahedron; negative to kick */
     unsigned fails;   /* kicks without success, since one had it */
     bool last;        /* the worst ones are worked on: nothing made is as bad as they */
+    size_t work; /* some 20 µs each: tetrahedra tried, and what else takes time */
+    size_t work_most;
     size_t most_tets; /* the mesh never grows beyond */
 
     /* By tetrahedron: its quality by cost.measure; the change after which it was tried.
@@ -56,6 +58,7 @@ typedef struct tm_improver {
     tm_improve_state best;    /* for this target, so far */
     tm_improve_state reached; /* the last target that left nothing bad */
     tm_improve_state input;   /* where there are several targets */
+    tm_improve_state kept;    /* before the worst ones were worked on */
 
     tm_space space; /* around the mesh */
     tm_features features;
@@ -113,9 +116,14 @@ typedef enum {
 /* Tries the operations of a phase on t until something is done. */
 bool tm_improve_try(tm_improver *m, uint32_t t, tm_improve_phase phase);
 
-/* Works on the worst tetrahedra, one by one. No operation makes one as bad as the worst
- * that it replaces, or more bad ones than those. */
-void tm_improve_worst(tm_improver *m);
+/* All that is done for one target. */
+typedef void tm_improve_reach(tm_improver *m);
+
+/* Works on the worst tetrahedra: raises the least angle, with no more bad ones then than
+ * before; `reach` is for one target after the other. Then one by one, with the whole
+ * palette, where no operation makes a tetrahedron as bad as the worst that it replaces,
+ * or more bad ones. */
+void tm_improve_worst(tm_improver *m, tm_improve_reach *reach);
 
 /* The functions of the table: each tries its operations on tetrahedron t, or at its
  * nodes; whether one was done. */
