@@ -5,6 +5,7 @@
 
 #include "../lib/examine/tet_statistics.h"
 #include "../lib/tet/improve/improve.h"
+#include "../lib/tet/improve/improve_forced.h"
 #include "../lib/tet/lepp/lepp.h"
 
 #include <stdlib.h>
@@ -212,6 +213,7 @@ static void measure(const filter *f, const double (*xyz)[3], size_t nodes,
 typedef struct {
     tm_improve_report improve;
     tm_lepp_report lepp;
+    tm_forced forced; /* with improve */
     tm_tet_statistics before, after; /* with --json */
     double seconds;
     size_t changes;
@@ -223,10 +225,12 @@ static void write_json(filter *f, const settings *o, const result *r)
     tm_tet_statistics_object(json, "before", &r->before);
     tm_tet_statistics_object(json, "after", &r->after);
     tm_json_double(json, "seconds", r->seconds);
-    if (o->is_improve)
+    if (o->is_improve) {
         tm_improve_report_json(json, &r->improve);
-    else
+        tm_forced_json(json, &r->forced);
+    } else {
         tm_lepp_report_json(json, &o->lepp, &r->lepp);
+    }
     filter_json_end(f);
 }
 
@@ -252,6 +256,9 @@ static void improve(filter *f, tm_stream *stream, const settings *o, result *r)
     if (status != TM_OK)
         filter_fail(f, &error);
     r->seconds += cpu_seconds();
+    if (o->is_improve &&
+        tm_forced_find(&r->forced, &mesh, o->improve.angle, &error) != TM_OK)
+        filter_fail(f, &error);
     r->changes =
         o->is_improve ? tm_improve_operations(&r->improve) : tm_lepp_changes(&r->lepp);
     for (size_t b = 0; b < stream->blocks; b++)
@@ -278,6 +285,15 @@ static void add_effects(const tm_improve_report *r, char *text, size_t size)
         add(text, size, words[k], tm_improve_effects(r, (tm_improve_effect)k));
 }
 
+/* What no operation could help against. */
+static void add_forced(const tm_forced *forced, char *text, size_t size)
+{
+    if (forced->bad == 0)
+        return;
+    add(text, size, "; %zu bad left, ", forced->bad);
+    add(text, size, "%zu forced by the surface", forced->tets);
+}
+
 static void add_star_operations(const settings *o, const tm_lepp_report *r, char *text,
                                 size_t size)
 {
@@ -298,17 +314,18 @@ static void summarise(const settings *o, const result *r, size_t tets, char *tex
     size_t bad_before = is_improve ? r->improve.bad_before : r->lepp.bad_before;
     size_t bad_after = is_improve ? r->improve.bad_after : r->lepp.bad_after;
     double before = tm_percent(bad_before, tets_before);
-    if (r->changes == 0) {
+    if (r->changes == 0)
         snprintf(text, size, "nothing to improve: %zu tetrahedra, %.2f%% bad", tets,
                  before);
-        return;
-    }
-    snprintf(text, size, "%zu -> %zu tetrahedra, %.2f%% -> %.2f%% bad; ", tets_before,
-             tets, before, tm_percent(bad_after, tets));
-    if (is_improve)
-        add_effects(&r->improve, text, size);
     else
+        snprintf(text, size, "%zu -> %zu tetrahedra, %.2f%% -> %.2f%% bad; ", tets_before,
+                 tets, before, tm_percent(bad_after, tets));
+    if (r->changes > 0 && is_improve)
+        add_effects(&r->improve, text, size);
+    else if (r->changes > 0)
         add_star_operations(o, &r->lepp, text, size);
+    if (is_improve)
+        add_forced(&r->forced, text, size);
 }
 
 /* What -a delaunay promises, and where it cannot. */
@@ -358,7 +375,7 @@ int main(int argc, char **argv)
     tm_stream stream;
     filter_read(&f, &stream);
 
-    result r;
+    result r = {0};
     improve(&f, &stream, &o, &r);
     if (r.changes > 0)
         drop_unknown_blocks(&f, &stream, "the tetrahedra have other numbers now");
@@ -380,6 +397,7 @@ int main(int argc, char **argv)
     if (f.json)
         write_json(&f, &o, &r);
     filter_write(&f, &stream, "%s", summary);
+    tm_forced_free(&r.forced);
     tm_stream_free(&stream);
     return filter_finish(&f, too_large ? EXIT_GOAL : EXIT_SUCCESS);
 }

@@ -79,6 +79,7 @@
 #include "tet/star.h"
 #include "tet/operation/delaunay.h"
 #include "tet/improve/improve.h"
+#include "tet/improve/improve_forced.h"
 #include "tet/lepp/lepp.h"
 
 /* octree: octrees, and the elements made of them */

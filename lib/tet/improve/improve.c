@@ -292,6 +292,24 @@ static void run(tm_improver *m)
         tm_improve_restore(m, &m->input);
 }
 
+/* Everything; to converge, that once more from where enough was gained, so that the worst
+ * ones are seen to while there are others to gain from. */
+static void run_all(tm_improver *m)
+{
+    const tm_improve_options *options = m->options;
+    tm_improve_options first = *options;
+    first.converge = false;
+    m->options = &first;
+    run(m);
+    tm_improve_worst(m, reach);
+    m->options = options;
+    if (!options->converge || is_over(m))
+        return;
+    tm_improve_set_target(m, options->angle);
+    reach(m);
+    tm_improve_worst(m, reach);
+}
+
 /* Those that the report calls bad: by their angles. */
 static size_t count_bad_angles(const tm_improver *m)
 {
@@ -316,8 +334,7 @@ tm_status tm_improve(tm_tet_mesh *mesh, const tm_improve_options *options,
     tm_status status = tm_improve_start(m, mesh, options, report, error);
     if (status == TM_OK) {
         report->bad_before = count_bad_angles(m);
-        run(m);
-        tm_improve_worst(m, reach);
+        run_all(m);
         status = m->status;
         report->bad_after = count_bad_angles(m);
         report->too_large = mesh->tets > m->most_tets;

@@ -170,4 +170,7 @@ void tm_improve_worst(tm_improver *m, tm_improve_reach *reach)
     }
     m->work_most = SIZE_MAX;
     try_last(m, work_most);
+    count_below(m, m->cost.target, &worst);
+    if (m->cost.measure == TM_MEASURE_DIHEDRAL)
+        tm_improve_forbid(m, tm_sine2_to_degrees(worst));
 }
