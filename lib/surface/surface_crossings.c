@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Triangles that meet elsewhere than in a common node or edge, by exact orientations. */
-#include "surface_tree.h"
+#include "surface_crossings.h"
 
 #include "../geom/predicates.h"
 #include "surface_parts.h"
+#include "surface_tree.h"
 
 #include <string.h>
 
@@ -111,14 +112,13 @@ static bool edges_meet(const double *const p[3], int i, const double *const q[3]
     return false;
 }
 
-static bool triangles_meet(const tm_surface *surface, uint32_t t, uint32_t s)
+bool tm_triangles_meet(const double (*xyz)[3], const uint32_t vt[3], const uint32_t vs[3])
 {
-    const uint32_t *vt = surface->triangle[t], *vs = surface->triangle[s];
     const double *p[3], *q[3];
     int common = 0, i_common = 0, k_common = 0, i_sum = 0, k_sum = 0;
     for (int i = 0; i < 3; i++) {
-        p[i] = surface->xyz[vt[i]];
-        q[i] = surface->xyz[vs[i]];
+        p[i] = xyz[vt[i]];
+        q[i] = xyz[vs[i]];
         for (int k = 0; k < 3; k++) {
             if (vt[i] != vs[k])
                 continue;
@@ -133,7 +133,7 @@ static bool triangles_meet(const tm_surface *surface, uint32_t t, uint32_t s)
         return strangers_meet(p, q);
     if (common == 1)
         return corners_meet(p, i_common, q, k_common);
-    return edges_meet(p, 3 - i_sum, q, 3 - k_sum);
+    return common == 3 || edges_meet(p, 3 - i_sum, q, 3 - k_sum);
 }
 
 static bool boxes_meet(const double alow[3], const double ahigh[3], const double blow[3],
@@ -167,11 +167,13 @@ static void find_point(finder *f, const tm_tree_triangle *a, const tm_tree_trian
 
 static void try_pair(finder *f, const tm_tree_triangle *a, const tm_tree_triangle *b)
 {
+    const tm_surface *surface = f->surface;
     double alow[3], ahigh[3], blow[3], bhigh[3];
     bounds_of(a, alow, ahigh);
     bounds_of(b, blow, bhigh);
     if (!boxes_meet(alow, ahigh, blow, bhigh) ||
-        !triangles_meet(f->surface, a->id, b->id))
+        !tm_triangles_meet((const double(*)[3])surface->xyz, surface->triangle[a->id],
+                           surface->triangle[b->id]))
         return;
     if (f->surface->crossings++ == 0)
         find_point(f, a, b);

@@ -242,7 +242,7 @@ static void test_features(void **state)
     tm_features features;
     tm_tet_marks marks = {0};
     make_mesh(&mesh, &stream, GRID, 0.5, false);
-    assert_int_equal(tm_features_find(&features, &mesh, &marks, NULL), TM_OK);
+    assert_int_equal(tm_features_find(&features, &mesh, NULL, &marks, NULL), TM_OK);
     for (int z = 0; z <= GRID; z++)
         for (int y = 0; y <= GRID; y++)
             for (int x = 0; x <= GRID; x++) {

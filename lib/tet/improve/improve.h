@@ -10,6 +10,7 @@
 #include "../../base/progress.h"
 #include "../../element/tet_measure.h"
 #include "../mesh.h"
+#include "../surface_limits.h"
 
 TM_EXTERN_C_BEGIN
 
@@ -62,6 +63,7 @@ typedef struct tm_improve_options {
     unsigned ops;           /* bits 1 << tm_improve_op */
     size_t passes;          /* over the bad tetrahedra, at most; 0: any number */
     bool converge;          /* go on while anything is gained, not only enough */
+    tm_surface_limits surface; /* how far the surface may move */
     const tm_progress *progress;
 } tm_improve_options;
 
