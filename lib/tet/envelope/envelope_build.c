@@ -9,6 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* A feature that ends freely has to be so many times longer than what the surface may move
+ * anyway. */
+static const double short_curve = 16;
+
 typedef struct builder {
     tm_envelope *e;
     const tm_tet_mesh *mesh;
@@ -285,7 +289,8 @@ tm_status tm_envelope_build(tm_envelope *envelope, const tm_tet_mesh *mesh,
     if (status == TM_OK)
         status = tm_surface_tree_build(b.s, error);
     if (status == TM_OK)
-        status = tm_surface_find_features(b.s, feature_angle, unless_rough, error);
+        status = tm_surface_find_features(b.s, feature_angle, unless_rough,
+                                          short_curve * tolerance, error);
     if (status == TM_OK) {
         tm_surface_tree_refresh(b.s);
         if (!attach(&b))
