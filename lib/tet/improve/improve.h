@@ -30,6 +30,8 @@ TM_EXTERN_C_BEGIN
     ROW(FACE_REMOVAL, "face-removal", "face_removals", FACES_REMOVED, MOVE, swap)        \
     /* moves a node: inside, in a flat facet, on a straight edge */                      \
     ROW(SMOOTHING, "smoothing", "moves", NODES_MOVED, MOVE, smooth)                      \
+    /* of a tetrahedron under a surface that may move */                                 \
+    ROW(PEELING, "peeling", "peelings", TETS_PEELED, MOVE, peel)                         \
     /* of an edge: removes a node */                                                     \
     ROW(CONTRACTION, "contraction", "contractions", NODES_REMOVED, SHRINK, contract)     \
     /* of a node, at the best point of a cavity, or on an edge */                        \
@@ -51,6 +53,7 @@ typedef enum tm_improve_effect {
     TM_EFFECT_NODES_MOVED,
     TM_EFFECT_POINTS_INSERTED,
     TM_EFFECT_NODES_REMOVED,
+    TM_EFFECT_TETS_PEELED,
     TM_IMPROVE_EFFECTS
 } tm_improve_effect;
 

@@ -151,6 +151,9 @@ void tm_improve_split_onto_surface(tm_improver *m, double p[3], double *place);
 /* Whether that edge may be split at p. */
 bool tm_improve_allows_split(tm_improver *m, const double p[3], double place);
 
+/* Whether tetrahedron t, whose face i is on the outside, may be peeled off. */
+bool tm_improve_allows_peel(tm_improver *m, uint32_t t, uint32_t i);
+
 /* The surface was changed as was allowed last. */
 void tm_improve_follow_surface(tm_improver *m);
 
