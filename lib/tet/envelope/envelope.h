@@ -85,6 +85,11 @@ void tm_envelope_free(tm_envelope *envelope);
  * where memory is out, with *to as it was. */
 bool tm_envelope_copy(tm_envelope *to, const tm_envelope *from);
 
+/* Verifies what is promised of faces and nodes. TM_ERROR_INTERNAL with the first thing that
+ * does not hold. As long as all of it takes to be found; for tests. */
+tm_status tm_envelope_check(tm_envelope *envelope, const tm_tet_mesh *mesh,
+                            tm_error *error);
+
 /* Room for so many faces and nodes of the mesh in all; false where memory is out. */
 bool tm_envelope_reserve(tm_envelope *envelope, size_t faces, size_t nodes);
 
