@@ -4,15 +4,17 @@
 #include "common/input/tet_input.h"
 
 #include "../lib/examine/tet_statistics.h"
+#include "../lib/surface/surface.h"
 #include "../lib/tet/improve/improve.h"
 #include "../lib/tet/improve/improve_forced.h"
 #include "../lib/tet/lepp/lepp.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-enum { OPS = FILTER_OWN, MAX_GROWTH, PATH, MAX_STAR, WITH };
+enum { OPS = FILTER_OWN, MAX_GROWTH, PATH, MAX_STAR, TOLERANCE, FEATURE_ANGLE, WITH };
 
 static const struct option options[] = {
     {"algorithm", required_argument, NULL, 'a'},
@@ -24,13 +26,16 @@ static const struct option options[] = {
     {"max-growth", required_argument, NULL, MAX_GROWTH},
     {"path", required_argument, NULL, PATH},
     {"max-star", required_argument, NULL, MAX_STAR},
+    {"surface-tolerance", required_argument, NULL, TOLERANCE},
+    {"feature-angle", required_argument, NULL, FEATURE_ANGLE},
     {"with", required_argument, NULL, WITH},
     FILTER_OPTIONS};
 
 static const char synopsis[] =
     "[-a ALGORITHM] [-t DEG] [-Q dihedral|volume] [-s original|N|converged] "
-    "[--max-growth R] [--ops LIST] [-m FACTOR] [--path simple|full] [--max-star N] "
-    "[--with smooth|face-swap|both] [FILE]";
+    "[--surface-tolerance [=]D] [--feature-angle DEG] [--max-growth R] [--ops LIST] "
+    "[-m FACTOR] [--path simple|full] [--max-star N] [--with smooth|face-swap|both] "
+    "[FILE]";
 
 static const char own_help[] =
     "  -a, --algorithm A   improve (default): all operations together; or what is done\n"
@@ -43,6 +48,14 @@ static const char own_help[] =
     "a\n"
     "                      pass gains little); original: those of the input once (the\n"
     "                      others' default)\n"
+    "      --surface-tolerance D\n"
+    "                      improve: how far the surface may move, and feature curves\n"
+    "                      along it: a part of the diagonal of the mesh's box; =D: a\n"
+    "                      length (0: it stays)\n"
+    "      --feature-angle DEG\n"
+    "                      with a tolerance: an edge of the surface stays an edge where\n"
+    "                      the normals beside it differ by more (40; unless the surface\n"
+    "                      is rough all over)\n"
     "      --max-growth R  never more than R times the input's tetrahedra\n"
     "      --ops LIST      improve: what it may do, with commas; \"list\" prints all\n"
     "  -m, --factor M      selective: change a star where that makes it so many times\n"
@@ -56,6 +69,7 @@ static const char own_help[] =
 
 static const double default_factor = 1.1, most_factor = 100;
 static const double default_angle = 30, right_angle = 90;
+static const double most_tolerance = 0.1, most_feature_angle = 180;
 static const double least_growth = 1e-9, most_growth = 1e9;
 
 /* In the order of tm_lepp_algorithm; then the one that is none of them. */
@@ -81,6 +95,7 @@ static const filter_words option_words[] = {
 /* What is to be done, by one of two engines. */
 typedef struct {
     bool is_improve;
+    bool is_length; /* the surface's tolerance is one, not a part of the diagonal */
     tm_improve_options improve;
     tm_lepp_options lepp;
 } settings;
@@ -119,6 +134,15 @@ static unsigned find_ops(const filter *f, const char *list)
     }
 }
 
+/* A part of the diagonal, or a length after "=". */
+static void set_tolerance(const filter *f, settings *o, const char *text)
+{
+    o->is_length = text[0] == '=';
+    o->improve.surface.tolerance =
+        filter_number(f, "--surface-tolerance", text + o->is_length, 0,
+                      o->is_length ? HUGE_VAL : most_tolerance);
+}
+
 static void set_option(filter *f, settings *o, int c)
 {
     if (c == 'a') {
@@ -140,6 +164,12 @@ static void set_option(filter *f, settings *o, int c)
         o->lepp.max_growth =
             filter_number(f, "--max-growth", optarg, least_growth, most_growth);
         o->improve.max_growth = o->lepp.max_growth;
+    } else if (c == TOLERANCE) {
+        set_tolerance(f, o, optarg);
+    } else if (c == FEATURE_ANGLE) {
+        o->improve.surface.feature_angle =
+            filter_number(f, "--feature-angle", optarg, 0, most_feature_angle);
+        o->improve.surface.unless_rough = false;
     } else if (c == PATH) {
         o->lepp.path = (tm_lepp_path)filter_word(f, PATH, optarg);
     } else if (c == WITH) {
@@ -161,6 +191,12 @@ static void check_options(const filter *f, const settings *o, const bool given[]
         filter_usage_error(f, "-m is for selective: %s does not compare so", name);
     if (!selective && given[WITH])
         filter_usage_error(f, "--with is for selective: %s has no sweeps", name);
+    if (!o->is_improve && (given[TOLERANCE] || given[FEATURE_ANGLE]))
+        filter_usage_error(f, "%s is for improve: %s keeps the surface",
+                           given[TOLERANCE] ? "--surface-tolerance" : "--feature-angle",
+                           name);
+    if (given[FEATURE_ANGLE] && !(o->improve.surface.tolerance > 0))
+        filter_usage_error(f, "--feature-angle goes with a --surface-tolerance above 0");
     if (!o->is_improve && given[OPS])
         filter_usage_error(f, "--ops is for improve: %s does what its name says", name);
     if (given['s'] && o->is_improve && o->lepp.stop == TM_LEPP_ORIGINAL)
@@ -176,7 +212,8 @@ static settings read_options(filter *f)
     settings o = {.is_improve = true,
                   .improve = {.angle = default_angle,
                               .measure = TM_MEASURE_DIHEDRAL,
-                              .ops = TM_IMPROVE_ALL_OPS},
+                              .ops = TM_IMPROVE_ALL_OPS,
+                              .surface = {0, TM_FEATURE_ANGLE, true}},
                   .lepp = {.algorithm = TM_LEPP_SELECTIVE,
                            .factor = default_factor,
                            .angle = default_angle,
@@ -213,7 +250,7 @@ static void measure(const filter *f, const double (*xyz)[3], size_t nodes,
 typedef struct {
     tm_improve_report improve;
     tm_lepp_report lepp;
-    tm_forced forced; /* with improve */
+    tm_forced forced;                /* with improve */
     tm_tet_statistics before, after; /* with --json */
     double seconds;
     size_t changes;
@@ -242,14 +279,32 @@ static double cpu_seconds(void)
     return (double)now.tv_sec + nanosecond * (double)now.tv_nsec;
 }
 
+/* The length that the tolerance is, in a mesh of that size. */
+static double tolerance_of(const settings *o, const tm_tet_mesh *mesh)
+{
+    double low[3], high[3], diagonal2 = 0;
+    for (int x = 0; x < 3; x++) {
+        low[x] = HUGE_VAL;
+        high[x] = -HUGE_VAL;
+        for (size_t v = 0; v < mesh->nodes; v++) {
+            low[x] = fmin(low[x], mesh->xyz[v][x]);
+            high[x] = fmax(high[x], mesh->xyz[v][x]);
+        }
+        diagonal2 += (high[x] - low[x]) * (high[x] - low[x]);
+    }
+    double part = o->improve.surface.tolerance;
+    return o->is_length || mesh->nodes == 0 ? part : part * sqrt(diagonal2);
+}
+
 /* Improves the stream's mesh in place. */
-static void improve(filter *f, tm_stream *stream, const settings *o, result *r)
+static void improve(filter *f, tm_stream *stream, settings *o, result *r)
 {
     tm_error error;
     tm_tet_mesh mesh;
     tet_mesh_from_stream(f, stream, &mesh);
     measure(f, (const double(*)[3])mesh.xyz, mesh.nodes, (const uint32_t(*)[4])mesh.tet,
             mesh.slots, o->improve.angle, &r->before);
+    o->improve.surface.tolerance = tolerance_of(o, &mesh);
     r->seconds = -cpu_seconds();
     tm_status status = o->is_improve ? tm_improve(&mesh, &o->improve, &r->improve, &error)
                                      : tm_lepp_improve(&mesh, &o->lepp, &r->lepp, &error);
@@ -278,11 +333,17 @@ static void add(char *text, size_t size, const char *format, size_t count)
 
 static void add_effects(const tm_improve_report *r, char *text, size_t size)
 {
-    static const char *const words[TM_IMPROVE_EFFECTS] = {
-        "%zu edges and ", "%zu faces removed, ", "%zu times a node moved, ",
-        "%zu points inserted, ", "%zu nodes removed", ", %zu cavities filled anew"};
+    static const char *const words[TM_IMPROVE_EFFECTS] = {"%zu edges and ",
+                                                          "%zu faces removed, ",
+                                                          "%zu times a node moved, ",
+                                                          "%zu points inserted, ",
+                                                          "%zu nodes removed",
+                                                          ", %zu cavities filled anew",
+                                                          ", %zu tetrahedra peeled off"};
     for (int k = 0; k < TM_IMPROVE_EFFECTS; k++)
-        add(text, size, words[k], tm_improve_effects(r, (tm_improve_effect)k));
+        if (k <= TM_EFFECT_NODES_REMOVED ||
+            tm_improve_effects(r, (tm_improve_effect)k) > 0)
+            add(text, size, words[k], tm_improve_effects(r, (tm_improve_effect)k));
 }
 
 /* What no operation could help against. */

@@ -70,7 +70,7 @@ static tm_status prepare(tm_surface *surface, const tm_surface_options *options,
         status = tm_surface_turn(surface, error);
     if (status == TM_OK)
         status = tm_surface_find_features(surface, options->feature_angle,
-                                          options->unless_rough, error);
+                                          options->unless_rough, 0, error);
     if (status == TM_OK) {
         tm_surface_tree_refresh(surface);
         status = tm_surface_curve_build(surface, error);

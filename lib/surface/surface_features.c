@@ -35,6 +35,7 @@ typedef struct feature_finder {
     uint32_t *at;
     bool *corner; /* [nodes] */
     bool *done;   /* [edges] */
+    uint32_t *parent; /* [triangles]: sets of those in one patch */
 } feature_finder;
 
 /* The unit normal of t; false where it has none of its own. */
@@ -156,36 +157,34 @@ static void unite_edges(feature_finder *f)
 }
 
 /* Patches are numbered by their first triangles. */
-static void number_patches(tm_surface *surface, uint32_t *parent)
+static tm_status number_patches(tm_surface *surface, uint32_t *parent, tm_error *error)
 {
+    surface->patch = tm_new(surface->triangles, sizeof *surface->patch);
+    if (!surface->patch)
+        return tm_fail_memory(error);
     for (uint32_t t = 0; t < surface->triangles; t++) {
         uint32_t root = tm_set_root(parent, t);
         surface->patch[t] =
             root == t ? (uint32_t)surface->patches++ : surface->patch[root];
     }
+    return TM_OK;
 }
 
 static tm_status find_edges(feature_finder *f, tm_error *error)
 {
     tm_surface *surface = f->surface;
-    uint32_t *parent = tm_new(surface->triangles, sizeof *parent);
-    surface->patch = tm_new(surface->triangles, sizeof *surface->patch);
-    tm_status status = parent && surface->patch ? TM_OK : tm_fail_memory(error);
-    if (status == TM_OK) {
-        for (uint32_t t = 0; t < surface->triangles; t++)
-            parent[t] = t;
-        f->edges = list_edges(f, NULL, parent);
-        number_patches(surface, parent);
-        f->edge = tm_new(f->edges, sizeof *f->edge);
-        if (f->edge) {
-            list_edges(f, f->edge, parent);
-            unite_edges(f);
-        } else {
-            status = tm_fail_memory(error);
-        }
-    }
-    free(parent);
-    return status;
+    f->parent = tm_new(surface->triangles, sizeof *f->parent);
+    if (!f->parent)
+        return tm_fail_memory(error);
+    for (uint32_t t = 0; t < surface->triangles; t++)
+        f->parent[t] = t;
+    f->edges = list_edges(f, NULL, f->parent);
+    f->edge = tm_new(f->edges, sizeof *f->edge);
+    if (!f->edge)
+        return tm_fail_memory(error);
+    list_edges(f, f->edge, f->parent);
+    unite_edges(f);
+    return TM_OK;
 }
 
 static tm_status attach_edges(feature_finder *f, tm_error *error)
@@ -193,9 +192,7 @@ static tm_status attach_edges(feature_finder *f, tm_error *error)
     size_t nodes = f->surface->nodes;
     f->start = calloc(nodes + 2, sizeof *f->start);
     f->at = tm_new(2 * f->edges, sizeof *f->at);
-    f->corner = calloc(nodes + 1, sizeof *f->corner);
-    f->done = calloc(f->edges + 1, sizeof *f->done);
-    if (!f->start || !f->at || !f->corner || !f->done)
+    if (!f->start || !f->at)
         return tm_fail_memory(error);
     for (size_t i = 0; i < 2 * f->edges; i++)
         f->start[f->edge[i / 2].node[i % 2] + 2]++;
@@ -204,6 +201,156 @@ static tm_status attach_edges(feature_finder *f, tm_error *error)
     for (size_t i = 0; i < 2 * f->edges; i++)
         f->at[f->start[f->edge[i / 2].node[i % 2] + 1]++] = (uint32_t)(i / 2);
     return TM_OK;
+}
+
+/* How many of the sharp edges that are left are at each node. */
+static void count_degrees(const feature_finder *f, uint32_t *degree)
+{
+    for (size_t e = 0; e < f->edges; e++)
+        for (int i = 0; i < 2; i++)
+            degree[f->edge[e].node[i]]++;
+}
+
+/* Follows sharp edges from a node with one, over nodes with two. Returns the length; the
+ * edges are chain[0 … *count). */
+static double follow_end(const feature_finder *f, uint32_t v, const uint32_t *degree,
+                         const bool *dropped, uint32_t *chain, size_t *count)
+{
+    const tm_surface *surface = f->surface;
+    double length = 0;
+    *count = 0;
+    for (;;) {
+        size_t i = f->start[v];
+        while (i < f->start[v + 1] &&
+               (dropped[f->at[i]] || (*count > 0 && f->at[i] == chain[*count - 1])))
+            i++;
+        if (i == f->start[v + 1] || (*count > 0 && degree[v] != 2))
+            return length;
+        uint32_t e = chain[(*count)++] = f->at[i];
+        const uint32_t *n = f->edge[e].node;
+        length += sqrt(tm_distance2(surface->xyz[n[0]], surface->xyz[n[1]]));
+        if (f->edge[e].triangle[1] == TM_NONE)
+            length = HUGE_VAL; /* it is not sharp by its angle */
+        v = n[n[0] == v];
+    }
+}
+
+/* Drops chains of sharp edges that end freely and are shorter than `least`, until there is
+ * none. */
+static void prune(feature_finder *f, double least, uint32_t *degree, bool *dropped,
+                  uint32_t *chain)
+{
+    for (bool again = true; again;) {
+        again = false;
+        for (uint32_t v = 0; v < f->surface->nodes; v++) {
+            size_t count;
+            if (degree[v] != 1 ||
+                !(follow_end(f, v, degree, dropped, chain, &count) < least))
+                continue;
+            again = true;
+            for (size_t k = 0; k < count; k++) {
+                dropped[chain[k]] = true;
+                for (int i = 0; i < 2; i++)
+                    degree[f->edge[chain[k]].node[i]]--;
+            }
+        }
+    }
+}
+
+/* Networks of sharp edges: what is connected, by the node that stands for it. */
+typedef struct network {
+    uint32_t *root;  /* [nodes]: disjoint sets */
+    uint32_t *loose; /* [nodes], at roots: chains that end freely and are short */
+    uint32_t *arms;  /* curves at nodes that are not just passed: twice their number */
+} network;
+
+static void count_network(const feature_finder *f, double least, const uint32_t *degree,
+                          const bool *dropped, uint32_t *chain, network *n)
+{
+    const size_t nodes = f->surface->nodes;
+    for (uint32_t v = 0; v < nodes; v++)
+        n->root[v] = v;
+    for (size_t e = 0; e < f->edges; e++)
+        tm_set_unite(n->root, f->edge[e].node[0], f->edge[e].node[1]);
+    for (uint32_t v = 0; v < nodes; v++) {
+        size_t count;
+        uint32_t root = tm_set_root(n->root, v);
+        if (degree[v] != 2)
+            n->arms[root] += degree[v];
+        n->loose[root] += degree[v] == 1 && follow_end(f, v, degree, dropped, chain,
+                                                       &count) < least;
+    }
+}
+
+/* Drops the networks of which many curves end freely, and all where many of all do: they
+ * are no features of a shape, but roughness. */
+static bool drop_rough(const feature_finder *f, double least, uint32_t *degree,
+                       bool *dropped, uint32_t *chain)
+{
+    const uint32_t many = 20; /* one of so many */
+    const size_t nodes = f->surface->nodes;
+    size_t loose = 0, arms = 0;
+    network n = {tm_new(nodes, sizeof *n.root), calloc(nodes + 1, sizeof *n.loose),
+                 calloc(nodes + 1, sizeof *n.arms)};
+    bool done = n.root && n.loose && n.arms;
+    if (done)
+        count_network(f, least, degree, dropped, chain, &n);
+    for (size_t v = 0; v < nodes && done; v++) {
+        loose += n.loose[v];
+        arms += n.arms[v];
+    }
+    for (size_t e = 0; e < f->edges && done; e++) {
+        const uint32_t root = tm_set_root(n.root, f->edge[e].node[0]);
+        if (f->edge[e].triangle[1] == TM_NONE ||
+            (2 * many * n.loose[root] <= n.arms[root] && 2 * many * loose <= arms))
+            continue;
+        dropped[e] = true;
+        for (int i = 0; i < 2; i++)
+            degree[f->edge[e].node[i]]--;
+    }
+    free(n.root);
+    free(n.loose);
+    free(n.arms);
+    return done;
+}
+
+/* Takes the dropped ones out: the patches beside them are one. */
+static void take_out(feature_finder *f, const bool *dropped)
+{
+    size_t kept = 0;
+    for (size_t e = 0; e < f->edges; e++) {
+        if (dropped[e])
+            tm_set_unite(f->parent, f->edge[e].triangle[0], f->edge[e].triangle[1]);
+        else
+            f->edge[kept++] = f->edge[e];
+    }
+    f->edges = kept;
+}
+
+static tm_status drop_short(feature_finder *f, double least, tm_error *error)
+{
+    uint32_t *degree = calloc(f->surface->nodes + 1, sizeof *degree);
+    bool *dropped = calloc(f->edges + 1, sizeof *dropped);
+    uint32_t *chain = tm_new(f->edges, sizeof *chain);
+    tm_status status = degree && dropped && chain ? TM_OK : tm_fail_memory(error);
+    if (status == TM_OK) {
+        count_degrees(f, degree);
+        if (!drop_rough(f, least, degree, dropped, chain))
+            status = tm_fail_memory(error);
+    }
+    if (status == TM_OK) {
+        prune(f, least, degree, dropped, chain);
+        take_out(f, dropped);
+        free(f->start);
+        free(f->at);
+        f->start = NULL;
+        f->at = NULL;
+        status = attach_edges(f, error);
+    }
+    free(degree);
+    free(dropped);
+    free(chain);
+    return status;
 }
 
 static size_t degree(const feature_finder *f, uint32_t v)
@@ -295,8 +442,12 @@ static tm_status find_corners(feature_finder *f, tm_error *error)
 {
     tm_surface *surface = f->surface;
     double *sum = calloc(surface->nodes + 1, sizeof *sum);
-    if (!sum)
+    f->corner = calloc(surface->nodes + 1, sizeof *f->corner);
+    f->done = calloc(f->edges + 1, sizeof *f->done);
+    if (!sum || !f->corner || !f->done) {
+        free(sum);
         return tm_fail_memory(error);
+    }
     add_angles(surface, sum);
     for (uint32_t v = 0; v < surface->nodes; v++) {
         f->corner[v] = is_corner(f, v) || sum[v] < sharp_corner_angle;
@@ -394,7 +545,8 @@ static tm_status smooth_if_rough(feature_finder *f, tm_error *error)
 }
 
 tm_status tm_surface_find_features(tm_surface *surface, double feature_angle,
-                                   bool unless_rough, tm_error *error)
+                                   bool unless_rough, double least_length,
+                                   tm_error *error)
 {
     feature_finder f = {.surface = surface,
                         .most_cosine = cos(feature_angle * pi / 180),
@@ -409,12 +561,17 @@ tm_status tm_surface_find_features(tm_surface *surface, double feature_angle,
         status = find_edges(&f, error);
     if (status == TM_OK)
         status = attach_edges(&f, error);
+    if (status == TM_OK && least_length > 0)
+        status = drop_short(&f, least_length, error);
+    if (status == TM_OK)
+        status = number_patches(surface, f.parent, error);
     if (status == TM_OK)
         status = find_corners(&f, error);
     if (status == TM_OK)
         status = find_curves(&f, error);
     free(f.normal);
     free(f.edge);
+    free(f.parent);
     free(f.start);
     free(f.at);
     free(f.corner);

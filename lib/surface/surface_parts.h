@@ -37,9 +37,11 @@ tm_status tm_surface_find_crossings(tm_surface *surface, bool lenient, unsigned 
 /* Turns the shells that have to be, by the tree; turned. */
 tm_status tm_surface_turn(tm_surface *surface, tm_error *error);
 
-/* Curves, corners and patches. */
+/* Curves, corners and patches. Sharp edges that end freely and are shorter than
+ * least_length in all are none, nor are networks of which many do. */
 tm_status tm_surface_find_features(tm_surface *surface, double feature_angle,
-                                   bool unless_rough, tm_error *error);
+                                   bool unless_rough, double least_length,
+                                   tm_error *error);
 
 /* The corner i of t for which across[t][i] is n; 3: none. */
 static inline unsigned tm_surface_side(const tm_surface *surface, uint32_t t, uint32_t n)

@@ -10,6 +10,7 @@
 #include "../../base/progress.h"
 #include "../../element/tet_measure.h"
 #include "../mesh.h"
+#include "../surface_limits.h"
 
 TM_EXTERN_C_BEGIN
 
@@ -29,6 +30,8 @@ TM_EXTERN_C_BEGIN
     ROW(FACE_REMOVAL, "face-removal", "face_removals", FACES_REMOVED, MOVE, swap)        \
     /* moves a node: inside, in a flat facet, on a straight edge */                      \
     ROW(SMOOTHING, "smoothing", "moves", NODES_MOVED, MOVE, smooth)                      \
+    /* of a tetrahedron under a surface that may move */                                 \
+    ROW(PEELING, "peeling", "peelings", TETS_PEELED, MOVE, peel)                         \
     /* of an edge: removes a node */                                                     \
     ROW(CONTRACTION, "contraction", "contractions", NODES_REMOVED, SHRINK, contract)     \
     /* of a node, at the best point of a cavity, or on an edge */                        \
@@ -53,6 +56,7 @@ typedef enum tm_improve_effect {
     TM_EFFECT_POINTS_INSERTED,
     TM_EFFECT_NODES_REMOVED,
     TM_EFFECT_CAVITIES_FILLED,
+    TM_EFFECT_TETS_PEELED,
     TM_IMPROVE_EFFECTS
 } tm_improve_effect;
 
@@ -65,6 +69,7 @@ typedef struct tm_improve_options {
     unsigned ops;           /* bits 1 << tm_improve_op */
     size_t passes;          /* over the bad tetrahedra, at most; 0: any number */
     bool converge;          /* go on while anything is gained, not only enough */
+    tm_surface_limits surface; /* how far the surface may move */
     const tm_progress *progress;
 } tm_improve_options;
 

@@ -33,6 +33,12 @@ static bool has_flat(const tm_improver *m)
     return false;
 }
 
+/* Whether the node of the ball is in a surface that may move. */
+static bool moves_surface(const tm_improver *m)
+{
+    return m->features.may_move && m->features.dimension[m->ball.node] < 3;
+}
+
 /* The neighbour to which the node of the ball goes at the greatest gain; TM_NONE where
  * there is none. */
 static uint32_t best_neighbour(tm_improver *m)
@@ -49,9 +55,11 @@ static uint32_t best_neighbour(tm_improver *m)
                 continue;
             double most = old - gain + m->price * (double)ball->size;
             double cost =
-                tm_contraction_cost(m->mesh, ball, b, &m->cost, least, most, &gone);
+                tm_contraction_cost(m->mesh, ball, b, moves_surface(m), &m->cost, least,
+                                    most, &gone);
             double gained = old - cost + m->price * (double)gone;
-            if (gained > gain) {
+            if (gained > gain &&
+                (!moves_surface(m) || tm_improve_allows_contraction(m, b))) {
                 gain = gained;
                 best = b;
             }
@@ -71,13 +79,15 @@ bool tm_improve_contract_node(tm_improver *m, uint32_t t, uint32_t a)
     if (!tm_improve_reserve(m, m->ball.size, 0) || has_flat(m))
         return false;
     uint32_t b = best_neighbour(m);
-    if (b == TM_NONE)
+    bool moves = moves_surface(m);
+    if (b == TM_NONE || (moves && !tm_improve_allows_contraction(m, b)))
         return false;
-    size_t before = m->mesh->tets;
-    tm_contract(m->mesh, &m->ball, b, m->created);
-    tm_improve_note(m, m->created, m->ball.size - (before - m->mesh->tets));
+    size_t made = tm_contract(m->mesh, &m->ball, b, m->created);
+    tm_improve_note(m, m->created, made);
     if (m->features.dimension[a] == 1)
         tm_features_join(&m->features, a, b);
+    if (moves)
+        tm_improve_follow_surface(m);
     tm_tet_mesh_delete_node(m->mesh, a);
     m->report->done.op[TM_OP_CONTRACTION]++;
     return true;

@@ -42,7 +42,7 @@ static bool reserve_nodes(tm_improver *m, size_t needed)
 {
     size_t room = needed + needed / 2;
     uint32_t **list[] = {&m->tet_at, &m->changed, &m->smoothed, &m->contracted};
-    if (needed > m->features.room && !tm_features_reserve(&m->features, needed))
+    if (!tm_features_reserve(&m->features, needed, m->mesh->face_room))
         return false;
     if (needed <= m->node_room)
         return true;
@@ -81,7 +81,8 @@ static bool reserve_made(tm_improver *m, size_t needed)
 
 bool tm_improve_reserve(tm_improver *m, size_t tets, size_t nodes)
 {
-    m->status = tm_tet_mesh_reserve(m->mesh, nodes, tets, 0, 0, m->error);
+    size_t faces = nodes > 0 ? tets : 0; /* of an edge that is split */
+    m->status = tm_tet_mesh_reserve(m->mesh, nodes, tets, faces, 0, m->error);
     if (m->status != TM_OK)
         return false;
     if (!reserve_nodes(m, m->mesh->nodes + nodes) ||
@@ -218,7 +219,7 @@ tm_status tm_improve_start(tm_improver *m, tm_tet_mesh *mesh,
     m->most_tets = tm_tet_mesh_most(mesh, options->max_growth);
     m->cost.measure = m->options->measure;
     m->cost.weight = cost_weight;
-    m->status = tm_features_find(&m->features, mesh, &m->marks, m->error);
+    m->status = tm_features_find(&m->features, mesh, &options->surface, &m->marks, m->error);
     if (m->status != TM_OK)
         return m->status;
     if (!reserve_nodes(m, mesh->nodes + 1) || !reserve_tets(m, mesh->slots + 1)) {
@@ -250,8 +251,11 @@ void tm_improve_finish(tm_improver *m)
     tm_features_free(&m->features);
     tm_tet_marks_free(&m->marks);
     tm_tet_marks_free(&m->seen);
+    tm_tet_marks_free(&m->linked);
     tm_star_free(&m->star);
+    tm_star_free(&m->around);
     tm_ball_free(&m->ball);
+    tm_ball_free(&m->other_ball);
     tm_cavity_free(&m->cavity);
     tm_replacement_table_free(&m->table);
 }

@@ -64,8 +64,10 @@ typedef struct tm_improver {
     tm_features features;
     tm_tet_marks marks; /* on tetrahedra */
     tm_tet_marks seen;  /* on nodes */
-    tm_star star;
-    tm_ball ball;
+    tm_star star, around;
+    tm_ball ball, other_ball;
+    tm_tet_marks linked;      /* on nodes */
+    tm_surface_change change_of_surface; /* that was allowed last */
     tm_cavity cavity;
     tm_edge_removal removal[2]; /* for the two sides of a facet */
     tm_face_removal face_removal;
@@ -152,6 +154,34 @@ double tm_improve_old_cost(const tm_improver *m, const uint32_t *old, size_t cou
 
 /* False, with m->status set: memory is out. */
 bool tm_improve_no_memory(tm_improver *m);
+
+/* Changes of a surface that may move (features.may_move), each asked about as it is
+ * planned. What was allowed last is in m->change_of_surface. */
+
+/* Whether the edge of m->star, which is in a patch, may be swapped; its parts. */
+bool tm_improve_allows_swap(tm_improver *m, const tm_star *part, int parts);
+
+/* Whether the node of m->ball, which is on the surface, may be contracted into b. */
+bool tm_improve_allows_contraction(tm_improver *m, uint32_t b);
+
+/* Moves p, near the surface, to where the node of m->ball may go of it. *place is where
+ * that is on its curve, if it is on one. False where there is no such place. */
+bool tm_improve_onto_surface(tm_improver *m, double p[3], double *place);
+
+/* Whether the node of m->ball, which is on the surface, may move to p. */
+bool tm_improve_allows_move(tm_improver *m, const double p[3], double place);
+
+/* Moves p, on the edge of m->star, to the surface that this is on. *place as above. */
+void tm_improve_split_onto_surface(tm_improver *m, double p[3], double *place);
+
+/* Whether that edge may be split at p. */
+bool tm_improve_allows_split(tm_improver *m, const double p[3], double place);
+
+/* Whether tetrahedron t, whose face i is on the outside, may be peeled off. */
+bool tm_improve_allows_peel(tm_improver *m, uint32_t t, uint32_t i);
+
+/* The surface was changed as was allowed last. */
+void tm_improve_follow_surface(tm_improver *m);
 
 static inline bool tm_improve_has(const tm_improver *m, tm_improve_op op)
 {

@@ -148,10 +148,10 @@ static bool fill(tm_improver *m, const double p[3])
     return true;
 }
 
-/* Plans the midpoint of edge e of t, which has to stay; p is that. Returns the gain as
- * above. */
+/* Plans the midpoint of edge e of t, which has to stay; p is that, or the point of the
+ * surface near it. Returns the gain as above. */
 static double plan_split(tm_improver *m, uint32_t t, unsigned e, double needed,
-                         double p[3])
+                         double p[3], double *at)
 {
     const tm_star *s = &m->star;
     const double(*x)[3] = (const double(*)[3])m->mesh->xyz;
@@ -165,6 +165,8 @@ static double plan_split(tm_improver *m, uint32_t t, unsigned e, double needed,
     double least, sum = m->price * (double)s->size;
     double old = tm_improve_old_cost(m, s->tet, s->size, &least);
     tm_star_midpoint(m->mesh, s, p);
+    if (m->features.may_move)
+        tm_improve_split_onto_surface(m, p, at);
     for (size_t i = 0; i < s->size && sum < old - needed; i++) {
         const double *r = x[s->ring[i]], *q = x[s->ring[i + 1]];
         double lower = tm_cost_quality(&m->cost, least, x[s->a], p, r, q);
@@ -173,11 +175,27 @@ static double plan_split(tm_improver *m, uint32_t t, unsigned e, double needed,
             return 0;
         sum += tm_cost_of(&m->cost, lower) + tm_cost_of(&m->cost, upper);
     }
-    return sum < old - needed && tm_star_sees(m->mesh, s, p) ? old - sum : 0;
+    if (!(sum < old - needed) || !tm_star_sees(m->mesh, s, p) ||
+        (m->features.may_move && !tm_improve_allows_split(m, p, *at)))
+        return 0;
+    return old - sum;
+}
+
+/* The node v made on edge ab is known as what it is in. */
+static void note_split(tm_improver *m, uint32_t v, tm_edge_class place, uint32_t a,
+                       uint32_t b, double at)
+{
+    tm_curve_part part;
+    tm_features_classify_node(&m->features, v, place, a, b);
+    if (!m->features.may_move)
+        return;
+    if (tm_features_part(&m->features, a, v, &part))
+        tm_features_put(&m->features, v, part.curve, at);
+    tm_improve_follow_surface(m);
 }
 
 /* Splits the edge as it was planned. */
-static bool split(tm_improver *m, const double p[3])
+static bool split(tm_improver *m, const double p[3], double at)
 {
     size_t made = 2 * m->star.size, constrained[2];
     uint32_t a = m->star.a, b = m->star.b;
@@ -189,8 +207,7 @@ static bool split(tm_improver *m, const double p[3])
     m->status = tm_star_insert(m->mesh, &m->star, p, true, m->created, m->error);
     if (m->status != TM_OK)
         return false;
-    tm_features_classify_node(&m->features, m->mesh->tet[m->created[0]][corner], place, a,
-                              b);
+    note_split(m, m->mesh->tet[m->created[0]][corner], place, a, b, at);
     tm_improve_note(m, m->created, made);
     m->report->done.edge_splits++;
     m->report->done.op[TM_OP_INSERTION]++;
@@ -198,20 +215,21 @@ static bool split(tm_improver *m, const double p[3])
 }
 
 /* Plans choice c: the cavity around an edge, or beyond these the edge's midpoint. */
-static double plan(tm_improver *m, uint32_t t, int c, double needed, double p[3])
+static double plan(tm_improver *m, uint32_t t, int c, double needed, double p[3],
+                   double *at)
 {
     return c < EDGES ? plan_cavity(m, t, (unsigned)c, needed, p)
-                     : plan_split(m, t, (unsigned)(c - EDGES), needed, p);
+                     : plan_split(m, t, (unsigned)(c - EDGES), needed, p, at);
 }
 
 bool tm_improve_insert(tm_improver *m, uint32_t t)
 {
-    double best = TM_IMPROVE_GAIN, p[3];
+    double best = TM_IMPROVE_GAIN, p[3], at = NAN;
     int choice = NOTHING;
     m->report->tried[TM_OP_INSERTION]++;
     for (int k = 0; k < 2 * EDGES && m->status == TM_OK; k++) {
         int c = (k + (int)m->fails) % (2 * EDGES);
-        double gain = plan(m, t, c, best, p);
+        double gain = plan(m, t, c, best, p, &at);
         if (gain == 0)
             continue;
         best = gain;
@@ -220,7 +238,7 @@ bool tm_improve_insert(tm_improver *m, uint32_t t)
             break;
     }
     if (choice == NOTHING || m->status != TM_OK ||
-        plan(m, t, choice, TM_IMPROVE_GAIN, p) == 0)
+        plan(m, t, choice, TM_IMPROVE_GAIN, p, &at) == 0)
         return false;
-    return choice < EDGES ? fill(m, p) : split(m, p);
+    return choice < EDGES ? fill(m, p) : split(m, p, at);
 }

@@ -25,29 +25,49 @@ static void go_to_centre(const tm_cavity_boundary *boundary, const tm_freedom *f
         p[x] += way[x];
 }
 
-/* Whether the node costs less than `most` at p and sees all faces of its ball. */
-static bool is_gain(const tm_improver *m, const tm_cavity_boundary *boundary,
-                    double least, double most, const double p[3])
+/* Whether the node costs less than `most` at p, and sees all faces of its ball. In a
+ * surface that may move p is put on it first; *place is where it is on its curve. */
+static bool is_gain(tm_improver *m, const tm_cavity_boundary *boundary, double least,
+                    double most, double p[3], double *place)
 {
+    bool moves = m->features.may_move && m->features.dimension[m->ball.node] < 3;
+    if (moves && !tm_improve_onto_surface(m, p, place))
+        return false;
     return tm_cavity_boundary_cost(boundary, &m->cost, p, least, most) < most &&
-           tm_cavity_boundary_sees(boundary, p);
+           tm_cavity_boundary_sees(boundary, p) &&
+           (!moves || tm_improve_allows_move(m, p, *place));
 }
 
 /* A point where the node costs less than `most`; false where none is found. */
-static bool find_point(const tm_improver *m, const tm_cavity_boundary *boundary,
-                       const tm_freedom *freedom, double least, double most, double p[3])
+static bool find_point(tm_improver *m, const tm_cavity_boundary *boundary,
+                       const tm_freedom *freedom, double least, double most, double p[3],
+                       double *place)
 {
     enum { STEPS = 2, LAST_STEPS = 8 };
     const double *from = m->mesh->xyz[m->ball.node];
     memcpy(p, from, sizeof m->mesh->xyz[0]);
     go_to_centre(boundary, freedom, p);
-    if (is_gain(m, boundary, least, most, p))
+    if (is_gain(m, boundary, least, most, p, place))
         return true;
     memcpy(p, from, sizeof m->mesh->xyz[0]);
     tm_cavity_boundary_climb(boundary, m->cost.measure, freedom,
                              m->cost.target * beyond_target, m->last ? LAST_STEPS : STEPS,
                              p);
-    return is_gain(m, boundary, least, most, p);
+    return is_gain(m, boundary, least, most, p, place);
+}
+
+static void move_node(tm_improver *m, const double p[3], double place)
+{
+    uint32_t v = m->ball.node;
+    tm_curve_part part;
+    tm_ball_move_node(m->mesh, &m->ball, p);
+    tm_improve_note(m, m->ball.tet, m->ball.size);
+    if (!m->features.may_move || m->features.dimension[v] == 3)
+        return;
+    if (m->features.dimension[v] == 1 &&
+        tm_features_part(&m->features, v, m->features.line[v][0], &part))
+        tm_features_put(&m->features, v, part.curve, place);
+    tm_improve_follow_surface(m);
 }
 
 static bool smooth_node(tm_improver *m, uint32_t t, uint32_t v)
@@ -62,13 +82,12 @@ static bool smooth_node(tm_improver *m, uint32_t t, uint32_t v)
         return false;
     tm_freedom freedom = tm_features_freedom(&m->features, m->mesh, &m->ball);
     tm_cavity_boundary boundary = tm_boundary_of_ball(&m->ball, m->mesh);
-    double least, p[3];
+    double least, p[3], place = NAN;
     double old = tm_improve_old_cost(m, m->ball.tet, m->ball.size, &least);
     if (freedom.dimension == 0 ||
-        !find_point(m, &boundary, &freedom, least, old - TM_IMPROVE_GAIN, p))
+        !find_point(m, &boundary, &freedom, least, old - TM_IMPROVE_GAIN, p, &place))
         return false;
-    tm_ball_move_node(m->mesh, &m->ball, p);
-    tm_improve_note(m, m->ball.tet, m->ball.size);
+    move_node(m, p, place);
     m->report->done.op[TM_OP_SMOOTHING]++;
     return true;
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The improver's swaps: the best removal of an edge or a face of a tetrahedron. */
+#include "../operation/peel.h"
 #include "improve_engine.h"
 
 #include <string.h>
@@ -52,16 +53,17 @@ static int take_apart(tm_improver *m, tm_star part[2])
         tm_edge_map_get(&m->mesh->locked, star->a, star->b) ||
         !tm_star_is_simple(m->mesh, star) || star->size >= TM_REMOVAL_MAX)
         return 0;
+    const size_t least = m->features.may_move ? 1 : 2; /* one alone is peeled off */
     part[0] = *star;
     if (place == TM_EDGE_INSIDE)
         return star->size >= 3;
     if (!star->closed)
-        return star->size >= 2;
+        return star->size >= least;
     size_t other = constrained[1] - constrained[0];
     rotate(star, constrained[0]);
     part[0] = part_of(star, 0, other);
     part[1] = part_of(star, other, star->size);
-    return part[0].size >= 2 && part[1].size >= 2 ? 2 : 0;
+    return part[0].size >= least && part[1].size >= least ? 2 : 0;
 }
 
 /* How many tetrahedra a part becomes. */
@@ -88,40 +90,59 @@ static double plan_edge(tm_improver *m, uint32_t t, unsigned e, double needed)
     double least, sum = m->price * (double)growth;
     double old = tm_improve_old_cost(m, m->star.tet, m->star.size, &least);
     for (int k = 0; k < parts; k++) {
+        if (becomes(&part[k]) == 0)
+            continue;
         if (!tm_edge_removal_plan_cheapest(m->mesh, &part[k], &m->cost, least,
                                            old - needed - sum, &m->removal[k]))
             return 0;
         sum += m->removal[k].quality;
     }
-    return old - sum > needed ? old - sum : 0;
+    if (!(old - sum > needed) || (m->features.may_move && !part[0].closed &&
+                                  !tm_improve_allows_swap(m, part, parts)))
+        return 0;
+    return old - sum;
+}
+
+/* Replaces a part by what was planned, or by nothing. */
+static void retriangulate(tm_improver *m, const tm_star *part, int k)
+{
+    tm_face_renewal renewal[2];
+    uint32_t beyond[2];
+    bool inside = part->closed;
+    if (!inside)
+        tm_edge_removal_renewals(m->mesh, part, k == 0, renewal);
+    if (becomes(part) == 0) {
+        tm_peel(m->mesh, part, renewal, k == 0, beyond);
+        tm_improve_note(m, beyond, 2);
+        return;
+    }
+    tm_edge_removal_list(part, &m->removal[k], m->node);
+    tm_replacement what = {.old = part->tet,
+                           .old_count = part->size,
+                           .node = (const uint32_t(*)[4])m->node,
+                           .count = becomes(part),
+                           .renewal = renewal,
+                           .renewals = inside ? 0 : 2,
+                           .created = m->created};
+    m->status = tm_tet_replace(m->mesh, &what, &m->table, m->error);
+    if (m->status == TM_OK)
+        tm_improve_note(m, m->created, what.count);
 }
 
 /* Removes the edge as it was planned. */
 static bool remove_edge(tm_improver *m)
 {
     tm_star part[2];
-    tm_face_renewal renewal[2];
     int parts = take_apart(m, part);
     if (parts == 0 || !tm_improve_reserve(m, 2 * m->star.size, 0))
         return false;
     bool inside = part[0].closed;
     if (!tm_replacement_table_reserve(&m->table, m->star.size, 2 * m->star.size))
         return tm_improve_no_memory(m);
-    for (int k = 0; k < parts && m->status == TM_OK; k++) {
-        tm_edge_removal_list(&part[k], &m->removal[k], m->node);
-        if (!inside)
-            tm_edge_removal_renewals(m->mesh, &part[k], k == 0, renewal);
-        tm_replacement what = {.old = part[k].tet,
-                               .old_count = part[k].size,
-                               .node = (const uint32_t(*)[4])m->node,
-                               .count = becomes(&part[k]),
-                               .renewal = renewal,
-                               .renewals = inside ? 0 : 2,
-                               .created = m->created};
-        m->status = tm_tet_replace(m->mesh, &what, &m->table, m->error);
-        if (m->status == TM_OK)
-            tm_improve_note(m, m->created, what.count);
-    }
+    for (int k = 0; k < parts && m->status == TM_OK; k++)
+        retriangulate(m, &part[k], k);
+    if (m->features.may_move && !inside && m->status == TM_OK)
+        tm_improve_follow_surface(m);
     m->report->done.op[inside ? TM_OP_EDGE_REMOVAL : TM_OP_BOUNDARY_SWAP]++;
     return m->status == TM_OK;
 }

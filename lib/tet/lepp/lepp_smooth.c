@@ -122,7 +122,7 @@ tm_status tm_lepp_smooth(tm_lepp_engine *e)
     tm_lepp_sweeper *s = &e->sweeper;
     size_t sweep = tm_lepp_bin(e->report->smooth.sweeps++, TM_LEPP_SWEEPS);
     tm_features_free(&s->features);
-    tm_status status = tm_features_find(&s->features, e->mesh, &s->marks, e->error);
+    tm_status status = tm_features_find(&s->features, e->mesh, NULL, &s->marks, e->error);
     if (status == TM_OK && !start(e))
         status = tm_fail_memory(e->error);
     tm_progress_at at = {

@@ -155,7 +155,7 @@ tm_status tm_lepp_swap(tm_lepp_engine *e)
     tm_lepp_sweeper *s = &e->sweeper;
     size_t sweep = tm_lepp_bin(e->report->swap.sweeps++, TM_LEPP_SWEEPS);
     tm_features_free(&s->features);
-    tm_status status = tm_features_find(&s->features, e->mesh, &s->marks, e->error);
+    tm_status status = tm_features_find(&s->features, e->mesh, NULL, &s->marks, e->error);
     tm_progress_at at = {
         .what = "swapping faces", .pass = e->report->swap.sweeps, .of = e->mesh->slots};
     for (uint32_t t = 0; t < e->mesh->slots && status == TM_OK; t++) {

@@ -4,32 +4,8 @@
 #define TM_OPERATION_BALL_H
 
 #include "cavity_boundary.h"
+#include "../marks.h"
 #include "../mesh.h"
-
-/* Marks on tetrahedra, or on nodes, that are all taken away at once. */
-typedef struct tm_tet_marks {
-    uint32_t *stamp; /* [room]; marked: == now */
-    size_t room;
-    uint32_t now;
-} tm_tet_marks;
-
-void tm_tet_marks_free(tm_tet_marks *marks);
-
-/* Takes all marks away; room for so many. False where memory is out. */
-bool tm_tet_marks_clear(tm_tet_marks *marks, size_t count);
-
-/* Marks t; whether it was not marked before. */
-static inline bool tm_tet_mark(tm_tet_marks *marks, uint32_t t)
-{
-    bool fresh = marks->stamp[t] != marks->now;
-    marks->stamp[t] = marks->now;
-    return fresh;
-}
-
-static inline bool tm_tet_is_marked(const tm_tet_marks *marks, uint32_t t)
-{
-    return marks->stamp[t] == marks->now;
-}
 
 /* Tetrahedron i and its face opposite the node: (face[i][0], face[i][1], face[i][2],
  * node) is a positive order. Where the mesh only touches itself in the node, the ball is

@@ -14,12 +14,17 @@ void tm_features_free(tm_features *features)
 {
     free(features->dimension);
     free(features->line);
+    tm_envelope_free(&features->envelope);
     *features = (tm_features){0};
 }
 
-bool tm_features_reserve(tm_features *features, size_t nodes)
+bool tm_features_reserve(tm_features *features, size_t nodes, size_t faces)
 {
     size_t room = features->room;
+    if (features->may_move && !tm_envelope_reserve(&features->envelope, faces, nodes))
+        return false;
+    if (nodes <= room)
+        return true;
     uint8_t *dimension = tm_grow(features->dimension, &room, nodes, 1);
     features->dimension = dimension ? dimension : features->dimension;
     size_t line_room = features->room;
@@ -33,8 +38,10 @@ bool tm_features_reserve(tm_features *features, size_t nodes)
 
 bool tm_features_copy(tm_features *to, const tm_features *from)
 {
-    if (to->room < from->room && !tm_features_reserve(to, from->room))
+    if ((to->room < from->room && !tm_features_reserve(to, from->room, 0)) ||
+        !tm_envelope_copy(&to->envelope, &from->envelope))
         return false;
+    to->may_move = from->may_move;
     memcpy(to->dimension, from->dimension, from->room * sizeof *to->dimension);
     memcpy(to->line, from->line, from->room * sizeof *to->line);
     to->flatness = from->flatness;
@@ -61,11 +68,35 @@ static bool is_same_facet(const tm_tet_mesh *mesh, uint32_t f, uint32_t g, uint3
 #define SMOOTH  (TM_NONE - 1)
 #define FEATURE (TM_NONE - 2)
 
+static bool is_face(const tm_constrained_face *face)
+{
+    return face->side[0] != TM_NONE || face->side[1] != TM_NONE;
+}
+
+/* The same for patches: they are known. */
+static bool map_patch_edges(const tm_features *features, const tm_tet_mesh *mesh,
+                            tm_edge_map *edges)
+{
+    const tm_edge_map *curve = &features->envelope.curve;
+    for (uint32_t f = 0; f < mesh->faces; f++) {
+        const uint32_t *n = mesh->face[f].node;
+        if (!is_face(&mesh->face[f]))
+            continue;
+        if (!tm_edge_map_reserve(edges, 3))
+            return false;
+        for (int i = 0; i < 3; i++) {
+            uint32_t a = n[i], b = n[(i + 1) % 3];
+            tm_edge_map_put(edges, a, b, tm_edge_map_get(curve, a, b) ? FEATURE : SMOOTH);
+        }
+    }
+    return true;
+}
+
 static bool map_edges(const tm_tet_mesh *mesh, double flatness, tm_edge_map *edges)
 {
     for (uint32_t f = 0; f < mesh->faces; f++) {
         const tm_constrained_face *face = &mesh->face[f];
-        if (face->side[0] == TM_NONE && face->side[1] == TM_NONE)
+        if (!is_face(face))
             continue;
         if (!tm_edge_map_reserve(edges, 3))
             return false;
@@ -151,7 +182,7 @@ static void fix_listed(tm_features *features, const tm_tet_mesh *mesh,
     }
     for (size_t f = 0; f < mesh->faces; f++)
         for (int i = 0; i < 3; i++)
-            if (mesh->face[f].side[0] == TM_NONE && mesh->face[f].side[1] == TM_NONE)
+            if (!is_face(&mesh->face[f]))
                 features->dimension[mesh->face[f].node[i]] = FIXED;
     for (size_t s = 0; s < mesh->locked.room; s++)
         if (mesh->locked.slot[s].key != 0) {
@@ -211,24 +242,72 @@ static tm_status fix_touching(tm_features *features, const tm_tet_mesh *mesh,
     return status;
 }
 
+/* Nodes are in patches, on curves, or corners. */
+static void place_envelope_nodes(tm_features *features)
+{
+    const tm_surface *reference = features->envelope.reference;
+    const uint32_t *origin = reference->origin;
+    for (size_t v = 0; v < reference->nodes; v++)
+        features->dimension[origin[v]] = IN_FACET;
+    for (uint32_t c = 0; c < reference->curves; c++) {
+        size_t first = reference->curve_start[c], last = reference->curve_start[c + 1] - 1;
+        const uint32_t *node = reference->curve_node;
+        for (size_t k = first; k < last; k++) {
+            uint32_t v = origin[node[k]];
+            if (k == first && !features->envelope.closed[c])
+                continue;
+            features->dimension[v] = ON_EDGE;
+            features->line[v][0] = origin[node[k == first ? last - 1 : k - 1]];
+            features->line[v][1] = origin[node[k + 1]];
+        }
+    }
+    for (size_t k = 0; k < reference->corners; k++)
+        features->dimension[origin[reference->corner[k]]] = FIXED;
+}
+
+static tm_status find_places(tm_features *features, const tm_tet_mesh *mesh,
+                             const tm_surface_limits *limits, tm_edge_map *edges,
+                             tm_error *error)
+{
+    bool any_face = false, done;
+    for (size_t f = 0; f < mesh->faces && !any_face; f++)
+        any_face = is_face(&mesh->face[f]);
+    features->may_move = any_face && limits && limits->tolerance > 0;
+    if (features->may_move) {
+        tm_status status =
+            tm_envelope_build(&features->envelope, mesh, limits->tolerance,
+                              limits->feature_angle, limits->unless_rough, error);
+        if (status != TM_OK)
+            return status;
+        done = map_patch_edges(features, mesh, edges);
+    } else {
+        done = map_edges(mesh, features->flatness, edges);
+    }
+    if (!done)
+        return tm_fail_memory(error);
+    if (features->may_move)
+        place_envelope_nodes(features);
+    else
+        place_surface_nodes(features, mesh, edges);
+    fix_marked(features, mesh, edges);
+    fix_listed(features, mesh, edges);
+    return TM_OK;
+}
+
 tm_status tm_features_find(tm_features *features, const tm_tet_mesh *mesh,
-                           tm_tet_marks *marks, tm_error *error)
+                           const tm_surface_limits *limits, tm_tet_marks *marks,
+                           tm_error *error)
 {
     tm_edge_map edges = {0};
     *features = (tm_features){.flatness = tm_facet_flatness(mesh)};
-    if (!tm_features_reserve(features, mesh->nodes + 1) ||
-        !map_edges(mesh, features->flatness, &edges)) {
-        tm_edge_map_free(&edges);
+    if (!tm_features_reserve(features, mesh->nodes + 1, 0))
         return tm_fail_memory(error);
-    }
     memset(features->dimension, INSIDE, mesh->nodes);
     for (size_t v = 0; v < mesh->nodes; v++)
         features->line[v][0] = features->line[v][1] = TM_NONE;
-    place_surface_nodes(features, mesh, &edges);
-    fix_marked(features, mesh, &edges);
-    fix_listed(features, mesh, &edges);
+    tm_status status = find_places(features, mesh, limits, &edges, error);
     tm_edge_map_free(&edges);
-    return fix_touching(features, mesh, marks, error);
+    return status == TM_OK ? fix_touching(features, mesh, marks, error) : status;
 }
 
 /* The normal of the facet that the node of a ball is in, of unit length. */
@@ -295,6 +374,9 @@ tm_edge_class tm_features_classify(const tm_features *features, const tm_tet_mes
     }
     if (count < 2 || has_line_to(features, a, b) || has_line_to(features, b, a))
         return TM_EDGE_OF_FEATURE;
+    if (features->may_move)
+        return tm_edge_map_get(&features->envelope.curve, a, b) ? TM_EDGE_OF_FEATURE
+                                                                : TM_EDGE_IN_FACET;
     return is_same_facet(mesh, face[0], face[1], a, b, features->flatness)
                ? TM_EDGE_IN_FACET
                : TM_EDGE_OF_FEATURE;
@@ -314,18 +396,76 @@ void tm_features_classify_node(tm_features *features, uint32_t node, tm_edge_cla
     features->dimension[node] = place == TM_EDGE_INSIDE     ? INSIDE
                                 : place == TM_EDGE_IN_FACET ? IN_FACET
                                                             : ON_EDGE;
+    if (features->may_move)
+        features->envelope.place[node] = NAN;
     if (place != TM_EDGE_OF_FEATURE)
         return;
-    features->line[node][0] = a;
-    features->line[node][1] = b;
+    bool forward = true;
+    tm_curve_part part;
+    if (features->may_move && tm_features_part(features, a, b, &part)) {
+        tm_edge_map *curve = &features->envelope.curve;
+        forward = part.node[0] == a;
+        tm_edge_map_remove(curve, a, b);
+        tm_edge_map_put(curve, a, node, part.curve);
+        tm_edge_map_put(curve, node, b, part.curve);
+    }
+    features->line[node][0] = forward ? a : b;
+    features->line[node][1] = forward ? b : a;
     replace_on_line(features, a, b, node);
     replace_on_line(features, b, a, node);
 }
 
-void tm_features_join(tm_features *features, uint32_t a, uint32_t b)
+uint32_t tm_features_beyond(const tm_features *features, uint32_t a, uint32_t b)
 {
     const uint32_t *line = features->line[a];
-    uint32_t beyond = line[0] == b ? line[1] : line[0];
+    return line[0] == b ? line[1] : line[0];
+}
+
+void tm_features_join(tm_features *features, uint32_t a, uint32_t b)
+{
+    uint32_t beyond = tm_features_beyond(features, a, b);
+    tm_curve_part part;
+    if (features->may_move && tm_features_part(features, a, b, &part)) {
+        tm_edge_map *curve = &features->envelope.curve;
+        tm_edge_map_remove(curve, a, b);
+        tm_edge_map_remove(curve, a, beyond);
+        tm_edge_map_put(curve, b, beyond, part.curve);
+    }
     replace_on_line(features, b, a, beyond);
     replace_on_line(features, beyond, a, b);
+}
+
+/* Whether a node is between the ends of its curve. */
+static bool is_between_ends(const tm_features *features, uint32_t v)
+{
+    return !isnan(features->envelope.place[v]);
+}
+
+bool tm_features_part(const tm_features *features, uint32_t a, uint32_t b,
+                      tm_curve_part *part)
+{
+    const tm_envelope *e = &features->envelope;
+    const uint32_t *curve = tm_edge_map_get(&e->curve, a, b);
+    if (!curve)
+        return false;
+    bool forward = is_between_ends(features, a)   ? features->line[a][1] == b
+                   : is_between_ends(features, b) ? features->line[b][0] == a
+                                                  : tm_envelope_begins(e, *curve) == a;
+    uint32_t first = forward ? a : b, second = forward ? b : a;
+    double segments = (double)tm_envelope_segments(e, *curve);
+    *part = (tm_curve_part){*curve, {first, second}, {0, segments}};
+    if (is_between_ends(features, first))
+        part->place[0] = e->place[first];
+    if (is_between_ends(features, second))
+        part->place[1] = e->place[second];
+    if (part->place[1] <= part->place[0])
+        part->place[1] += segments;
+    return true;
+}
+
+void tm_features_put(tm_features *features, uint32_t v, uint32_t curve, double place)
+{
+    double segments = (double)tm_envelope_segments(&features->envelope, curve);
+    bool again = tm_envelope_is_closed(&features->envelope, curve) && place >= segments;
+    features->envelope.place[v] = again ? place - segments : place;
 }

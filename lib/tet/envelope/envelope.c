@@ -1,0 +1,249 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "../../base/array.h"
+#include "envelope_parts.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void tm_envelope_free(tm_envelope *envelope)
+{
+    if (envelope->reference && !envelope->borrowed) {
+        tm_surface_free(envelope->reference);
+        free(envelope->reference);
+        free(envelope->closed);
+    }
+    free(envelope->below);
+    free(envelope->first_kept);
+    free(envelope->next_kept);
+    free(envelope->first_link);
+    free(envelope->link);
+    free(envelope->place);
+    free(envelope->flood);
+    tm_edge_map_free(&envelope->curve);
+    tm_tet_marks_free(&envelope->seen);
+    *envelope = (tm_envelope){0};
+}
+
+bool tm_envelope_reserve(tm_envelope *envelope, size_t faces, size_t nodes)
+{
+    enum { new_edges = 4 }; /* of an operation on a curve */
+    const size_t old = envelope->face_room, old_nodes = envelope->node_room;
+    if (faces > old) {
+        size_t room = old, same_room = old;
+        uint32_t *below = tm_grow(envelope->below, &room, faces, sizeof *below);
+        envelope->below = below ? below : envelope->below;
+        uint32_t *kept = tm_grow(envelope->first_kept, &same_room, faces, sizeof *kept);
+        envelope->first_kept = kept ? kept : envelope->first_kept;
+        if (!below || !kept)
+            return false;
+        memset(below + old, -1, (room - old) * sizeof *below);
+        memset(kept + old, -1, (room - old) * sizeof *kept);
+        envelope->face_room = room;
+    }
+    if (nodes > old_nodes) {
+        size_t room = old_nodes;
+        double *place = tm_grow(envelope->place, &room, nodes, sizeof *place);
+        if (!place)
+            return false;
+        for (size_t v = old_nodes; v < room; v++)
+            place[v] = NAN;
+        envelope->place = place;
+        envelope->node_room = room;
+    }
+    return tm_edge_map_reserve(&envelope->curve, new_edges);
+}
+
+static void *copy(const void *from, size_t count, size_t size, bool *done)
+{
+    void *made = tm_new(count, size);
+    if (!made)
+        *done = false;
+    else if (count > 0)
+        memcpy(made, from, count * size);
+    return made;
+}
+
+bool tm_envelope_copy(tm_envelope *to, const tm_envelope *from)
+{
+    bool done = true;
+    const tm_surface *reference = from->reference;
+    if (!reference)
+        return true;
+    tm_envelope made = *from;
+    made.reference = to->reference ? to->reference : from->reference;
+    made.borrowed = to->reference ? to->borrowed : true;
+    made.link_room = from->links;
+    made.below = copy(from->below, from->face_room, sizeof *made.below, &done);
+    made.first_kept =
+        copy(from->first_kept, from->face_room, sizeof *made.first_kept, &done);
+    made.next_kept =
+        copy(from->next_kept, reference->nodes, sizeof *made.next_kept, &done);
+    made.first_link =
+        copy(from->first_link, reference->triangles, sizeof *made.first_link, &done);
+    made.link = copy(from->link, from->links, sizeof *made.link, &done);
+    made.place = copy(from->place, from->node_room, sizeof *made.place, &done);
+    made.curve.slot =
+        copy(from->curve.slot, from->curve.room, sizeof *made.curve.slot, &done);
+    made.seen = to->seen;
+    made.flood = to->flood;
+    made.flood_room = to->flood_room;
+    to->seen = (tm_tet_marks){0};
+    to->flood = NULL;
+    if (!done) {
+        to->seen = made.seen;
+        to->flood = made.flood;
+        made.seen = (tm_tet_marks){0};
+        made.flood = NULL;
+        made.borrowed = true;
+        tm_envelope_free(&made);
+        return false;
+    }
+    to->borrowed = true; /* the reference stays */
+    tm_envelope_free(to);
+    *to = made;
+    return true;
+}
+
+static tm_covered covered(const tm_envelope *e, const tm_tet_mesh *mesh,
+                          const uint32_t node[3], uint32_t from)
+{
+    return (tm_covered){{mesh->xyz[node[0]], mesh->xyz[node[1]], mesh->xyz[node[2]]},
+                        e->below[from]};
+}
+
+/* The triangle of a change that is nearest to a point; its squared distance. */
+static size_t nearest(const tm_tet_mesh *mesh, const tm_surface_change *change,
+                      const double p[3], double *distance2)
+{
+    size_t best = 0;
+    *distance2 = HUGE_VAL;
+    for (size_t k = 0; k < change->count; k++) {
+        const uint32_t *n = change->node[k];
+        double to = tm_triangle_distance2(p, mesh->xyz[n[0]], mesh->xyz[n[1]],
+                                          mesh->xyz[n[2]]);
+        if (!(to < *distance2))
+            continue;
+        *distance2 = to;
+        best = k;
+    }
+    return best;
+}
+
+/* Whether the nodes that the old faces keep have a new one near. */
+static bool keeps_nodes(const tm_envelope *e, const tm_tet_mesh *mesh,
+                        const tm_surface_change *change)
+{
+    for (size_t i = 0; i < change->olds; i++)
+        for (uint32_t v = e->first_kept[change->old[i]]; v != TM_NONE;
+             v = e->next_kept[v]) {
+            double distance2;
+            nearest(mesh, change, e->reference->xyz[v], &distance2);
+            if (!(distance2 <= e->tolerance * e->tolerance))
+                return false;
+        }
+    return true;
+}
+
+bool tm_envelope_allows(tm_envelope *envelope, const tm_tet_mesh *mesh,
+                        const tm_surface_change *change)
+{
+    if (!keeps_nodes(envelope, mesh, change))
+        return false;
+    for (size_t k = 0; k < change->count; k++) {
+        tm_covered triangle = covered(envelope, mesh, change->node[k], change->from[k]);
+        if (!tm_envelope_covers(envelope, &triangle) ||
+            tm_envelope_crosses(envelope, mesh, change, k))
+            return false;
+    }
+    return true;
+}
+
+static bool is_linked(const tm_envelope *e, uint32_t t, uint32_t face)
+{
+    for (uint32_t l = e->first_link[t]; l != TM_NONE; l = e->link[l].next)
+        if (e->link[l].face == face)
+            return true;
+    return false;
+}
+
+static bool add_link(tm_envelope *e, uint32_t t, uint32_t face)
+{
+    if (is_linked(e, t, face))
+        return true;
+    tm_envelope_link *link =
+        tm_grow(e->link, &e->link_room, e->links + 1, sizeof *e->link);
+    if (!link)
+        return false;
+    e->link = link;
+    link[e->links] = (tm_envelope_link){face, e->first_link[t]};
+    e->first_link[t] = (uint32_t)e->links++;
+    return true;
+}
+
+/* Links all faces anew: those that were above a triangle once go. */
+bool tm_envelope_link_all(tm_envelope *e, const tm_tet_mesh *mesh)
+{
+    e->links = 0;
+    memset(e->first_link, -1, e->reference->triangles * sizeof *e->first_link);
+    for (uint32_t f = 0; f < mesh->faces; f++) {
+        const tm_constrained_face *face = &mesh->face[f];
+        if (face->side[0] == TM_NONE && face->side[1] == TM_NONE)
+            continue;
+        tm_covered triangle = covered(e, mesh, face->node, f);
+        bool done = tm_envelope_covers(e, &triangle) || add_link(e, e->below[f], f);
+        for (size_t i = 0; i < e->flood_count && done; i++)
+            done = add_link(e, e->flood[i], f);
+        if (!done)
+            return false;
+    }
+    e->links_at_first = e->links;
+    return true;
+}
+
+bool tm_envelope_follow(tm_envelope *envelope, const tm_tet_mesh *mesh,
+                        const tm_surface_change *change)
+{
+    const size_t most = 4; /* times the links that there are */
+    tm_envelope *e = envelope;
+    uint32_t from[TM_CHANGE_MOST], kept = TM_NONE, next;
+    for (size_t k = 0; k < change->count; k++)
+        from[k] = e->below[change->from[k]];
+    /* The nodes kept by old faces, as one list. */
+    for (size_t i = 0; i < change->olds; i++) {
+        for (uint32_t v = e->first_kept[change->old[i]]; v != TM_NONE; v = next) {
+            next = e->next_kept[v];
+            e->next_kept[v] = kept;
+            kept = v;
+        }
+        e->first_kept[change->old[i]] = TM_NONE;
+    }
+    for (size_t k = 0; k < change->count; k++) {
+        e->below[change->face[k]] = from[k];
+        e->first_kept[change->face[k]] = TM_NONE;
+        tm_covered triangle = covered(e, mesh, change->node[k], change->face[k]);
+        if (!tm_envelope_covers(e, &triangle))
+            return false;
+        e->below[change->face[k]] = e->flood[0];
+        for (size_t i = 0; i < e->flood_count; i++)
+            if (!add_link(e, e->flood[i], change->face[k]))
+                return false;
+    }
+    for (uint32_t v = kept; v != TM_NONE; v = next) {
+        double distance2;
+        uint32_t face =
+            change->face[nearest(mesh, change, e->reference->xyz[v], &distance2)];
+        next = e->next_kept[v];
+        e->next_kept[v] = e->first_kept[face];
+        e->first_kept[face] = v;
+    }
+    return e->links <= most * e->links_at_first || tm_envelope_link_all(e, mesh);
+}
+
+void tm_envelope_onto_patch(const tm_envelope *envelope, uint32_t face, double p[3])
+{
+    uint32_t below = envelope->below[face];
+    tm_surface_point at = {.triangle = below};
+    tm_surface_closest(envelope->reference, p, envelope->reference->patch[below], &at);
+    memcpy(p, at.xyz, sizeof at.xyz);
+}
