@@ -126,8 +126,8 @@ static inline double tm_cost_of(const tm_cost *cost, double quality)
     if (quality >= cost->target)
         return 0;
     if (cost->steep > 0)
-        return 1 + cost->weight * cost->steep /
-                       (cost->steep + sqrt(quality / cost->target));
+        return 1 +
+               cost->weight * cost->steep / (cost->steep + sqrt(quality / cost->target));
     return 1 + cost->weight * (1 - sqrt(quality / cost->target));
 }
 

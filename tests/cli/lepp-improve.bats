@@ -215,14 +215,91 @@ added = done["insertions"] - done["contractions"] - done["swallowed_nodes"]
 assert run["after"]["nodes"] == run["before"]["nodes"] + added
 END
     run --separate-stderr lepp-improve --ops list
-    [ "${#lines[@]}" -eq 6 ]
-    [ "${lines[5]}" = insertion ]
+    [ "${#lines[@]}" -eq 8 ]
+    [ "${lines[-1]}" = reconnection ]
     for op in "${lines[@]}"; do
         grep -q "^\.It Cm $op\$" "$BATS_TEST_DIRNAME/../../man/lepp-improve.1"
         lepp-improve --ops "$op" points.tm >/dev/null
     done
     lepp-improve -q --ops "$(lepp-improve --ops list | paste -sd ,)" --no-history points.tm |
         cmp - <(lepp-improve -q --no-history points.tm)
+}
+
+# A wedge of so many degrees, three prisms long.
+wedge() {
+    awk -v degrees="$1" 'BEGIN {
+        angle = degrees * atan2(0, -1) / 180
+        print "termesh 1\n.node\n12 3 0 0"
+        for (k = 0; k < 4; k++) {
+            print 3 * k, 0, 0, k / 6
+            print 3 * k + 1, 1, 0, k / 6
+            printf "%d %.17g %.17g %.17g\n", 3 * k + 2, cos(angle), sin(angle), k / 6
+        }
+        print ".ele\n9 4 0"
+        for (k = 0; k < 3; k++) {
+            b = 3 * k
+            print b, b, b + 1, b + 2, b + 5
+            print b + 1, b, b + 1, b + 5, b + 4
+            print b + 2, b, b + 4, b + 5, b + 3
+        }
+        print ".end"
+    }'
+}
+
+@test "forced: all that is bad in a wedge of 10 degrees, nothing in a cube" {
+    wedge 10 >"$out/wedge.tm"
+    run --separate-stderr lepp-improve --json "$out/json" "$out/wedge.tm"
+    python3 - "$out/json" "$stderr" <<'END'
+import json, sys
+run = json.load(open(sys.argv[1]))
+forced = run["forced"]
+bad = forced["bad"]
+assert bad == forced["tets"] > 0
+assert bad == round(run["after"]["bad_percent"] * run["after"]["tets"] / 100)
+assert sys.argv[2].endswith("; %d bad left, %d forced by the surface" % (bad, bad))
+assert sum(s["tets"] for s in forced["sectors"]) >= bad
+for s in forced["sectors"]:
+    assert abs(s["degrees"] - 10) < 1e-9
+    assert s["midpoint"][:2] == [0, 0] and 0 < s["midpoint"][2] < 0.5
+END
+    # As many for every limit above that, none for one below.
+    lepp-improve -q -t 9 --json "$out/json" "$out/wedge.tm" >"$out/1.tm"
+    [ "$(python3 -c 'import json, sys
+print(json.load(open(sys.argv[1]))["forced"])' "$out/json")" = \
+        "{'bad': 0, 'tets': 0, 'sectors': []}" ]
+    # Where much is bad but nothing is forced.
+    surface cube off | tetgen-mesh --no-history -q >"$out/cube.tm"
+    run --separate-stderr lepp-improve -t 60 --json "$out/json" "$out/cube.tm"
+    [[ $stderr == *" bad left, 0 forced by the surface" ]]
+    run --separate-stderr lepp-improve --json "$out/json" "$out/cube.tm"
+    [[ $stderr != *"forced by"* ]]
+}
+
+@test "the worst: with reconnection and lower limits no angle and no count is worse" {
+    local options
+    while read -r options; do
+        # shellcheck disable=SC2086 # words
+        lepp-improve -q $options --json "$out/json" points.tm >"$out/1.tm"
+        python3 - "$out/json" <<'END'
+import json, sys
+run = json.load(open(sys.argv[1]))
+before, after = run["before"], run["after"]
+assert after["min_dihedral"] >= before["min_dihedral"]
+assert after["max_dihedral"] <= before["max_dihedral"]
+assert after["bad_percent"] * after["tets"] <= before["bad_percent"] * before["tets"]
+END
+        mesh-check -q "$out/1.tm"
+    done <<'END'
+-t 10
+-t 10 -s converged
+-t 20 --ops reconnection
+-t 15 --ops reconnection,smoothing
+-t 10 --max-growth 1 -s converged
+END
+    # It does something.
+    lepp-improve -q -t 20 --ops reconnection --json "$out/json" points.tm >"$out/1.tm"
+    [ "$(python3 -c 'import json, sys
+print(json.load(open(sys.argv[1]))["operations"]["reconnections"] > 0)' "$out/json")" = True ]
 }
 
 @test "delaunay: every face of the result is, by exact fractions" {

@@ -62,7 +62,8 @@ static int operate(tm_improver *m)
     while (!tm_tet_lives(m->mesh, t));
     tm_improve_set_price(m, 2 * random_unit() - 1);
     memset(m->smoothed, 0, m->mesh->nodes * sizeof *m->smoothed);
-    switch (random_below(5)) {
+    m->last = random_below(2);
+    switch (random_below(6)) {
     case 0:
         return tm_improve_swap(m, t) ? 0 : -1;
     case 1:
@@ -71,6 +72,8 @@ static int operate(tm_improver *m)
         return tm_improve_contract(m, t) ? 2 : -1;
     case 3:
         return tm_improve_peel(m, t) ? 4 : -1;
+    case 4:
+        return tm_improve_reconnect(m, t) ? 5 : -1;
     default:
         return m->mesh->tets < 2000 && tm_improve_insert(m, t) ? 3 : -1;
     }

@@ -64,11 +64,11 @@ enum { TM_IMPROVE_ALL_OPS = (1 << TM_IMPROVE_OPS) - 1 };
 
 typedef struct tm_improve_options {
     double angle; /* degrees; bad: a dihedral angle below it, or above 180 - it */
-    tm_tet_measure measure; /* by which tetrahedra are compared */
-    double max_growth;      /* tetrahedra at most, by those of the input; 0: any */
-    unsigned ops;           /* bits 1 << tm_improve_op */
-    size_t passes;          /* over the bad tetrahedra, at most; 0: any number */
-    bool converge;          /* go on while anything is gained, not only enough */
+    tm_tet_measure measure;    /* by which tetrahedra are compared */
+    double max_growth;         /* tetrahedra at most, by those of the input; 0: any */
+    unsigned ops;              /* bits 1 << tm_improve_op */
+    size_t passes;             /* over the bad tetrahedra, at most; 0: any number */
+    bool converge;             /* go on while anything is gained, not only enough */
     tm_surface_limits surface; /* how far the surface may move */
     const tm_progress *progress;
 } tm_improve_options;

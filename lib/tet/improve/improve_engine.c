@@ -125,9 +125,7 @@ double tm_improve_old_cost(const tm_improver *m, const uint32_t *old, size_t cou
         sum += tm_cost_of(&m->cost, quality);
         worst = quality < worst ? quality : worst;
     }
-    *least = worst * (m->last        ? strictness
-                      : m->price < 0 ? kick_looseness
-                                     : looseness);
+    *least = worst * (m->last ? strictness : m->price < 0 ? kick_looseness : looseness);
     return sum;
 }
 
@@ -219,7 +217,8 @@ tm_status tm_improve_start(tm_improver *m, tm_tet_mesh *mesh,
     m->most_tets = tm_tet_mesh_most(mesh, options->max_growth);
     m->cost.measure = m->options->measure;
     m->cost.weight = cost_weight;
-    m->status = tm_features_find(&m->features, mesh, &options->surface, &m->marks, m->error);
+    m->status =
+        tm_features_find(&m->features, mesh, &options->surface, &m->marks, m->error);
     if (m->status != TM_OK)
         return m->status;
     if (!reserve_nodes(m, mesh->nodes + 1) || !reserve_tets(m, mesh->slots + 1)) {

@@ -36,11 +36,11 @@ typedef struct tm_improver {
     tm_status status; /* of what failed: nothing more is done then */
 
     tm_cost cost;
-    double degrees;   /* the target, by the angle or, for volume, a hundredth of it */
-    double price;     /* of one more tetrahedron; negative to kick */
-    unsigned fails;   /* kicks without success, since one had it */
-    bool last;        /* the worst ones are worked on: nothing made is as bad as they */
-    size_t work; /* some 20 µs each: tetrahedra tried, and what else takes time */
+    double degrees; /* the target, by the angle or, for volume, a hundredth of it */
+    double price;   /* of one more tetrahedron; negative to kick */
+    unsigned fails; /* kicks without success, since one had it */
+    bool last;      /* the worst ones are worked on: nothing made is as bad as they */
+    size_t work;    /* some 20 µs each: tetrahedra tried, and what else takes time */
     size_t work_most;
     size_t most_tets; /* the mesh never grows beyond */
 
@@ -66,7 +66,7 @@ typedef struct tm_improver {
     tm_tet_marks seen;  /* on nodes */
     tm_star star, around;
     tm_ball ball, other_ball;
-    tm_tet_marks linked;      /* on nodes */
+    tm_tet_marks linked;                 /* on nodes */
     tm_surface_change change_of_surface; /* that was allowed last */
     tm_cavity cavity;
     tm_edge_removal removal[2]; /* for the two sides of a facet */

@@ -90,8 +90,7 @@ static bool fill(tm_improver *m)
     size_t swallowed;
     if (!tm_improve_may_grow(m, (ptrdiff_t)s->tets - (ptrdiff_t)m->cavity.size) ||
         tm_improve_has_marked_edge(m) ||
-        !tm_improve_reserve(m, s->tets + m->cavity.size, 0) ||
-        !list_found(m, &swallowed))
+        !tm_improve_reserve(m, s->tets + m->cavity.size, 0) || !list_found(m, &swallowed))
         return false;
     tm_replacement what = {.old = m->cavity.tet,
                            .old_count = m->cavity.size,

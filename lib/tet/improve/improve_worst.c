@@ -154,22 +154,31 @@ static void try_last(tm_improver *m, size_t work_most)
     m->last = false;
 }
 
-void tm_improve_worst(tm_improver *m, tm_improve_reach *reach)
+/* Raises the worst by lower targets, until that fails or for once. */
+static void raise_all(tm_improver *m, tm_improve_reach *reach, size_t work_most)
 {
-    double worst;
     bool converge = m->options->converge, any = true;
-    size_t passes = m->options->passes;
-    if (m->status != TM_OK || (passes > 0 && m->report->passes >= passes) ||
-        !are_few(m, count_below(m, m->cost.target, &worst), bad_share))
-        return;
-    size_t work_most = m->work + (size_t)(share_of_work * (double)m->work);
     for (int round = 0; round < (converge ? ROUNDS_MAX : 1) && any; round++) {
         any = false;
         for (size_t k = 0; k < (converge ? LEVELS_TO_CONVERGE : LEVELS); k++)
             any |= raise_worst(m, reach, lower[k] * m->degrees, work_most);
     }
     m->work_most = SIZE_MAX;
-    try_last(m, work_most);
+}
+
+void tm_improve_worst(tm_improver *m, tm_improve_reach *reach)
+{
+    double worst;
+    const tm_improve_options *o = m->options;
+    size_t work_most = m->work + (size_t)(share_of_work * (double)m->work);
+    if (m->status != TM_OK || (o->passes > 0 && m->report->passes >= o->passes))
+        return;
+    if (o->ops == 1u << TM_OP_RECONNECTION) {
+        try_last(m, SIZE_MAX);
+    } else if (are_few(m, count_below(m, m->cost.target, &worst), bad_share)) {
+        raise_all(m, reach, work_most);
+        try_last(m, work_most);
+    }
     count_below(m, m->cost.target, &worst);
     if (m->cost.measure == TM_MEASURE_DIHEDRAL)
         tm_improve_forbid(m, tm_sine2_to_degrees(worst));

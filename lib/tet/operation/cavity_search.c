@@ -76,8 +76,7 @@ static void orient_all(tm_cavity_search *s)
         for (unsigned c = 0; c < d; c++)
             for (unsigned b = 0; b < c; b++)
                 for (unsigned a = 0; a < b; a++) {
-                    int sign =
-                        tm_orient3d(s->xyz[a], s->xyz[b], s->xyz[c], s->xyz[d]);
+                    int sign = tm_orient3d(s->xyz[a], s->xyz[b], s->xyz[c], s->xyz[d]);
                     if (sign == 0)
                         continue;
                     unsigned x = sign > 0 ? a : b, y = sign > 0 ? b : a;
@@ -132,8 +131,7 @@ static double cost_of(const search *h, unsigned a, unsigned b, unsigned c, unsig
         return *known;
     double quality =
         tm_cost_quality(h->cost, h->least, s->xyz[a], s->xyz[b], s->xyz[c], s->xyz[d]);
-    *known =
-        quality > 0 && quality >= h->least ? tm_cost_of(h->cost, quality) : HUGE_VAL;
+    *known = quality > 0 && quality >= h->least ? tm_cost_of(h->cost, quality) : HUGE_VAL;
     return *known;
 }
 
@@ -201,9 +199,8 @@ static bool is_crossed(const tm_cavity_search *s, const uint32_t linked[TM_SEARC
 }
 
 /* Whether a node of the front is inside the tetrahedron of face n and node v. */
-static bool holds_node(const tm_cavity_search *s,
-                       const uint32_t linked[TM_SEARCH_NODES], const uint8_t n[3],
-                       unsigned v)
+static bool holds_node(const tm_cavity_search *s, const uint32_t linked[TM_SEARCH_NODES],
+                       const uint8_t n[3], unsigned v)
 {
     uint32_t inside = s->above[n[0]][n[1]][n[2]] & s->above[n[1]][n[0]][v] &
                       s->above[n[2]][n[1]][v] & s->above[n[0]][n[2]][v];
@@ -384,8 +381,10 @@ bool tm_cavity_search_load(tm_cavity_search *s, const tm_tet_mesh *mesh,
 static void forget(tm_cavity_search *s)
 {
     size_t n = s->nodes;
-    size_t quads = n < 4 ? 0 : quad_of((unsigned)n - 4, (unsigned)n - 3, (unsigned)n - 2,
-                                       (unsigned)n - 1) + 1;
+    size_t quads = n < 4 ? 0
+                         : quad_of((unsigned)n - 4, (unsigned)n - 3, (unsigned)n - 2,
+                                   (unsigned)n - 1) +
+                               1;
     for (size_t a = 0; a < n; a++)
         for (size_t b = 0; b < n; b++)
             memset(s->candidates[a][b], 0, n * sizeof s->candidates[a][b][0]);
@@ -396,11 +395,8 @@ static void forget(tm_cavity_search *s)
 bool tm_cavity_search_run(tm_cavity_search *s, const tm_cost *cost, double least,
                           double most, size_t steps_most)
 {
-    search h = {.s = s,
-                .cost = cost,
-                .least = least,
-                .most = most,
-                .steps_most = steps_most};
+    search h = {
+        .s = s, .cost = cost, .least = least, .most = most, .steps_most = steps_most};
     front whole = {.faces = s->faces};
     memcpy(whole.face, s->face, s->faces * sizeof s->face[0]);
     s->steps = s->tets = 0;
