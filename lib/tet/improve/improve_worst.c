@@ -14,7 +14,7 @@ static const double bad_share = 0.05, low_share = 0.005;
 enum { FEW = 200 };
 
 /* What all of this may take, by what was done before; and the first part of it. */
-static const double share_of_work = 0.5, first_share = 0.6;
+static const double share_of_work = 0.45, first_share = 0.6;
 
 /* Lower targets, by the target; the last ones only to converge. */
 static const double lower[] = {1. / 6, 2. / 3, 1. / 3, 5. / 6};
