@@ -35,7 +35,8 @@ typedef struct tm_envelope {
     double tolerance; /* the distance: a length */
     tm_surface *reference;
     bool *closed;  /* [curves of the reference]: those without an end */
-    bool borrowed; /* both are those of the envelope that this is a copy of */
+    uint32_t *leaf, *parent; /* by triangle, and node, of the reference's tree */
+    bool borrowed; /* all these are those of the envelope that this is a copy of */
 
     /* By constrained face: a triangle of the reference below it, which has its patch; the
      * nodes of the reference that are near it, as a list in next_kept. */
@@ -47,6 +48,7 @@ typedef struct tm_envelope {
     uint32_t *first_link; /* [triangles of the reference] */
     tm_envelope_link *link;
     size_t links, link_room, links_at_first;
+    double (*reach)[6]; /* by node of the tree: a box with all those faces; low and high */
 
     tm_edge_map curve; /* edges on feature curves: the curve */
     size_t node_room;

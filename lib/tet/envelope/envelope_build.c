@@ -247,6 +247,27 @@ static void keep_nodes(builder *b, const bool *on_feature, tm_tet_marks *seen)
     }
 }
 
+/* The way up the tree. */
+static bool find_parents(builder *b)
+{
+    const tm_surface_tree *tree = b->s->tree;
+    tm_envelope *e = b->e;
+    e->leaf = tm_new(b->s->triangles, sizeof *e->leaf);
+    e->parent = tm_new(tree->nodes, sizeof *e->parent);
+    e->reach = tm_new(tree->nodes, sizeof *e->reach);
+    if (!e->leaf || !e->parent || !e->reach)
+        return false;
+    e->parent[0] = TM_NONE;
+    for (uint32_t n = 0; n < tree->nodes; n++) {
+        const tm_tree_node *node = &tree->node[n];
+        if (node->count == 0)
+            e->parent[node->first] = e->parent[node->first + 1] = n;
+        for (uint32_t i = 0; i < node->count; i++)
+            e->leaf[tree->triangle[node->first + i].id] = n;
+    }
+    return true;
+}
+
 static bool attach(builder *b)
 {
     tm_surface *s = b->s;
@@ -255,7 +276,7 @@ static bool attach(builder *b)
     bool *on_feature = calloc(s->nodes + 1, sizeof *on_feature);
     e->next_kept = tm_new(s->nodes, sizeof *e->next_kept);
     e->first_link = tm_new(s->triangles, sizeof *e->first_link);
-    bool done = on_feature && e->next_kept && e->first_link &&
+    bool done = on_feature && e->next_kept && e->first_link && find_parents(b) &&
                 tm_envelope_reserve(e, b->mesh->faces, b->mesh->nodes) &&
                 place_curves(b, on_feature) && tm_tet_marks_clear(&seen, s->nodes);
     if (done) {
