@@ -33,7 +33,8 @@ static const struct option options[] = {
 static const char synopsis[] =
     "[-a ALGORITHM] [-t DEG] [-Q dihedral|volume] [-s original|N|converged] "
     "[--surface-tolerance [=]D] [--feature-angle DEG] [--max-growth R] [--ops LIST] "
-    "[-m FACTOR] [--path simple|full] [--max-star N] [--with smooth|face-swap|both] [FILE]";
+    "[-m FACTOR] [--path simple|full] [--max-star N] [--with smooth|face-swap|both] "
+    "[FILE]";
 
 static const char own_help[] =
     "  -a, --algorithm A   improve (default): all operations together; or what is done\n"
@@ -326,10 +327,11 @@ static void add(char *text, size_t size, const char *format, size_t count)
 static void add_effects(const tm_improve_report *r, char *text, size_t size)
 {
     static const char *const words[TM_IMPROVE_EFFECTS] = {
-        "%zu edges and ", "%zu faces removed, ", "%zu times a node moved, ",
-        "%zu points inserted, ", "%zu nodes removed", ", %zu tetrahedra peeled off"};
+        "%zu edges and ",        "%zu faces removed, ", "%zu times a node moved, ",
+        "%zu points inserted, ", "%zu nodes removed",   ", %zu tetrahedra peeled off"};
     for (int k = 0; k < TM_IMPROVE_EFFECTS; k++)
-        if (k != TM_EFFECT_TETS_PEELED || tm_improve_effects(r, TM_EFFECT_TETS_PEELED) > 0)
+        if (k != TM_EFFECT_TETS_PEELED ||
+            tm_improve_effects(r, TM_EFFECT_TETS_PEELED) > 0)
             add(text, size, words[k], tm_improve_effects(r, (tm_improve_effect)k));
 }
 
@@ -402,7 +404,8 @@ int main(int argc, char **argv)
 {
     filter f = {.name = "lepp-improve",
                 .synopsis = synopsis,
-                .purpose = "Improves tetrahedra; the boundary stays where it is.",
+                .purpose =
+                    "Improves tetrahedra; the boundary stays where it is, or near.",
                 .help = own_help,
                 .options = options,
                 .words = option_words,

@@ -125,8 +125,8 @@ static size_t nearest(const tm_tet_mesh *mesh, const tm_surface_change *change,
     *distance2 = HUGE_VAL;
     for (size_t k = 0; k < change->count; k++) {
         const uint32_t *n = change->node[k];
-        double to = tm_triangle_distance2(p, mesh->xyz[n[0]], mesh->xyz[n[1]],
-                                          mesh->xyz[n[2]]);
+        double to =
+            tm_triangle_distance2(p, mesh->xyz[n[0]], mesh->xyz[n[1]], mesh->xyz[n[2]]);
         if (!(to < *distance2))
             continue;
         *distance2 = to;
@@ -221,7 +221,8 @@ bool tm_envelope_link_all(tm_envelope *e, const tm_tet_mesh *mesh)
         if (face->side[0] == TM_NONE && face->side[1] == TM_NONE)
             continue;
         tm_covered triangle = covered(e, mesh, face->node, f);
-        bool done = tm_envelope_covers(e, &triangle) || add_link(e, mesh, e->below[f], f, face->node);
+        bool done = tm_envelope_covers(e, &triangle) ||
+                    add_link(e, mesh, e->below[f], f, face->node);
         for (size_t i = 0; i < e->flood_count && done; i++)
             done = add_link(e, mesh, e->flood[i], f, face->node);
         if (!done)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The reference: the constrained faces of a mesh as a surface that need be no manifold. */
+/* The reference: the constrained faces of a mesh as a surface that need be no manifold.
+ */
 #include "../../base/array.h"
 #include "../../surface/surface_parts.h"
 #include "../../surface/surface_tree.h"
@@ -9,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A feature that ends freely has to be so many times longer than what the surface may move
- * anyway. */
+/* A feature that ends freely has to be so many times longer than what the surface may
+ * move anyway. */
 static const double short_curve = 16;
 
 typedef struct builder {

@@ -145,7 +145,8 @@ static bool is_near_edge(const tm_envelope *e, const frame *f, const double a[3]
     for (int i = 0; i < 3; i++) {
         const double *from = f->corner[i], *to = f->corner[(i + 1) % 3];
         double p[3] = {from[0], from[1], 0}, q[3] = {to[0], to[1], 0};
-        if (tm_segment_distance2(a, p, q) <= most && tm_segment_distance2(b, p, q) <= most)
+        if (tm_segment_distance2(a, p, q) <= most &&
+            tm_segment_distance2(b, p, q) <= most)
             return true;
     }
     return false;

@@ -61,11 +61,11 @@ enum { TM_IMPROVE_ALL_OPS = (1 << TM_IMPROVE_OPS) - 1 };
 
 typedef struct tm_improve_options {
     double angle; /* degrees; bad: a dihedral angle below it, or above 180 - it */
-    tm_tet_measure measure; /* by which tetrahedra are compared */
-    double max_growth;      /* tetrahedra at most, by those of the input; 0: any */
-    unsigned ops;           /* bits 1 << tm_improve_op */
-    size_t passes;          /* over the bad tetrahedra, at most; 0: any number */
-    bool converge;          /* go on while anything is gained, not only enough */
+    tm_tet_measure measure;    /* by which tetrahedra are compared */
+    double max_growth;         /* tetrahedra at most, by those of the input; 0: any */
+    unsigned ops;              /* bits 1 << tm_improve_op */
+    size_t passes;             /* over the bad tetrahedra, at most; 0: any number */
+    bool converge;             /* go on while anything is gained, not only enough */
     tm_surface_limits surface; /* how far the surface may move */
     const tm_progress *progress;
 } tm_improve_options;
@@ -84,13 +84,16 @@ typedef struct tm_improve_report {
     size_t tried[TM_IMPROVE_OPS]; /* how often it was looked for; 0 for swaps */
     size_t nodes_free[4];         /* of the input, by the dimension they may move in */
     bool too_large;               /* max_growth could not be reached */
+    double tolerance;             /* of the surface, and what that has, if it is not 0 */
+    size_t patches, curves, corners;
 } tm_improve_report;
 
 /* Improves the mesh. The smallest and the largest dihedral angle never get worse; volume,
  * surface, regions and markers stay, but for the rounding of nodes that move in the
- * surface. If nothing is bad, angles above 30 degrees are reached one degree after the
- * other. After an error the mesh is still valid, improved as far as it got.
- * Deterministic. In practice O(tetrahedra). */
+ * surface; with a tolerance the surface stays within that (tet/envelope/envelope.h). If
+ * nothing is bad, angles above 30 degrees are reached one degree after the other. After
+ * an error the mesh is still valid, improved as far as it got. Deterministic. In practice
+ * O(tetrahedra). */
 tm_status tm_improve(tm_tet_mesh *mesh, const tm_improve_options *options,
                      tm_improve_report *report, tm_error *error);
 

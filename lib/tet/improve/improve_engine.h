@@ -61,7 +61,7 @@ typedef struct tm_improver {
     tm_tet_marks seen;  /* on nodes */
     tm_star star, around;
     tm_ball ball, other_ball;
-    tm_tet_marks linked;      /* on nodes */
+    tm_tet_marks linked;                 /* on nodes */
     tm_surface_change change_of_surface; /* that was allowed last */
     tm_cavity cavity;
     tm_edge_removal removal[2]; /* for the two sides of a facet */

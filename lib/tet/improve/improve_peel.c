@@ -20,8 +20,7 @@ static bool peel(tm_improver *m, uint32_t t, uint32_t i)
 
 bool tm_improve_peel(tm_improver *m, uint32_t t)
 {
-    bool is_gain =
-        tm_cost_of(&m->cost, m->quality[t]) + m->price > TM_IMPROVE_GAIN;
+    bool is_gain = tm_cost_of(&m->cost, m->quality[t]) + m->price > TM_IMPROVE_GAIN;
     for (uint32_t i = 0; i < 4 && m->features.may_move && is_gain; i++)
         if (tm_peel_face_is_possible(m->mesh, t, i) &&
             m->features.dimension[m->mesh->tet[t][i]] == 3)
