@@ -6,6 +6,7 @@
 static bool peel(tm_improver *m, uint32_t t, uint32_t i)
 {
     uint32_t face[3], beyond[3], apex = m->mesh->tet[t][i];
+    m->report->tried[TM_OP_PEELING]++;
     m->status = tm_tet_mesh_reserve(m->mesh, 0, 0, 2, 0, m->error);
     if (m->status != TM_OK || !tm_improve_reserve(m, 0, 0) ||
         !tm_improve_allows_peel(m, t, i))
