@@ -3,6 +3,7 @@
 
 #include "../base/array.h"
 #include "../geom/vector.h"
+#include "../stream/coordinates.h"
 #include "surface_parts.h"
 #include "surface_sharp.h"
 #include "surface_tree.h"
