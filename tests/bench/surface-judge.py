@@ -14,7 +14,8 @@ curves    edges of these with another number of them than two, between normals t
           Chains of the second kind that end freely and are shorter than 16 D are noise and
           not asked for, nor are networks of which one in twenty curves ends so, nor any
           where one in twenty of all does: the surface is rough
-corners   where other than two curves meet, or two at an angle: all are nodes of AFTER
+corners   where other than two curves meet, or two at an angle that the next node of the
+          curve does not take back: all are nodes of AFTER
 volume    of each region, changed by at most D times the area around it
 body      components, Euler number, non-manifold edges, markers and regions there are"""
 import argparse
@@ -28,7 +29,7 @@ from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 
 NOISE = 16  # a chain that ends freely and is shorter than so many D is noise
 ROUGH = 20  # a network is rough where one of so many curves ends so,
-SOME = 10  # and all of them, where more than so many do
+SOME = 10  # and more than so many do
 SLACK = 1e-9  # of D, and of the diagonal: rounding
 FACES = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])
 
@@ -225,20 +226,29 @@ def networks(found):
     return network
 
 
-def drop_rough(mesh, found, least):
-    """Networks of which many curves end freely; all, where many of all do."""
+def count_ends(mesh, found, least):
+    """Short free chains, and ends of curves, of each network."""
     network, ends, arms = networks(found), collections.Counter(), collections.Counter()
     for chain in free_chains(mesh, found, least):
         ends[network[chain[0]]] += 1
     for here in at_nodes(found).values():
         if len(here) != 2:
             arms[network[here[0]]] += len(here)
-    rough = {e: kind for e, kind in found.items()
-             if kind and ends[network[e]] * 2 * ROUGH > arms[network[e]]}
+    return network, ends, arms
+
+
+def is_rough(mesh, found, least):
+    _, ends, arms = count_ends(mesh, found, least)
     loose = sum(ends.values())
-    if loose > SOME and loose * 2 * ROUGH > sum(arms.values()):
-        return {e: kind for e, kind in found.items() if not kind}
-    return {e: kind for e, kind in found.items() if e not in rough}
+    return loose > SOME and loose * 2 * ROUGH > sum(arms.values())
+
+
+def drop_rough(mesh, found, least):
+    """Networks of which many curves end freely."""
+    network, ends, arms = count_ends(mesh, found, least)
+    return {e: kind for e, kind in found.items()
+            if not kind or ends[network[e]] <= SOME or
+            ends[network[e]] * 2 * ROUGH <= arms[network[e]]}
 
 
 def drop_noise(mesh, found, least):
@@ -251,15 +261,27 @@ def drop_noise(mesh, found, least):
 
 
 def corners(mesh, found, angle):
-    at = collections.defaultdict(list)
-    for u, v in found:
+    least, at = math.cos(math.radians(angle)), at_nodes(found)
+
+    def beside(v):
+        return [e[0] if e[1] == v else e[1] for e in at[v]]
+
+    def unit(u, v):
         along = mesh.xyz[v] - mesh.xyz[u]
-        along = along / max(np.linalg.norm(along), 1e-300)
-        at[u].append(along)
-        at[v].append(-along)
-    turn = -math.cos(math.radians(angle))
-    return [v for v, ways in at.items()
-            if len(ways) != 2 or float(ways[0] @ ways[1]) > turn]
+        return along / max(np.linalg.norm(along), 1e-300)
+
+    def turns(v):
+        return float(unit(beside(v)[0], v) @ unit(v, beside(v)[1])) < least
+
+    def taken_back(v, before, after):
+        """By the next node: the steps of a staircase are no corners."""
+        if len(at[after]) != 2 or not turns(after):
+            return False
+        onward = [w for w in beside(after) if w != v]
+        return bool(onward) and float(unit(before, v) @ unit(after, onward[0])) >= least
+    return [v for v in at if len(at[v]) != 2 or
+            (turns(v) and not taken_back(v, *beside(v)) and
+             not taken_back(v, *beside(v)[::-1]))]
 
 
 def poly_data(xyz, cells):
@@ -342,6 +364,8 @@ class Judge:
 def judge_curves(judge, before, after, options, most, diagonal):
     several = [len(set(m.markers.tolist())) > 1 for m in (before, after)]
     found = [m.curves(options.angle, all(several)) for m in (before, after)]
+    if any(is_rough(m, f, NOISE * most) for m, f in zip((before, after), found)):
+        found = [{e: kind for e, kind in f.items() if not kind} for f in found]
     found = [drop_noise(m, f, NOISE * most) for m, f in zip((before, after), found)]
     if bool(found[0]) != bool(found[1]):
         judge.line("curves", len(found[1]), len(found[0]), False)

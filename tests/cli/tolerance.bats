@@ -140,7 +140,7 @@ END
 @test "--against: the wall between two regions is of the surface" {
     two_boxes >boxes.poly
     tetgen-mesh --quiet boxes.poly >boxes.tm
-    mesh-check --against boxes.poly --within 0 boxes.tm
+    mesh-check --against boxes.poly --within 1e-15 boxes.tm
     awk 'NF == 4 && NR > 1 && NR < 14 && $4 == 1 { $4 = 1.125 } { print }' boxes.poly >moved.poly
     run -1 mesh-check --against moved.poly --within =0.1 --json check.json boxes.tm
     [ "$(json check.json against surface there most)" = 0.125 ]
