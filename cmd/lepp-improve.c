@@ -78,7 +78,7 @@ static const char *const algorithms[] = {"bisection", "centroid",      "wcentroi
 
 static const char *const measures[] = {"dihedral", "volume"};
 static const char *const stops[] = {"original", "converged"}; /* or a number */
-static const char *const paths[] = {"simple", "full"};
+static const char *const paths[] = {"simple", "full", "fixed"};
 static const char *const sweeps[] = {"smooth", "face-swap", "both"};
 
 static const filter_words option_words[] = {
