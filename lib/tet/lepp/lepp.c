@@ -8,6 +8,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Whether a pass over S has to do with t. A tetrahedron that was made in the place of one
+ * of S is of S too if it is bad; but of a set that the caller has given, without what
+ * comes of it, only the one itself is. */
+static bool is_due(const tm_lepp_engine *e, uint32_t t)
+{
+    const bool alone = e->mesh->has_set && !e->reintroduce;
+    const unsigned due = alone ? TM_LEPP_QUEUED : TM_LEPP_TARGET;
+    return (e->mark[t] & due) && tm_tet_lives(e->mesh, t);
+}
+
 /* One pass over S, which may grow on the way. */
 static tm_status improve_all(tm_lepp_engine *e)
 {
@@ -20,7 +30,7 @@ static tm_status improve_all(tm_lepp_engine *e)
     for (size_t i = 0; i < e->targets && status == TM_OK; i++) {
         uint32_t t = e->target[i];
         tm_progress_step(e->options->progress, &e->at, i);
-        if (!(e->mark[t] & TM_LEPP_TARGET) || !tm_tet_lives(e->mesh, t))
+        if (!is_due(e, t))
             continue;
         if (is_simple && tm_lepp_is_blocked(e, t)) { /* as most are: no path at all */
             e->report->targets++;
@@ -60,9 +70,12 @@ static tm_status find_targets(tm_lepp_engine *e)
         status = tm_fail_memory(e->error);
     e->targets = 0;
     e->at.bad = count;
-    for (size_t i = 0; i < count && status == TM_OK; i++)
+    for (size_t i = 0; i < count && status == TM_OK; i++) {
         if (!tm_lepp_add_target(e, placed[i].item))
             status = tm_fail_memory(e->error);
+        if (!e->reintroduce)
+            e->mark[placed[i].item] |= TM_LEPP_QUEUED;
+    }
     free(placed);
     return status;
 }
@@ -191,7 +204,6 @@ static tm_status start(tm_lepp_engine *e)
     }
     e->is_input = false;
     e->report->bad_before = e->at.all_bad = count_marks(e, TM_LEPP_BAD);
-    e->report->set_before = tm_tet_mesh_count_set(mesh);
     if (tm_lepp_has_sizes(e->options))
         e->report->larger_before = count_marks(e, TM_LEPP_TARGET);
     if (e->options->algorithm == TM_LEPP_DELAUNAY) {
@@ -208,7 +220,6 @@ static tm_status start(tm_lepp_engine *e)
 static void finish(tm_lepp_engine *e)
 {
     e->report->bad_after = count_marks(e, TM_LEPP_BAD);
-    e->report->set_after = tm_tet_mesh_count_set(e->mesh);
     if (tm_lepp_has_sizes(e->options))
         e->report->larger_after = count_marks(e, TM_LEPP_TARGET);
     if (e->options->algorithm == TM_LEPP_DELAUNAY) {

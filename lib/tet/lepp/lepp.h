@@ -68,7 +68,7 @@ typedef struct tm_lepp_options {
     size_t max_star;   /* stars of more tetrahedra are left alone; 0: none is */
     double max_growth; /* tetrahedra at most, by those of the input; 0: any number */
     tm_lepp_path path;
-    unsigned sweeps;          /* TM_SWEEP_…; 0: none. A pass is over S as it is then */
+    unsigned sweeps;     /* TM_SWEEP_…; 0: none. A pass is over S as it is then */
     tm_lepp_sizes sizes; /* S is what of it is larger, until nothing is. For what always
                             inserts: not swap-centroid, not selective */
     bool count_invalid_swaps; /* costs some time */
@@ -94,8 +94,7 @@ typedef struct tm_lepp_sweep_report {
 
 typedef struct tm_lepp_report {
     size_t tets_before, bad_before, bad_after; /* tetrahedra */
-    size_t set_before, set_after;              /* of the mesh's set */
-    size_t larger_before, larger_after;        /* of these: than the sizes say */
+    size_t larger_before, larger_after;        /* than the sizes say, of the mesh's set */
     size_t passes;
     size_t targets;        /* bad tetrahedra that a path was started from */
     size_t swaps;          /* edges removed */

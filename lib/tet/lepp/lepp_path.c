@@ -190,8 +190,8 @@ static tm_status go_on(tm_lepp_engine *e, bool is_needed, size_t *visited)
     return tm_lepp_process_star(e, &last->star, *visited);
 }
 
-/* A tetrahedron that has the edge of a step, of those around its node a, and which edge of
- * it that is; TM_NONE where the edge is gone. */
+/* A tetrahedron that has the edge of a step, of those around its node a, and which edge
+ * of it that is; TM_NONE where the edge is gone. */
 static tm_status find_edge(tm_lepp_engine *e, const tm_lepp_step *step, uint32_t *found,
                            unsigned *edge)
 {
