@@ -52,8 +52,8 @@ mark() {
 
 cubes 4 >mesh.tm
 for step in 1 2 3; do
-    mark mesh.tm >marked
-    lepp-improve -a bisection -s 3 --set marked -o mesh.tm mesh.tm
+    mark mesh.tm >"marked.$step"
+    lepp-improve -a bisection -s 3 --set "marked.$step" -o mesh.tm mesh.tm
     mesh-check mesh.tm >check.txt
 done
 tet-stats mesh.tm | tee quality.txt | head -n 5

@@ -104,8 +104,8 @@ END
 -a wcentroid -t 25 -s 2
 -a swap-centroid --path fixed
 -a bisection --until-size 0.3 --max-growth 5
--a centroid --set region>=7 --set box=0,0,0,0.5,0.5,0.5 --until-size 0.3
--a delaunay --set box=0,0,0,0.3,0.3,0.3 --until-size 0.2 --max-growth 4
+-a centroid --set box=0,0,0,0.5,0.5,0.5 --until-size 0.3 --max-growth 5
+-a delaunay --set box=0,0,0,0.3,0.3,0.3 --until-size 0.3 --max-growth 4
 -a selective --set box=0,0,0,0.3,0.3,0.3
 --set box=0,0,0,0.5,0.5,0.5
 -a selective --max-star 5 --max-growth 1.1
