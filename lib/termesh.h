@@ -76,6 +76,7 @@
 
 /* tet: tetrahedra, and what makes them better */
 #include "tet/mesh.h"
+#include "tet/mesh_set.h"
 #include "tet/surface_limits.h"
 #include "tet/mesh_measure.h"
 #include "tet/star.h"
