@@ -2,19 +2,33 @@
 /* lepp-improve: tetrahedra in, better tetrahedra out. */
 #include "common/app/filter.h"
 #include "common/input/tet_input.h"
+#include "common/input/tet_set.h"
+#include "common/plot/plot.h"
 
 #include "../lib/examine/tet_statistics.h"
 #include "../lib/surface/surface.h"
 #include "../lib/tet/improve/improve.h"
 #include "../lib/tet/improve/improve_forced.h"
 #include "../lib/tet/lepp/lepp.h"
+#include "../lib/tet/mesh_set.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-enum { OPS = FILTER_OWN, MAX_GROWTH, PATH, MAX_STAR, TOLERANCE, FEATURE_ANGLE, WITH };
+enum {
+    OPS = FILTER_OWN,
+    MAX_GROWTH,
+    PATH,
+    MAX_STAR,
+    TOLERANCE,
+    FEATURE_ANGLE,
+    SET,
+    UNTIL_SIZE,
+    PLOT,
+    WITH /* the last */
+};
 
 static const struct option options[] = {
     {"algorithm", required_argument, NULL, 'a'},
@@ -29,13 +43,17 @@ static const struct option options[] = {
     {"surface-tolerance", required_argument, NULL, TOLERANCE},
     {"feature-angle", required_argument, NULL, FEATURE_ANGLE},
     {"with", required_argument, NULL, WITH},
+    {"set", required_argument, NULL, SET},
+    {"until-size", required_argument, NULL, UNTIL_SIZE},
+    {"plot", required_argument, NULL, PLOT},
     FILTER_OPTIONS};
 
 static const char synopsis[] =
     "[-a ALGORITHM] [-t DEG] [-Q dihedral|volume] [-s original|N|converged] "
     "[--surface-tolerance [=]D] [--feature-angle DEG] [--max-growth R] [--ops LIST] "
-    "[-m FACTOR] [--path simple|full] [--max-star N] [--with smooth|face-swap|both] "
-    "[FILE]";
+    "[-m FACTOR] [--path simple|full|fixed] [--max-star N] [--with "
+    "smooth|face-swap|both] "
+    "[--set SET] [--until-size SIZE] [--plot FILE.svg] [FILE]";
 
 static const char own_help[] =
     "  -a, --algorithm A   improve (default): all operations together; or what is done\n"
@@ -61,16 +79,30 @@ static const char own_help[] =
     "  -m, --factor M      selective: change a star where that makes it so many times\n"
     "                      better, 1 or more (default 1.1)\n"
     "      --path P        simple (default): one path from each bad tetrahedron; full:\n"
-    "                      all branches of it; not for improve, as the rest\n"
+    "                      all branches of it; fixed: swap-centroid changes the stars "
+    "of\n"
+    "                      all edges of a path; not for improve, as the rest\n"
     "      --max-star N    leave stars of more than N tetrahedra alone\n"
     "      --with SWEEP    selective: before each pass, smooth: move nodes to the mean "
     "of\n"
-    "                      their neighbours; face-swap; both\n";
+    "                      their neighbours; face-swap; both\n"
+    "      --set SET       work on these tetrahedra, not on all bad ones (improve: on "
+    "the\n"
+    "                      bad ones of these): box=x0,y0,z0,x1,y1,z1; region>V, or <, "
+    ">=,\n"
+    "                      <=, =, and attribute_2>V; or a file of numbers, one a line.\n"
+    "                      More than once: all of these together\n"
+    "      --until-size H  bisection, centroid, wcentroid, delaunay: refine all\n"
+    "                      tetrahedra, or those of the set, until no edge is longer "
+    "than\n"
+    "                      H; attribute_1: than this attribute of nodes says\n"
+    "      --plot FILE.svg draw what the paths and stars were like, by gnuplot\n";
 
 static const double default_factor = 1.1, most_factor = 100;
 static const double default_angle = 30, right_angle = 90;
 static const double most_tolerance = 0.1, most_feature_angle = 180;
 static const double least_growth = 1e-9, most_growth = 1e9;
+static const double least_size = 1e-45;
 
 /* In the order of tm_lepp_algorithm; then the one that is none of them. */
 enum { ALGORITHMS = TM_LEPP_SELECTIVE + 1, IMPROVE = ALGORITHMS };
@@ -80,7 +112,7 @@ static const char *const algorithms[] = {"bisection", "centroid",      "wcentroi
 
 static const char *const measures[] = {"dihedral", "volume"};
 static const char *const stops[] = {"original", "converged"}; /* or a number */
-static const char *const paths[] = {"simple", "full"};
+static const char *const paths[] = {"simple", "full", "fixed"};
 static const char *const sweeps[] = {"smooth", "face-swap", "both"};
 
 static const filter_words option_words[] = {
@@ -98,6 +130,8 @@ typedef struct {
     bool is_length; /* the surface's tolerance is one, not a part of the diagonal */
     tm_improve_options improve;
     tm_lepp_options lepp;
+    tet_set set;      /* --set; no rules: all that is bad */
+    const char *plot; /* NULL: none */
 } settings;
 
 static void set_stop(const filter *f, settings *o, const char *text)
@@ -143,6 +177,19 @@ static void set_tolerance(const filter *f, settings *o, const char *text)
                       o->is_length ? HUGE_VAL : most_tolerance);
 }
 
+static void set_size(const filter *f, settings *o, const char *text)
+{
+    tm_lepp_sizes *sizes = &o->lepp.sizes;
+    *sizes = (tm_lepp_sizes){.attribute = tet_set_attribute(text, strlen(text))};
+    if (sizes->attribute == 0)
+        sizes->longest = filter_number(f, "--until-size", text, least_size, HUGE_VAL);
+}
+
+static bool has_sizes(const settings *o)
+{
+    return o->lepp.sizes.longest > 0 || o->lepp.sizes.attribute > 0;
+}
+
 static void set_option(filter *f, settings *o, int c)
 {
     if (c == 'a') {
@@ -174,9 +221,40 @@ static void set_option(filter *f, settings *o, int c)
         o->lepp.path = (tm_lepp_path)filter_word(f, PATH, optarg);
     } else if (c == WITH) {
         o->lepp.sweeps = 1u + (unsigned)filter_word(f, WITH, optarg);
+    } else if (c == SET) {
+        tet_set_add(f, &o->set, optarg);
+    } else if (c == UNTIL_SIZE) {
+        set_size(f, o, optarg);
+    } else if (c == PLOT) {
+        o->plot = optarg;
     } else if (c == MAX_STAR) {
         o->lepp.max_star = (size_t)filter_integer(f, "--max-star", optarg, 1, INT32_MAX);
     }
+}
+
+/* The same of what is about the set. */
+static void check_set_options(const filter *f, const settings *o, const bool given[])
+{
+    const char *name = algorithms[o->is_improve ? IMPROVE : (int)o->lepp.algorithm];
+    if (has_sizes(o) && (o->is_improve || o->lepp.algorithm >= TM_LEPP_SWAP_CENTROID))
+        filter_usage_error(f,
+                           "--until-size: %s does not make tetrahedra small: bisection, "
+                           "delaunay, centroid or wcentroid would",
+                           name);
+    if (has_sizes(o) && given['s'])
+        filter_usage_error(f, "-s and --until-size both say when to stop");
+    if (o->set.rules > 0 && given[WITH])
+        filter_usage_error(f, "--with sweeps over the whole mesh: not with --set");
+    if (o->set.rules > 0 && o->is_improve && given[MAX_GROWTH] &&
+        o->improve.max_growth < 1)
+        filter_usage_error(f,
+                           "--max-growth below 1 is for the whole mesh: not with --set");
+    if (o->is_improve && o->plot)
+        filter_usage_error(f, "--plot draws paths and stars: improve has none");
+    if (o->lepp.path == TM_LEPP_FIXED &&
+        (o->is_improve || o->lepp.algorithm != TM_LEPP_SWAP_CENTROID))
+        filter_usage_error(f, "--path fixed is for swap-centroid: %s has no such paths",
+                           name);
 }
 
 /* Refuses options that the algorithm has no use for. */
@@ -205,6 +283,7 @@ static void check_options(const filter *f, const settings *o, const bool given[]
         filter_usage_error(f, "%s does not converge: -s original or -s N", name);
     if (!o->is_improve && given[MAX_GROWTH] && o->lepp.max_growth < 1)
         filter_usage_error(f, "--max-growth: %s only grows: 1 or more", name);
+    check_set_options(f, o, given);
 }
 
 static settings read_options(filter *f)
@@ -254,6 +333,7 @@ typedef struct {
     tm_tet_statistics before, after; /* with --json */
     double seconds;
     size_t changes;
+    size_t set_before, set_after; /* tetrahedra; with --set */
 } result;
 
 static void write_json(filter *f, const settings *o, const result *r)
@@ -267,6 +347,12 @@ static void write_json(filter *f, const settings *o, const result *r)
         tm_forced_json(json, &r->forced);
     } else {
         tm_lepp_report_json(json, &o->lepp, &r->lepp);
+    }
+    if (o->set.rules > 0) {
+        tm_json_open(json, "set", '{');
+        tm_json_integer(json, "before", (int64_t)r->set_before);
+        tm_json_integer(json, "after", (int64_t)r->set_after);
+        tm_json_close(json, '}');
     }
     filter_json_end(f);
 }
@@ -296,12 +382,31 @@ static double tolerance_of(const settings *o, const tm_tet_mesh *mesh)
     return o->is_length || mesh->nodes == 0 ? part : part * sqrt(diagonal2);
 }
 
+/* The mesh of the stream, with the set that is asked for. */
+static void take_mesh(const filter *f, tm_stream *stream, const settings *o, result *r,
+                      tm_tet_mesh *mesh)
+{
+    tm_error error;
+    bool *in_set = tet_set_find(f, &o->set, stream);
+    if (o->lepp.sizes.attribute > 0)
+        tet_set_check_sizes(f, stream, o->lepp.sizes.attribute, in_set);
+    tet_mesh_from_stream(f, stream, mesh);
+    if (!in_set)
+        return;
+    if (tm_tet_mesh_add_set(mesh, in_set, &error) != TM_OK)
+        filter_fail(f, &error);
+    free(in_set);
+    r->set_before = tm_tet_mesh_count_set(mesh);
+    if (r->set_before == 0)
+        filter_note(f, "no tetrahedron is in the set");
+}
+
 /* Improves the stream's mesh in place. */
 static void improve(filter *f, tm_stream *stream, settings *o, result *r)
 {
     tm_error error;
     tm_tet_mesh mesh;
-    tet_mesh_from_stream(f, stream, &mesh);
+    take_mesh(f, stream, o, r, &mesh);
     measure(f, (const double(*)[3])mesh.xyz, mesh.nodes, (const uint32_t(*)[4])mesh.tet,
             mesh.slots, o->improve.angle, &r->before);
     o->improve.surface.tolerance = tolerance_of(o, &mesh);
@@ -316,6 +421,8 @@ static void improve(filter *f, tm_stream *stream, settings *o, result *r)
         filter_fail(f, &error);
     r->changes =
         o->is_improve ? tm_improve_operations(&r->improve) : tm_lepp_changes(&r->lepp);
+    r->set_after = mesh.has_set ? tm_tet_mesh_count_set(&mesh) : 0;
+    tm_tet_mesh_remove_set(&mesh);
     for (size_t b = 0; b < stream->blocks; b++)
         if (tm_tet_mesh_invalidates(&mesh, &stream->block[b]))
             filter_note(f, "%s is dropped: nodes have other numbers now",
@@ -376,8 +483,8 @@ static void summarise(const settings *o, const result *r, size_t tets, char *tex
     size_t bad_after = is_improve ? r->improve.bad_after : r->lepp.bad_after;
     double before = tm_percent(bad_before, tets_before);
     if (r->changes == 0)
-        snprintf(text, size, "nothing to improve: %zu tetrahedra, %.2f%% bad", tets,
-                 before);
+        snprintf(text, size, "nothing to %s: %zu tetrahedra, %.2f%% bad",
+                 has_sizes(o) ? "refine" : "improve", tets, before);
     else
         snprintf(text, size, "%zu -> %zu tetrahedra, %.2f%% -> %.2f%% bad; ", tets_before,
                  tets, before, tm_percent(bad_after, tets));
@@ -387,6 +494,10 @@ static void summarise(const settings *o, const result *r, size_t tets, char *tex
         add_star_operations(o, &r->lepp, text, size);
     if (is_improve)
         add_forced(&r->forced, text, size);
+    if (r->changes > 0 && o->set.rules > 0) {
+        add(text, size, "; set: %zu", r->set_before);
+        add(text, size, " -> %zu tetrahedra", r->set_after);
+    }
 }
 
 /* What -a delaunay promises, and where it cannot. */
@@ -421,11 +532,29 @@ static void note_delaunay(const filter *f, const tm_lepp_report *r)
                     r->abandoned);
 }
 
+/* Where --until-size could not be reached. */
+static void note_larger(const filter *f, const settings *o, const result *r)
+{
+    const bool is_full = r->lepp.no_room > 0;
+    if (r->lepp.larger_after > 0)
+        filter_note(f, "%zu tetrahedra%s are still larger than --until-size says%s",
+                    r->lepp.larger_after, o->set.rules > 0 ? " of the set" : "",
+                    is_full ? ": --max-growth is reached" : "");
+}
+
+static void write_plot(const filter *f, const settings *o, const result *r)
+{
+    tm_text script = {0};
+    lepp_plot_script(&script, &r->lepp);
+    plot_write(f, &script, o->plot);
+}
+
 int main(int argc, char **argv)
 {
     filter f = {.name = "lepp-improve",
                 .synopsis = synopsis,
-                .purpose = "Improves tetrahedra; the boundary stays where it is.",
+                .purpose =
+                    "Improves tetrahedra; the boundary stays where it is, or near.",
                 .help = own_help,
                 .options = options,
                 .words = option_words,
@@ -433,6 +562,7 @@ int main(int argc, char **argv)
     filter_start(&f, argc, argv);
     settings o = read_options(&f);
     filter_operands(&f);
+    filter_other_file(&f, "--plot", o.plot);
     tm_stream stream;
     filter_read(&f, &stream);
 
@@ -452,13 +582,18 @@ int main(int argc, char **argv)
     if (!o.is_improve && o.lepp.algorithm == TM_LEPP_DELAUNAY)
         note_delaunay(&f, &r.lepp);
     bool too_large = o.is_improve && r.improve.too_large;
+    note_larger(&f, &o, &r);
     if (too_large)
         filter_note(&f, "the mesh could not be made as small as --max-growth says");
     filter_note(&f, "%s", summary);
     if (f.json)
         write_json(&f, &o, &r);
+    if (o.plot)
+        write_plot(&f, &o, &r);
     filter_write(&f, &stream, "%s", summary);
     tm_forced_free(&r.forced);
     tm_stream_free(&stream);
-    return filter_finish(&f, too_large ? EXIT_GOAL : EXIT_SUCCESS);
+    tet_set_free(&o.set);
+    return filter_finish(&f,
+                         too_large || r.lepp.larger_after > 0 ? EXIT_GOAL : EXIT_SUCCESS);
 }

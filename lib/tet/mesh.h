@@ -60,6 +60,7 @@ typedef struct tm_tet_mesh {
     uint32_t first_dead;
     size_t regions; /* attributes of a tetrahedron */
     double *region; /* [slots][regions] */
+    bool has_set;   /* the last of them is one of mesh_set.h */
 
     size_t faces;
     size_t face_room;

@@ -20,6 +20,7 @@ ways() {
     cat <<'END'
 centroid|-a centroid
 swap-centroid|-a swap-centroid
+swap-centroid, fixed|-a swap-centroid --path fixed
 m=1.00|-a selective -m 1
 m=1.05|-a selective -m 1.05
 m=1.08|-a selective -m 1.08

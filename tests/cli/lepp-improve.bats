@@ -102,6 +102,12 @@ END
 -a bisection -t 20
 -a centroid -t 25
 -a wcentroid -t 25 -s 2
+-a swap-centroid --path fixed
+-a bisection --until-size 0.3 --max-growth 5
+-a centroid --set box=0,0,0,0.5,0.5,0.5 --until-size 0.3 --max-growth 5
+-a delaunay --set box=0,0,0,0.3,0.3,0.3 --until-size 0.3 --max-growth 4
+-a selective --set box=0,0,0,0.3,0.3,0.3
+--set box=0,0,0,0.5,0.5,0.5
 -a selective --max-star 5 --max-growth 1.1
 END
     done

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* LEPP improvement: what no option may change, where it ends, and degenerate meshes. */
 #include "../../lib/tet/lepp/lepp.h"
+#include "../../lib/tet/mesh_set.h"
 #include "tet_fixture.h"
 
 static const tm_lepp_options usual = {.algorithm = TM_LEPP_SELECTIVE,
@@ -115,7 +116,7 @@ static void test_all_options(void **state)
 }
 
 /* Algorithms that change every star leave none of the original bad tetrahedra. */
-static void check_removes_all(tm_lepp_algorithm algorithm)
+static void check_removes_all(tm_lepp_algorithm algorithm, tm_lepp_path path)
 {
     enum { MOST = 6 * 27 };
     tm_stream stream;
@@ -123,6 +124,7 @@ static void check_removes_all(tm_lepp_algorithm algorithm)
     make_mesh(&mesh, &stream, 3, 0.9, false);
     tm_lepp_options o = usual;
     o.algorithm = algorithm;
+    o.path = path;
     o.stop = TM_LEPP_ORIGINAL;
     uint32_t bad[MOST][4];
     size_t count = 0;
@@ -145,7 +147,8 @@ static void test_remove_all(void **state)
 {
     (void)state;
     for (int a = TM_LEPP_BISECTION; a < TM_LEPP_SELECTIVE; a++)
-        check_removes_all((tm_lepp_algorithm)a);
+        check_removes_all((tm_lepp_algorithm)a, TM_LEPP_SIMPLE);
+    check_removes_all(TM_LEPP_SWAP_CENTROID, TM_LEPP_FIXED);
 }
 
 /* bisection only halves edges; max_star leaves larger stars alone. */
@@ -363,14 +366,236 @@ static void test_listed_faces_and_edges(void **state)
     }
 }
 
+/* The longest edge of a living tetrahedron. */
+static double longest_edge(const tm_tet_mesh *mesh, uint32_t t)
+{
+    const uint32_t *n = mesh->tet[t];
+    double longest = 0;
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; j < i; j++)
+            longest = fmax(longest, sqrt(tm_distance2(mesh->xyz[n[i]], mesh->xyz[n[j]])));
+    return longest;
+}
+
+/* Whether the centre of t is in the lower half of the grid. */
+static bool is_low(const tm_tet_mesh *mesh, uint32_t t, int n)
+{
+    double z = 0;
+    for (int i = 0; i < 4; i++)
+        z += mesh->xyz[mesh->tet[t][i]][2];
+    return z < 2 * n;
+}
+
+/* A mesh whose set is its lower half. */
+static void make_halved(tm_tet_mesh *mesh, tm_stream *stream, int n, double by)
+{
+    make_mesh(mesh, stream, n, by, true);
+    bool *in_set = malloc(mesh->slots * sizeof *in_set);
+    for (uint32_t t = 0; t < mesh->slots; t++)
+        in_set[t] = is_low(mesh, t, n);
+    assert_int_equal(tm_tet_mesh_add_set(mesh, in_set, NULL), TM_OK);
+    free(in_set);
+}
+
+/* The improver without the checks, which a mesh with a set does not pass. */
+static tm_lepp_report improve_set(tm_tet_mesh *mesh, const tm_lepp_options *options)
+{
+    tm_lepp_report report;
+    assert_int_equal(tm_lepp_improve(mesh, options, &report, NULL), TM_OK);
+    return report;
+}
+
+/* The set is carried on, and taken away again; what the mesh promises stays. */
+static void test_set_of_every_algorithm(void **state)
+{
+    (void)state;
+    for (int a = TM_LEPP_BISECTION; a <= TM_LEPP_SELECTIVE; a++) {
+        tm_stream stream;
+        tm_tet_mesh mesh;
+        make_halved(&mesh, &stream, 4, 0);
+        const size_t regions = mesh.regions, before = tm_tet_mesh_count_set(&mesh);
+        assert_int_equal(before, mesh.tets / 2);
+        tm_tet_mesh_remove_set(&mesh);
+        const invariants kept = measure_invariants(&mesh);
+        tm_tet_mesh_free(&mesh);
+        tm_stream_free(&stream);
+        make_halved(&mesh, &stream, 4, 0);
+        tm_lepp_options o = usual;
+        o.algorithm = (tm_lepp_algorithm)a;
+        o.stop = TM_LEPP_ORIGINAL;
+        const tm_lepp_report report = improve_set(&mesh, &o);
+        if (a == TM_LEPP_BISECTION)
+            assert_int_equal(tm_tet_mesh_count_set(&mesh), 2 * before);
+        if (a != TM_LEPP_SELECTIVE)
+            assert_true(tm_lepp_operations(&report) > 0);
+        tm_tet_mesh_remove_set(&mesh);
+        tm_tet_mesh_remove_set(&mesh); /* nothing to do */
+        assert_int_equal(mesh.regions, regions - 1);
+        assert_valid(&mesh);
+        const invariants after = measure_invariants(&mesh);
+        assert_same_invariants(&kept, &after);
+        through_stream(&mesh, &stream);
+        tm_tet_mesh_free(&mesh);
+        tm_stream_free(&stream);
+    }
+}
+
+/* Without a tetrahedron in the set nothing is done. */
+static void test_empty_set(void **state)
+{
+    (void)state;
+    tm_stream stream;
+    tm_tet_mesh mesh;
+    make_mesh(&mesh, &stream, 3, 0.9, false);
+    bool *in_set = calloc(mesh.slots, sizeof *in_set);
+    assert_int_equal(tm_tet_mesh_add_set(&mesh, in_set, NULL), TM_OK);
+    free(in_set);
+    tm_lepp_options o = usual;
+    const tm_lepp_report report = improve_set(&mesh, &o);
+    assert_int_equal(tm_lepp_operations(&report), 0);
+    assert_int_equal(report.targets, 0);
+    tm_tet_mesh_remove_set(&mesh);
+    assert_null(mesh.region);
+    assert_valid(&mesh);
+    tm_tet_mesh_free(&mesh);
+    tm_stream_free(&stream);
+}
+
+/* Every tetrahedron of the set becomes as small as is asked for. */
+static void test_sizes(void **state)
+{
+    (void)state;
+    const double size = 0.4, slack = 1 + 1e-9;
+    for (int a = TM_LEPP_BISECTION; a <= TM_LEPP_DELAUNAY; a++) {
+        tm_stream stream;
+        tm_tet_mesh mesh;
+        make_halved(&mesh, &stream, 3, 0.2);
+        tm_lepp_options o = usual;
+        o.algorithm = (tm_lepp_algorithm)a;
+        o.sizes.longest = size;
+        const tm_lepp_report report = improve_set(&mesh, &o);
+        assert_true(report.larger_before > 0);
+        size_t larger = 0;
+        for (uint32_t t = 0; t < mesh.slots; t++)
+            larger += tm_tet_lives(&mesh, t) && tm_tet_is_in_set(&mesh, t) &&
+                      longest_edge(&mesh, t) > size * slack;
+        assert_int_equal(larger, report.larger_after);
+        if (a == TM_LEPP_BISECTION)
+            assert_int_equal(larger, 0);
+        check_counts(&report);
+        tm_tet_mesh_remove_set(&mesh);
+        assert_valid(&mesh);
+        tm_tet_mesh_free(&mesh);
+        tm_stream_free(&stream);
+    }
+}
+
+/* A field of sizes: no edge is longer than it says at any node of the tetrahedron. */
+static void test_field_of_sizes(void **state)
+{
+    (void)state;
+    const double least = 0.2, slope = 0.3, slack = 1 + 1e-9;
+    tm_stream stream;
+    tm_tet_mesh mesh;
+    make_mesh(&mesh, &stream, 3, 0.2, true);
+    assert_int_equal(mesh.node_attributes, 1);
+    for (size_t v = 0; v < mesh.nodes; v++)
+        mesh.node_attribute[v] = least + slope * mesh.xyz[v][0];
+    tm_lepp_options o = usual;
+    o.algorithm = TM_LEPP_BISECTION;
+    o.sizes.attribute = 1;
+    const tm_lepp_report report = improve(&mesh, &o);
+    assert_int_equal(report.larger_after, 0);
+    for (uint32_t t = 0; t < mesh.slots; t++)
+        for (int i = 0; i < 4 && tm_tet_lives(&mesh, t); i++)
+            assert_true(longest_edge(&mesh, t) <=
+                        slack * mesh.node_attribute[mesh.tet[t][i]]);
+    tm_tet_mesh_free(&mesh);
+    tm_stream_free(&stream);
+}
+
+/* A mesh that may not grow so far stays below the limit, and what is too large is
+ * counted. */
+static void test_sizes_out_of_reach(void **state)
+{
+    (void)state;
+    for (int a = TM_LEPP_BISECTION; a <= TM_LEPP_DELAUNAY; a++) {
+        tm_stream stream;
+        tm_tet_mesh mesh;
+        make_mesh(&mesh, &stream, 3, 0.2, false);
+        const size_t before = mesh.tets;
+        tm_lepp_options o = usual;
+        o.algorithm = (tm_lepp_algorithm)a;
+        o.sizes.longest = 0.05;
+        o.max_growth = 3;
+        const tm_lepp_report report = improve(&mesh, &o);
+        assert_true(report.larger_after > 0);
+        assert_true(report.no_room > 0);
+        assert_true(mesh.tets <= 3 * before);
+        tm_tet_mesh_free(&mesh);
+        tm_stream_free(&stream);
+    }
+}
+
+/* Bisection of cubes cut along a diagonal makes three shapes, however often it is done.
+ */
+static void test_bisection_keeps_angles(void **state)
+{
+    (void)state;
+    const double limit = tm_bad_sine2(44.9);
+    tm_stream stream;
+    tm_tet_mesh mesh;
+    make_mesh(&mesh, &stream, 2, 0, false);
+    tm_lepp_options o = usual;
+    o.algorithm = TM_LEPP_BISECTION;
+    for (o.sizes.longest = 1; o.sizes.longest > 0.1; o.sizes.longest *= 0.7) {
+        improve(&mesh, &o);
+        for (uint32_t t = 0; t < mesh.slots; t++) {
+            const uint32_t *n = mesh.tet[t];
+            if (tm_tet_lives(&mesh, t))
+                assert_true(tm_tet_sine2(mesh.xyz[n[0]], mesh.xyz[n[1]], mesh.xyz[n[2]],
+                                         mesh.xyz[n[3]]) > limit);
+        }
+    }
+    assert_true(mesh.tets > 10000);
+    tm_tet_mesh_free(&mesh);
+    tm_stream_free(&stream);
+}
+
+/* Fixed paths leave what the mesh promises. */
+static void test_fixed_paths(void **state)
+{
+    (void)state;
+    for (int regions = 0; regions < 2; regions++) {
+        tm_lepp_options o = usual;
+        o.algorithm = TM_LEPP_SWAP_CENTROID;
+        o.stop = TM_LEPP_ORIGINAL;
+        o.path = TM_LEPP_FIXED;
+        check_run(&o, regions);
+        o.stop = TM_LEPP_PASSES;
+        o.passes = 2;
+        check_run(&o, regions);
+    }
+}
+
 int main(void)
 {
     random_start();
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_all_options),           cmocka_unit_test(test_remove_all),
-        cmocka_unit_test(test_what_is_done),          cmocka_unit_test(test_degenerate),
-        cmocka_unit_test(test_touching_edge),         cmocka_unit_test(test_flat),
-        cmocka_unit_test(test_duplicate_nodes),       cmocka_unit_test(test_no_meshes),
-        cmocka_unit_test(test_listed_faces_and_edges)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_all_options),
+                                       cmocka_unit_test(test_remove_all),
+                                       cmocka_unit_test(test_what_is_done),
+                                       cmocka_unit_test(test_degenerate),
+                                       cmocka_unit_test(test_touching_edge),
+                                       cmocka_unit_test(test_flat),
+                                       cmocka_unit_test(test_duplicate_nodes),
+                                       cmocka_unit_test(test_no_meshes),
+                                       cmocka_unit_test(test_listed_faces_and_edges),
+                                       cmocka_unit_test(test_set_of_every_algorithm),
+                                       cmocka_unit_test(test_empty_set),
+                                       cmocka_unit_test(test_sizes),
+                                       cmocka_unit_test(test_field_of_sizes),
+                                       cmocka_unit_test(test_sizes_out_of_reach),
+                                       cmocka_unit_test(test_bisection_keeps_angles),
+                                       cmocka_unit_test(test_fixed_paths)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

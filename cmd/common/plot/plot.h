@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The figures of the *-stats filters, by gnuplot: two panels beside each other, a line
- * above them. A script begins with plot_begin() and ends with plot_end(). */
+/* The figures of the *-stats filters and of lepp-improve, by gnuplot: two panels beside
+ * each other, a line above them. A script begins with plot_begin() and ends with
+ * plot_end(). */
 #ifndef CMD_COMMON_PLOT_H
 #define CMD_COMMON_PLOT_H
 
 #include "../../../lib/examine/jens_statistics.h"
 #include "../../../lib/examine/poly_statistics.h"
 #include "../../../lib/examine/tet_statistics.h"
+#include "../../../lib/tet/lepp/lepp.h"
 #include "../app/filter.h"
 
 /* Histograms of dihedral angles and of volume quality, before and after overlaid where
@@ -20,6 +22,10 @@ void jens_plot_script(tm_text *script, const tm_jens_statistics *statistics);
 /* Histograms of facets and tetrahedra per polyhedron, and of the kernel's share of the
  * volume. */
 void poly_plot_script(tm_text *script, const tm_poly_statistics *statistics);
+
+/* Histograms of the terminal stars that each target's paths came to, and of closed stars
+ * by size and by what was done: chapter 9 of Balboa (2020). */
+void lepp_plot_script(tm_text *script, const tm_lepp_report *report);
 
 /* Runs gnuplot on a script, which has its data inline, puts what it writes into `file`,
  * whole or not at all, and frees the script. The script does not depend on the user's own

@@ -3,6 +3,7 @@
 #include "improve_engine.h"
 
 #include "../../base/array.h"
+#include "../mesh_set.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -43,7 +44,8 @@ static bool has_phase(const tm_improver *m, tm_improve_phase phase)
 
 static bool is_bad(const tm_improver *m, uint32_t t)
 {
-    return tm_tet_lives(m->mesh, t) && m->quality[t] < m->cost.target;
+    return tm_tet_lives(m->mesh, t) && m->quality[t] < m->cost.target &&
+           tm_tet_is_in_set(m->mesh, t);
 }
 
 static size_t count_bad(const tm_improver *m)

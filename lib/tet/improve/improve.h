@@ -87,13 +87,16 @@ typedef struct tm_improve_report {
     size_t tried[TM_IMPROVE_OPS]; /* how often it was looked for; 0 for swaps */
     size_t nodes_free[4];         /* of the input, by the dimension they may move in */
     bool too_large;               /* max_growth could not be reached */
+    double tolerance;             /* of the surface, and what that has, if it is not 0 */
+    size_t patches, curves, corners;
 } tm_improve_report;
 
 /* Improves the mesh. The smallest and the largest dihedral angle never get worse; volume,
  * surface, regions and markers stay, but for the rounding of nodes that move in the
- * surface. If nothing is bad, angles above 30 degrees are reached one degree after the
- * other. After an error the mesh is still valid, improved as far as it got.
- * Deterministic. In practice O(tetrahedra). */
+ * surface; with a tolerance the surface stays within that (tet/envelope/envelope.h). If
+ * nothing is bad, angles above 30 degrees are reached one degree after the other. After
+ * an error the mesh is still valid, improved as far as it got. Deterministic. In practice
+ * O(tetrahedra). */
 tm_status tm_improve(tm_tet_mesh *mesh, const tm_improve_options *options,
                      tm_improve_report *report, tm_error *error);
 

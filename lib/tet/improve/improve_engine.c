@@ -230,6 +230,13 @@ tm_status tm_improve_start(tm_improver *m, tm_tet_mesh *mesh,
     find_limits(m);
     for (size_t v = 0; v < mesh->nodes; v++)
         m->report->nodes_free[m->features.dimension[v]] += m->tet_at[v] != TM_NONE;
+    if (m->features.may_move) {
+        const tm_surface *reference = m->features.envelope.reference;
+        report->tolerance = m->features.envelope.tolerance;
+        report->patches = reference->patches;
+        report->curves = reference->curves;
+        report->corners = reference->corners;
+    }
     tm_improve_set_target(m, options->angle);
     return TM_OK;
 }

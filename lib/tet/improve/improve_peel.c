@@ -6,6 +6,7 @@
 static bool peel(tm_improver *m, uint32_t t, uint32_t i)
 {
     uint32_t face[3], beyond[3], apex = m->mesh->tet[t][i];
+    m->report->tried[TM_OP_PEELING]++;
     m->status = tm_tet_mesh_reserve(m->mesh, 0, 0, 2, 0, m->error);
     if (m->status != TM_OK || !tm_improve_reserve(m, 0, 0) ||
         !tm_improve_allows_peel(m, t, i))
@@ -20,8 +21,7 @@ static bool peel(tm_improver *m, uint32_t t, uint32_t i)
 
 bool tm_improve_peel(tm_improver *m, uint32_t t)
 {
-    bool is_gain =
-        tm_cost_of(&m->cost, m->quality[t]) + m->price > TM_IMPROVE_GAIN;
+    bool is_gain = tm_cost_of(&m->cost, m->quality[t]) + m->price > TM_IMPROVE_GAIN;
     for (uint32_t i = 0; i < 4 && m->features.may_move && is_gain; i++)
         if (tm_peel_face_is_possible(m->mesh, t, i) &&
             m->features.dimension[m->mesh->tet[t][i]] == 3)

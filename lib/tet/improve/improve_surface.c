@@ -268,8 +268,8 @@ bool tm_improve_onto_surface(tm_improver *m, double p[3], double *place)
         !tm_features_part(features, v, features->line[v][1], &after))
         return false;
     double end = before.place[1] + (after.place[1] - after.place[0]);
-    *place = tm_envelope_onto_curve(&features->envelope, before.curve, before.place[0], end,
-                                    p);
+    *place = tm_envelope_onto_curve(&features->envelope, before.curve, before.place[0],
+                                    end, p);
     return true;
 }
 
@@ -368,7 +368,8 @@ bool tm_improve_allows_split(tm_improver *m, const double p[3], double place)
         return false;
     memcpy(old, m->mesh->xyz[v], sizeof old);
     memcpy(m->mesh->xyz[v], p, sizeof old);
-    bool allowed = tm_envelope_allows(&m->features.envelope, m->mesh, &m->change_of_surface);
+    bool allowed =
+        tm_envelope_allows(&m->features.envelope, m->mesh, &m->change_of_surface);
     memcpy(m->mesh->xyz[v], old, sizeof old);
     return allowed;
 }

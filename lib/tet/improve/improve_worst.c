@@ -5,6 +5,7 @@
 #include "improve_engine.h"
 
 #include "../../base/array.h"
+#include "../mesh_set.h"
 
 #include <stdlib.h>
 
@@ -102,7 +103,7 @@ static bool raise_worst(tm_improver *m, tm_improve_reach *reach, double degrees,
     return false;
 }
 
-/* The bad tetrahedra, the worst first. NULL: no memory. */
+/* The bad tetrahedra that are targets, the worst first. NULL: no memory. */
 static bad_tet *list_bad(tm_improver *m, size_t *count)
 {
     double worst;
@@ -110,7 +111,7 @@ static bad_tet *list_bad(tm_improver *m, size_t *count)
     bad_tet *list = tm_new(bad + 1, sizeof *list);
     *count = 0;
     for (uint32_t t = 0; t < m->mesh->slots && list; t++)
-        if (is_below(m, t, m->cost.target))
+        if (is_below(m, t, m->cost.target) && tm_tet_is_in_set(m->mesh, t))
             list[(*count)++] = (bad_tet){m->quality[t], t};
     if (list)
         qsort(list, *count, sizeof *list, compare);

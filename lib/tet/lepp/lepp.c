@@ -8,11 +8,21 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Whether a pass over S has to do with t. A tetrahedron that was made in the place of one
+ * of S is of S too if it is bad; but of a set that the caller has given, without what
+ * comes of it, only the one itself is. */
+static bool is_due(const tm_lepp_engine *e, uint32_t t)
+{
+    const bool alone = e->mesh->has_set && !e->reintroduce;
+    const unsigned due = alone ? TM_LEPP_QUEUED : TM_LEPP_TARGET;
+    return (e->mark[t] & due) && tm_tet_lives(e->mesh, t);
+}
+
 /* One pass over S, which may grow on the way. */
 static tm_status improve_all(tm_lepp_engine *e)
 {
     tm_status status = TM_OK;
-    bool is_simple = e->options->path == TM_LEPP_SIMPLE;
+    bool is_simple = e->options->path != TM_LEPP_FULL;
     e->report->passes++;
     e->at.pass = e->report->passes;
     e->at.of = e->targets;
@@ -20,7 +30,7 @@ static tm_status improve_all(tm_lepp_engine *e)
     for (size_t i = 0; i < e->targets && status == TM_OK; i++) {
         uint32_t t = e->target[i];
         tm_progress_step(e->options->progress, &e->at, i);
-        if (!(e->mark[t] & TM_LEPP_BAD) || !tm_tet_lives(e->mesh, t))
+        if (!is_due(e, t))
             continue;
         if (is_simple && tm_lepp_is_blocked(e, t)) { /* as most are: no path at all */
             e->report->targets++;
@@ -32,26 +42,27 @@ static tm_status improve_all(tm_lepp_engine *e)
     return status;
 }
 
-static size_t count_bad(const tm_lepp_engine *e)
+/* How many living tetrahedra have the mark. */
+static size_t count_marks(const tm_lepp_engine *e, unsigned mark)
 {
-    size_t bad = 0;
+    size_t count = 0;
     for (size_t t = 0; t < e->mesh->slots; t++)
-        bad += tm_tet_lives(e->mesh, (uint32_t)t) && (e->mark[t] & TM_LEPP_BAD);
-    return bad;
+        count += tm_tet_lives(e->mesh, (uint32_t)t) && (e->mark[t] & mark);
+    return count;
 }
 
-/* S as all bad tetrahedra of the mesh, along a space-filling curve: any order will do,
+/* S as it is in the mesh, along a space-filling curve: any order will do,
  * and this one is a quarter faster. */
 static tm_status find_targets(tm_lepp_engine *e)
 {
     const tm_tet_mesh *mesh = e->mesh;
     tm_space space = tm_space_around((const double(*)[3])mesh->xyz, mesh->nodes);
-    tm_curve_point *placed = tm_new(count_bad(e), sizeof *placed);
+    tm_curve_point *placed = tm_new(count_marks(e, TM_LEPP_TARGET), sizeof *placed);
     if (!placed)
         return tm_fail_memory(e->error);
     size_t count = 0;
     for (uint32_t t = 0; t < mesh->slots; t++)
-        if (tm_tet_lives(mesh, t) && (e->mark[t] & TM_LEPP_BAD))
+        if (tm_tet_lives(mesh, t) && (e->mark[t] & TM_LEPP_TARGET))
             placed[count++] = (tm_curve_point){
                 tm_space_position(&space, mesh->xyz[mesh->tet[t][0]]), t};
     tm_status status = TM_OK;
@@ -59,9 +70,12 @@ static tm_status find_targets(tm_lepp_engine *e)
         status = tm_fail_memory(e->error);
     e->targets = 0;
     e->at.bad = count;
-    for (size_t i = 0; i < count && status == TM_OK; i++)
+    for (size_t i = 0; i < count && status == TM_OK; i++) {
         if (!tm_lepp_add_target(e, placed[i].item))
             status = tm_fail_memory(e->error);
+        if (!e->reintroduce)
+            e->mark[placed[i].item] |= TM_LEPP_QUEUED;
+    }
     free(placed);
     return status;
 }
@@ -72,7 +86,7 @@ static void keep_targets(tm_lepp_engine *e)
     size_t kept = 0;
     for (size_t i = 0; i < e->targets; i++) {
         uint32_t t = e->target[i];
-        if (!tm_tet_lives(e->mesh, t) || !(e->mark[t] & TM_LEPP_BAD) ||
+        if (!tm_tet_lives(e->mesh, t) || !(e->mark[t] & TM_LEPP_TARGET) ||
             (e->mark[t] & TM_LEPP_QUEUED))
             continue;
         e->mark[t] |= TM_LEPP_QUEUED;
@@ -148,7 +162,7 @@ static tm_status run(tm_lepp_engine *e)
 {
     if (e->options->sweeps)
         return run_with_sweeps(e);
-    if (e->options->stop == TM_LEPP_CONVERGED)
+    if (e->options->stop == TM_LEPP_CONVERGED || tm_lepp_has_sizes(e->options))
         return run_until_converged(e);
     if (e->options->stop == TM_LEPP_PASSES)
         return run_passes(e);
@@ -188,19 +202,26 @@ static tm_status start(tm_lepp_engine *e)
             count = 0;
         }
     }
-    e->report->bad_before = e->at.all_bad = count_bad(e);
+    e->is_input = false;
+    e->report->bad_before = e->at.all_bad = count_marks(e, TM_LEPP_BAD);
+    if (tm_lepp_has_sizes(e->options))
+        e->report->larger_before = count_marks(e, TM_LEPP_TARGET);
     if (e->options->algorithm == TM_LEPP_DELAUNAY) {
         e->delaunay = tm_delaunay_for(mesh);
         e->report->not_delaunay_before = tm_tet_mesh_not_delaunay(mesh);
     }
     if (e->options->sweeps)
         measure_angles(e);
-    return TM_OK;
+    return e->options->path != TM_LEPP_FIXED || tm_lepp_place_nodes(e)
+               ? TM_OK
+               : tm_fail_memory(e->error);
 }
 
 static void finish(tm_lepp_engine *e)
 {
-    e->report->bad_after = count_bad(e);
+    e->report->bad_after = count_marks(e, TM_LEPP_BAD);
+    if (tm_lepp_has_sizes(e->options))
+        e->report->larger_after = count_marks(e, TM_LEPP_TARGET);
     if (e->options->algorithm == TM_LEPP_DELAUNAY) {
         e->report->not_delaunay_after = tm_tet_mesh_not_delaunay(e->mesh);
         e->report->delaunay = e->delaunay.cavity.report;
@@ -244,6 +265,7 @@ tm_status tm_lepp_improve(tm_tet_mesh *mesh, const tm_lepp_options *options,
         .report = report,
         .error = error,
         .bad_below = tm_bad_sine2(options->angle),
+        .is_input = true,
         .gain = tm_gain_of(options->measure, fmax(options->factor, 1 + TM_LEPP_GAIN)),
         .most_tets = tm_tet_mesh_most(mesh, options->max_growth)};
     tm_status status = start(&e);

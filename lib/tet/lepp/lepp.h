@@ -31,7 +31,8 @@ typedef enum tm_lepp_algorithm {
 /* Which terminal stars are looked at for a target. */
 typedef enum tm_lepp_path {
     TM_LEPP_SIMPLE, /* 2.4.2, Lepp-Simple: that at the end of one path */
-    TM_LEPP_FULL    /* 2.4.1, Lepp3D: those at the ends of all branches */
+    TM_LEPP_FULL,   /* 2.4.1, Lepp3D: those at the ends of all branches */
+    TM_LEPP_FIXED   /* those of all edges of one path as it is at first, from its end */
 } tm_lepp_path;
 
 /* Sweeps over the whole mesh before each pass of selective (7.4, algorithm 7.1), in this
@@ -41,7 +42,16 @@ enum {
     TM_SWEEP_SWAP = 2    /* 2-3 swaps of faces, 2-2 swaps in flat facets (7.4.2, 3.3) */
 };
 
-/* When to stop, by the set S of bad tetrahedra (section 6.2.8). */
+/* How large tetrahedra may be: no edge longer than this, or than a field of sizes says at
+ * any place in the tetrahedron. Longer by 1e-9 of it is not longer. */
+typedef struct tm_lepp_sizes {
+    double longest;   /* 0: any length */
+    size_t attribute; /* of nodes, from 1: the field, greater than 0; 0: there is none */
+} tm_lepp_sizes;
+
+/* When to stop, by the set S of bad tetrahedra (section 6.2.8). Where the mesh has a set
+ * (mesh_set.h) that is S in their place, and what comes of it joins S, with selective
+ * if it is bad. */
 typedef enum tm_lepp_stop {
     TM_LEPP_ORIGINAL, /* S as it is in the input, once */
     TM_LEPP_PASSES,   /* so many times, S found anew each time */
@@ -58,7 +68,9 @@ typedef struct tm_lepp_options {
     size_t max_star;   /* stars of more tetrahedra are left alone; 0: none is */
     double max_growth; /* tetrahedra at most, by those of the input; 0: any number */
     tm_lepp_path path;
-    unsigned sweeps;          /* TM_SWEEP_…; 0: none. A pass is over S as it is then */
+    unsigned sweeps;     /* TM_SWEEP_…; 0: none. A pass is over S as it is then */
+    tm_lepp_sizes sizes; /* S is what of it is larger, until nothing is. For what always
+                            inserts: not swap-centroid, not selective */
     bool count_invalid_swaps; /* costs some time */
     const tm_progress *progress;
 } tm_lepp_options;
@@ -82,6 +94,7 @@ typedef struct tm_lepp_sweep_report {
 
 typedef struct tm_lepp_report {
     size_t tets_before, bad_before, bad_after; /* tetrahedra */
+    size_t larger_before, larger_after;        /* than the sizes say, of the mesh's set */
     size_t passes;
     size_t targets;        /* bad tetrahedra that a path was started from */
     size_t swaps;          /* edges removed */

@@ -4,9 +4,40 @@
 #include "lepp_engine.h"
 
 #include "../../base/array.h"
+#include "../../geom/vector.h"
 #include "../mesh_measure.h"
 
 #include <stdlib.h>
+
+/* Whether t, with its longest edge, is larger than the sizes say. */
+static bool is_larger(const tm_lepp_engine *e, uint32_t t, const uint8_t edge[2])
+{
+    const double rounding = 1e-9;
+    const tm_tet_mesh *mesh = e->mesh;
+    const tm_lepp_sizes *sizes = &e->options->sizes;
+    const uint32_t *n = mesh->tet[t];
+    const double *a = mesh->xyz[n[edge[0]]], *b = mesh->xyz[n[edge[1]]];
+    double longest = sizes->longest;
+    for (int i = 0; i < 4 && sizes->attribute > 0; i++) {
+        const double size =
+            mesh->node_attribute[n[i] * mesh->node_attributes + sizes->attribute - 1];
+        longest = i == 0 || size < longest ? size : longest;
+    }
+    return sqrt(tm_distance2(a, b)) > longest * (1 + rounding);
+}
+
+/* Whether t is for S. */
+static bool is_target(const tm_lepp_engine *e, uint32_t t, unsigned longest, bool is_bad)
+{
+    const tm_lepp_options *o = e->options;
+    if (!e->mesh->has_set && !tm_lepp_has_sizes(o))
+        return is_bad;
+    if (!tm_tet_is_in_set(e->mesh, t))
+        return false;
+    if (tm_lepp_has_sizes(o))
+        return is_larger(e, t, tm_edge_corner[longest]);
+    return is_bad || e->is_input || o->algorithm != TM_LEPP_SELECTIVE;
+}
 
 void tm_lepp_measure(tm_lepp_engine *e, const uint32_t *tet, size_t count)
 {
@@ -19,8 +50,10 @@ void tm_lepp_measure(tm_lepp_engine *e, const uint32_t *tet, size_t count)
         for (size_t k = 0; k < some; k++) {
             uint32_t t = tet[i + k];
             e->quality[t] = sine2[k];
+            const bool is_bad = sine2[k] < e->bad_below;
             e->mark[t] =
-                (uint16_t)(longest[k] | (sine2[k] < e->bad_below ? TM_LEPP_BAD : 0));
+                (uint16_t)(longest[k] | (is_bad ? TM_LEPP_BAD : 0) |
+                           (is_target(e, t, longest[k], is_bad) ? TM_LEPP_TARGET : 0));
         }
     }
     for (size_t i = 0; i < count && e->options->measure != TM_MEASURE_DIHEDRAL; i++) {
@@ -50,14 +83,45 @@ bool tm_lepp_add_target(tm_lepp_engine *e, uint32_t t)
     return appended;
 }
 
+bool tm_lepp_place_nodes(tm_lepp_engine *e)
+{
+    const tm_tet_mesh *mesh = e->mesh;
+    tm_lepp_sweeper *s = &e->sweeper;
+    uint32_t *tet_at = tm_grow(s->tet_at, &s->tet_at_room, mesh->nodes, sizeof *tet_at);
+    if (!tet_at)
+        return false;
+    s->tet_at = tet_at;
+    for (size_t v = 0; v < mesh->nodes; v++)
+        tet_at[v] = TM_NONE;
+    for (uint32_t t = 0; t < mesh->slots; t++)
+        for (int i = 0; i < 4 && tm_tet_lives(mesh, t); i++)
+            tet_at[mesh->tet[t][i]] = t;
+    return true;
+}
+
+/* Of tetrahedra that were made. */
+static bool place_new_nodes(tm_lepp_engine *e, const uint32_t *tet, size_t count)
+{
+    tm_lepp_sweeper *s = &e->sweeper;
+    uint32_t *tet_at =
+        tm_grow(s->tet_at, &s->tet_at_room, e->mesh->nodes, sizeof *tet_at);
+    s->tet_at = tet_at ? tet_at : s->tet_at;
+    for (size_t i = 0; i < count && tet_at; i++)
+        for (int k = 0; k < 4; k++)
+            tet_at[e->mesh->tet[tet[i]][k]] = tet[i];
+    return tet_at;
+}
+
 bool tm_lepp_note(tm_lepp_engine *e, const uint32_t *tet, size_t count)
 {
     tm_lepp_measure(e, tet, count);
+    if (e->options->path == TM_LEPP_FIXED && !place_new_nodes(e, tet, count))
+        return false;
     for (size_t i = 0; i < count; i++) {
         uint32_t t = tet[i];
         if (t < e->graph.room)
             e->graph.stamp[t] = 0; /* another one than the path may have seen */
-        if (e->reintroduce && (e->mark[t] & TM_LEPP_BAD) && !tm_lepp_add_target(e, t))
+        if (e->reintroduce && (e->mark[t] & TM_LEPP_TARGET) && !tm_lepp_add_target(e, t))
             return false;
     }
     return true;

@@ -14,6 +14,7 @@
 #include "../operation/edge_removal.h"
 #include "../operation/features.h"
 #include "../operation/replacement.h"
+#include "../mesh_set.h"
 
 /* After so many terminal stars a target is left as it is. Insertions of midpoints end by
  * themselves (Balboa saw some hundreds of stars); that Delaunay insertions do has not
@@ -27,13 +28,14 @@ enum { TM_LEPP_VISITS_MAX = 100000 };
  * tetrahedra around have a bit for it: a hash table of edges would be asked for something
  * that is not there most of the time. Those whose longest edge it is have BLOCKED too
  * where it is not refinable in this round, and SETTLED where it is that in all later
- * ones. */
+ * ones. TARGET is for those of S: the bad ones, if the caller asks for no others. */
 enum {
     TM_LEPP_LONGEST = 7,
     TM_LEPP_BAD = 1 << 3,
     TM_LEPP_QUEUED = 1 << 4,
     TM_LEPP_BLOCKED = 1 << 5,
     TM_LEPP_SETTLED = 1 << 6,
+    TM_LEPP_TARGET = 1 << 7,
     TM_LEPP_REFUSED = 1 << 8 /* edge 0; edge k is k bits above */
 };
 
@@ -48,7 +50,7 @@ typedef struct tm_lepp_step {
     bool is_terminal;  /* was when it was found: TM_LEPP_FULL */
 } tm_lepp_step;
 
-/* What sweeps need beside. */
+/* What sweeps need beside, and TM_LEPP_FIXED. */
 typedef struct tm_lepp_sweeper {
     tm_angle_limits limits; /* of the input: no change goes beyond */
     tm_features features;
@@ -82,7 +84,8 @@ typedef struct tm_lepp_engine {
     tm_tet_marks graph; /* TM_LEPP_FULL: tetrahedra of the target's Lepp3D */
     size_t depth, path_room;
     size_t operations;
-    bool reintroduce; /* bad tetrahedra that are made join S */
+    bool is_input;    /* what is measured is: the mesh's set is S */
+    bool reintroduce; /* tetrahedra for S that are made join it */
     uint32_t *target; /* S */
     size_t targets, target_room;
     tm_edge_removal removal;
@@ -98,6 +101,10 @@ void tm_lepp_measure(tm_lepp_engine *e, const uint32_t *tet, size_t count);
 /* Room in the engine's arrays for so many more slots, and created tetrahedra; false where
  * memory is out. */
 bool tm_lepp_reserve(tm_lepp_engine *e, size_t more);
+
+/* Finds a tetrahedron at each node; false where memory is out. tm_lepp_note() keeps them
+ * with TM_LEPP_FIXED. */
+bool tm_lepp_place_nodes(tm_lepp_engine *e);
 
 /* Measures tetrahedra that were made or changed; those that are bad join S if that grows.
  * False where memory is out. */
@@ -134,6 +141,11 @@ tm_status tm_lepp_process_star(tm_lepp_engine *e, const tm_star *star, size_t vi
  * that makes the worst tetrahedron better. */
 tm_status tm_lepp_smooth(tm_lepp_engine *e);
 tm_status tm_lepp_swap(tm_lepp_engine *e);
+
+static inline bool tm_lepp_has_sizes(const tm_lepp_options *o)
+{
+    return o->sizes.longest > 0 || o->sizes.attribute > 0;
+}
 
 /* Whether the mesh may have so many tetrahedra more. */
 static inline bool tm_lepp_may_grow(const tm_lepp_engine *e, size_t more)

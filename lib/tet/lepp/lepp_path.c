@@ -130,12 +130,33 @@ static tm_status push_next(tm_lepp_engine *e, uint32_t next)
     return push(e, next) ? TM_OK : tm_fail_memory(e->error);
 }
 
-/* The first step, or the whole Lepp3D of the target. */
+/* Pushes the whole path of the target, which is pushed. Of the tetrahedra to step to it
+ * takes the last one around an edge: the thesis does not say which, and this comes
+ * nearest to its figures. */
+static tm_status walk(tm_lepp_engine *e)
+{
+    tm_status status = TM_OK;
+    bool leads = true;
+    while (leads && refresh(e, &e->path[e->depth - 1], &status)) {
+        const tm_lepp_step *step = &e->path[e->depth - 1];
+        size_t i = step->star.size;
+        while (i > 0 && !leads_on(e, step, i - 1))
+            i--;
+        leads = i > 0;
+        if (leads && !push(e, step->star.tet[i - 1]))
+            return tm_fail_memory(e->error);
+    }
+    return status;
+}
+
+/* The first step, or the whole path or Lepp3D of the target. */
 static tm_status start(tm_lepp_engine *e, uint32_t target)
 {
     e->depth = 0;
     if (!push(e, target))
         return tm_fail_memory(e->error);
+    if (e->options->path == TM_LEPP_FIXED)
+        return walk(e);
     if (e->options->path != TM_LEPP_FULL)
         return TM_OK;
     if (!tm_tet_marks_clear(&e->graph, e->mesh->slot_room))
@@ -169,6 +190,44 @@ static tm_status go_on(tm_lepp_engine *e, bool is_needed, size_t *visited)
     return tm_lepp_process_star(e, &last->star, *visited);
 }
 
+/* A tetrahedron that has the edge of a step, of those around its node a, and which edge
+ * of it that is; TM_NONE where the edge is gone. */
+static tm_status find_edge(tm_lepp_engine *e, const tm_lepp_step *step, uint32_t *found,
+                           unsigned *edge)
+{
+    tm_lepp_sweeper *s = &e->sweeper;
+    *found = TM_NONE;
+    if (!tm_ball_around(e->mesh, s->tet_at[step->a], step->a, &s->marks, &s->ball))
+        return tm_fail_memory(e->error);
+    for (size_t i = 0; i < s->ball.size; i++) {
+        const uint32_t *n = e->mesh->tet[s->ball.tet[i]];
+        for (unsigned k = 0; k < TM_TET_EDGES; k++)
+            if (is_same_edge(step->a, step->b, n[tm_edge_corner[k][0]],
+                             n[tm_edge_corner[k][1]])) {
+                *found = s->ball.tet[i];
+                *edge = k;
+                return TM_OK;
+            }
+    }
+    return TM_OK;
+}
+
+/* TM_LEPP_FIXED: the edge of the last step, if it is still there, whether it is terminal
+ * or not. */
+static tm_status go_back(tm_lepp_engine *e, size_t *visited)
+{
+    tm_lepp_step *last = &e->path[--e->depth];
+    uint32_t t;
+    unsigned edge;
+    tm_status status = find_edge(e, last, &t, &edge);
+    if (status != TM_OK || t == TM_NONE)
+        return status;
+    if (!tm_star_around(e->mesh, t, edge, &last->star))
+        return tm_fail_memory(e->error);
+    ++*visited;
+    return tm_lepp_process_star(e, &last->star, *visited);
+}
+
 /* After each operation the path goes on from its last step that still holds: what is not
  * at the star that changed is as it was (section 4.2). */
 tm_status tm_lepp_follow(tm_lepp_engine *e, uint32_t target)
@@ -179,13 +238,14 @@ tm_status tm_lepp_follow(tm_lepp_engine *e, uint32_t target)
     tm_status status = start(e, target);
     while (e->depth > 0 && status == TM_OK) {
         bool is_needed = memcmp(nodes, e->mesh->tet[target], sizeof nodes) == 0;
-        if (!is_needed && e->options->path == TM_LEPP_SIMPLE)
+        if (!is_needed && e->options->path != TM_LEPP_FULL)
             break;
         if (visited >= TM_LEPP_VISITS_MAX) {
             e->report->abandoned++;
             break;
         }
-        status = go_on(e, is_needed, &visited);
+        status = e->options->path == TM_LEPP_FIXED ? go_back(e, &visited)
+                                                   : go_on(e, is_needed, &visited);
     }
     e->report->targets++;
     e->report->visits += visited;

@@ -59,6 +59,12 @@ static const tm_report_row delaunay[] = {TM_REPORT_OPEN_ROW("delaunay"),
                                          TM_REPORT_CLOSE_ROW,
                                          {0}};
 
+static const tm_report_row larger[] = {TM_REPORT_OPEN_ROW("larger"),
+                                       ROW("before", larger_before),
+                                       ROW("after", larger_after),
+                                       TM_REPORT_CLOSE_ROW,
+                                       {0}};
+
 static const tm_report_row sweep[] = {
     SWEEP("sweeps", sweeps), SWEEP("tried", tried), SWEEP("invalid", invalid), {0}};
 static const tm_report_row by_sweep[] = {SWEEP("by_sweep", done), {0}};
@@ -105,4 +111,6 @@ void tm_lepp_report_json(tm_json *json, const tm_lepp_options *options,
         sweep_json(json, "face_swaps", &report->swap, "swapped", "swapped_2_2");
     if (options->algorithm == TM_LEPP_DELAUNAY)
         tm_report_json(json, delaunay, report);
+    if (options->sizes.longest > 0 || options->sizes.attribute > 0)
+        tm_report_json(json, larger, report);
 }

@@ -4,25 +4,6 @@
 
 #include "../../base/array.h"
 
-#include <string.h>
-
-/* A tetrahedron at each node. */
-static bool start(tm_lepp_engine *e)
-{
-    const tm_tet_mesh *mesh = e->mesh;
-    tm_lepp_sweeper *s = &e->sweeper;
-    uint32_t *tet_at = tm_grow(s->tet_at, &s->tet_at_room, mesh->nodes, sizeof *tet_at);
-    if (!tet_at)
-        return false;
-    s->tet_at = tet_at;
-    for (size_t v = 0; v < mesh->nodes; v++)
-        tet_at[v] = TM_NONE;
-    for (uint32_t t = 0; t < mesh->slots; t++)
-        for (int i = 0; i < 4 && tm_tet_lives(mesh, t); i++)
-            tet_at[mesh->tet[t][i]] = t;
-    return true;
-}
-
 /* A mean is taken of differences to the node, so that it is exactly in a plane across an
  * axis. */
 typedef struct mean {
@@ -123,7 +104,7 @@ tm_status tm_lepp_smooth(tm_lepp_engine *e)
     size_t sweep = tm_lepp_bin(e->report->smooth.sweeps++, TM_LEPP_SWEEPS);
     tm_features_free(&s->features);
     tm_status status = tm_features_find(&s->features, e->mesh, NULL, &s->marks, e->error);
-    if (status == TM_OK && !start(e))
+    if (status == TM_OK && !tm_lepp_place_nodes(e))
         status = tm_fail_memory(e->error);
     tm_progress_at at = {
         .what = "smoothing", .pass = e->report->smooth.sweeps, .of = e->mesh->nodes};

@@ -8,15 +8,16 @@ static bool has_node(const uint32_t face[3], uint32_t v)
     return face[0] == v || face[1] == v || face[2] == v;
 }
 
-/* Whether tetrahedron t, which has both nodes, may go: the constrained face opposite b, if
- * there is one, takes the place of the face opposite a. */
+/* Whether tetrahedron t, which has both nodes, may go: the constrained face opposite b,
+ * if there is one, takes the place of the face opposite a. */
 static bool may_go(const tm_tet_mesh *mesh, uint32_t t, uint32_t a, uint32_t b,
                    bool surface_moves)
 {
     if (!(mesh->neighbour[t][tm_tet_corner(mesh, t, b)] & TM_FACE_BIT))
         return true;
     /* Else it would be flat with b. */
-    return surface_moves && !(mesh->neighbour[t][tm_tet_corner(mesh, t, a)] & TM_FACE_BIT);
+    return surface_moves &&
+           !(mesh->neighbour[t][tm_tet_corner(mesh, t, a)] & TM_FACE_BIT);
 }
 
 double tm_contraction_cost(const tm_tet_mesh *mesh, const tm_ball *ball, uint32_t b,

@@ -3,6 +3,7 @@
 
 #include "../../geom/predicates.h"
 #include "../../element/tet_four.h"
+#include "../mesh_set.h"
 
 #include <string.h>
 
@@ -353,6 +354,7 @@ static void take_slots(removal *r)
 {
     tm_tet_mesh *mesh = r->mesh;
     size_t had = r->star->size, needed = 2 * had - 4;
+    tm_tet_mesh_spread_set(mesh, r->star->tet, had);
     for (size_t i = 0; i < had && i < needed; i++)
         r->created[i] = r->star->tet[i];
     for (size_t i = had; i < needed; i++) {

@@ -29,8 +29,8 @@ void tm_peel(tm_tet_mesh *mesh, const tm_star *star, const tm_face_renewal renew
              bool first, uint32_t beyond[2])
 {
     uint32_t t = star->tet[0];
-    /* Of faces abr and abs, which become ras and rsb, the first gets the half face that was
-     * across ars, opposite b; the other one that across brs. */
+    /* Of faces abr and abs, which become ras and rsb, the first gets the half face that
+     * was across ars, opposite b; the other one that across brs. */
     for (int i = 0; i < 2; i++) {
         uint32_t old = 4 * t + tm_tet_corner(mesh, t, star->ring[1 - i]);
         uint32_t half = mesh->neighbour[t][tm_tet_corner(mesh, t, i ? star->a : star->b)];

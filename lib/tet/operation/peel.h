@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Peeling: a tetrahedron goes from its side of the surface, which is then on the other side
- * of it. One that is alone at an edge between two constrained faces, or that has one face
- * on the outside and its fourth node inside. */
+/* Peeling: a tetrahedron goes from its side of the surface, which is then on the other
+ * side of it. One that is alone at an edge between two constrained faces, or that has one
+ * face on the outside and its fourth node inside. */
 #ifndef TM_OPERATION_PEEL_H
 #define TM_OPERATION_PEEL_H
 
@@ -19,8 +19,8 @@ bool tm_peel_is_possible(const tm_tet_mesh *mesh, const tm_star *star, tm_star *
 void tm_peel(tm_tet_mesh *mesh, const tm_star *star, const tm_face_renewal renewal[2],
              bool first, uint32_t beyond[2]);
 
-/* Whether tetrahedron t, whose face i is on the outside, may go as far as it is concerned:
- * its other faces have tetrahedra beyond. */
+/* Whether tetrahedron t, whose face i is on the outside, may go as far as it is
+ * concerned: its other faces have tetrahedra beyond. */
 bool tm_peel_face_is_possible(const tm_tet_mesh *mesh, uint32_t t, uint32_t i);
 
 /* Takes it away. Its other faces are constrained then: face[0 … 3), of which the first is

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "replacement.h"
 
+#include "../mesh_set.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -133,6 +135,7 @@ static void renew_faces(tm_tet_mesh *mesh, const tm_replacement *what,
 static void take_slots(tm_tet_mesh *mesh, const tm_replacement *what)
 {
     size_t width = mesh->regions;
+    tm_tet_mesh_spread_set(mesh, what->old, what->old_count);
     for (size_t i = 0; i < what->count; i++) {
         if (i < what->old_count) {
             what->created[i] = what->old[i];
