@@ -10,11 +10,11 @@
 #   ONLY                the names to run, with blanks
 #   TOLERANCE_OPTIONS   what lepp-improve is given; --surface-tolerance D
 #   JUDGE_SAMPLES       points of the judge; 50000. 0: it is not asked
-# shellcheck source-path=SCRIPTDIR source=common.inc
 data=${1:-${TM_DATA:-}}
 [ ! -f "$data" ] || data=$(dirname "$data")
 set --
 unset TM_DATA
+# shellcheck source-path=SCRIPTDIR source=common.inc
 . "$(dirname "$0")/common.inc"
 
 mmg=${MMG:-$(command -v mmg3d || command -v mmg3d_O3 || :)}
@@ -95,6 +95,7 @@ ours() {
 theirs() {
     python3 -B tests/bench/medit.py to "$work/$1.tm" "$work/in.mesh"
     rm -f "$work/out.mesh"
+    # shellcheck disable=SC2016 # for the inner shell
     cpu 1 sh -c '"$1" -optim -v 0 "$2" "$3" >/dev/null 2>&1' sh "$mmg" "$work/in.mesh" \
         "$work/out.mesh" | cut -d ' ' -f 1
     [ ! -s "$work/out.mesh" ] ||
