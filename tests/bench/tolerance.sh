@@ -7,7 +7,7 @@
 # parts of D, and as tet-stats --against proves it for curves and surface.
 #   $1 or TM_DATA       the folder of femur.off, part.off, fandisk.off, anchor_dense.off and
 #                       knot.off; without it, only generated ones
-#   ONLY                the names to run, with blanks
+#   ONLY                the names to run, with blanks; strips:200 is the shape so fine
 #   TOLERANCE_OPTIONS   what lepp-improve is given; --surface-tolerance D
 #   JUDGE_SAMPLES       points of the judge; 50000. 0: it is not asked
 data=${1:-${TM_DATA:-}}
@@ -42,7 +42,9 @@ make_mesh() {
         file=$data/$1.off
         if [ ! -r "$file" ]; then
             file=$work/$1.surface
-            python3 -B tests/shapes/awkward.py "$1" >"$file"
+            fine=${1#"${1%%:*}"}
+            # shellcheck disable=SC2086 # a word or none
+            python3 -B tests/shapes/awkward.py "${1%%:*}" ${fine#:} >"$file"
         fi
         tetgen-mesh --quiet -q --no-history "$file"
         ;;
