@@ -434,10 +434,12 @@ static void add(char *text, size_t size, const char *format, size_t count)
 static void add_effects(const tm_improve_report *r, char *text, size_t size)
 {
     static const char *const words[TM_IMPROVE_EFFECTS] = {
-        "%zu edges and ", "%zu faces removed, ", "%zu times a node moved, ",
-        "%zu points inserted, ", "%zu nodes removed"};
+        "%zu edges and ",        "%zu faces removed, ", "%zu times a node moved, ",
+        "%zu points inserted, ", "%zu nodes removed",   ", %zu tetrahedra peeled off"};
     for (int k = 0; k < TM_IMPROVE_EFFECTS; k++)
-        add(text, size, words[k], tm_improve_effects(r, (tm_improve_effect)k));
+        if (k != TM_EFFECT_TETS_PEELED ||
+            tm_improve_effects(r, TM_EFFECT_TETS_PEELED) > 0)
+            add(text, size, words[k], tm_improve_effects(r, (tm_improve_effect)k));
 }
 
 static void add_star_operations(const settings *o, const tm_lepp_report *r, char *text,
@@ -530,7 +532,8 @@ int main(int argc, char **argv)
 {
     filter f = {.name = "lepp-improve",
                 .synopsis = synopsis,
-                .purpose = "Improves tetrahedra; the boundary stays where it is.",
+                .purpose =
+                    "Improves tetrahedra; the boundary stays where it is, or near.",
                 .help = own_help,
                 .options = options,
                 .words = option_words,

@@ -1,11 +1,49 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* mesh-check: what is wrong with a mesh, as exit status and as a list. */
+#include "common/input/against.h"
 #include "common/input/mesh_input.h"
 
 #include "../lib/examine/element_examine.h"
 #include "../lib/examine/poly_examine.h"
 
-static const struct option long_options[] = {FILTER_OPTIONS};
+#include <math.h>
+
+enum { WITHIN = FILTER_OWN };
+
+static const struct option long_options[] = {
+    AGAINST_OPTIONS, {"within", required_argument, NULL, WITHIN}, FILTER_OPTIONS};
+
+typedef struct limits {
+    against against;
+    double within;  /* negative: not given */
+    bool is_length; /* or a part of the diagonal */
+} limits;
+
+static void read_options(filter *f, limits *l)
+{
+    int c;
+    while ((c = filter_option(f)) != -1) {
+        if (c != WITHIN) {
+            against_option(f, &l->against, c);
+            continue;
+        }
+        l->is_length = optarg[0] == '=';
+        l->within = filter_number(f, "--within", optarg + l->is_length, 0,
+                                  l->is_length ? HUGE_VAL : 1);
+    }
+    filter_operands(f);
+    against_check(f, &l->against);
+    if (l->within >= 0 && !l->against.file)
+        filter_usage_error(f, "--within goes with --against");
+}
+
+static bool is_within(const limits *l)
+{
+    if (l->within < 0)
+        return true;
+    return against_most(&l->against) <=
+           (l->is_length ? l->within : l->within * l->against.found.diagonal);
+}
 
 /* The blocks of elements; the first that there is, is examined. */
 static const char *const element_block[] = {".ele", ".cell", ".mix"};
@@ -47,12 +85,17 @@ static void examine(const filter *f, const tm_stream *stream, tm_examination *fo
 }
 
 /* Nothing where standard output is for the JSON, or is to be quiet. */
-static void write_report(filter *f, const tm_examination *found, unsigned base)
+static void write_report(filter *f, const tm_examination *found, const limits *l,
+                         unsigned base)
 {
+    enum { LABEL_WIDTH = 28 };
     if (!filter_has_report(f) || (!f->output && f->verbosity < 0))
         return;
     tm_text text = {0};
     tm_examination_text(&text, found, base);
+    against_text(&text, &l->against, LABEL_WIDTH);
+    if (!is_within(l))
+        tm_text_string(&text, "farther than --within allows\n");
     filter_write_text(f, &text);
     tm_text_free(&text);
 }
@@ -61,31 +104,37 @@ int main(int argc, char **argv)
 {
     filter f = {
         .name = "mesh-check",
-        .synopsis = "[FILE]",
+        .synopsis = AGAINST_SYNOPSIS " [--within [=]D] [FILE]",
         .purpose =
             "Says what is wrong with a mesh of tetrahedra, polyhedra or mixed elements:\n"
             "inverted, flat and overlapping ones, faces that do not match, polyhedra\n"
             "that are not closed, a boundary that is not closed or not manifold,\n"
             "duplicate nodes. Exit status 1 if anything is.",
-        .help = "",
+        .help = AGAINST_HELP
+        "      --within D      exit status 1 if any of these distances is above D: a "
+        "part\n"
+        "                      of the diagonal of SURFACE's bounding box; =D: a length\n",
         .options = long_options,
         .letters = FILTER_LETTERS,
         .json_is_output = true,
     };
     filter_start(&f, argc, argv);
-    while (filter_option(&f) != -1)
-        ;
-    filter_operands(&f);
+    limits l = {.against = against_start(), .within = -1};
+    read_options(&f, &l);
 
     tm_stream stream;
     mesh_input_read_to_compute(&f, &stream);
     tm_examination found;
     examine(&f, &stream, &found);
+    against_measure(&f, &l.against, &stream);
     if (f.json) {
-        tm_examination_json(filter_json_begin(&f), &found);
+        tm_json *json = filter_json_begin(&f);
+        tm_examination_json(json, &found);
+        against_json(json, &l.against);
         filter_json_end(&f);
     }
-    write_report(&f, &found, stream.base);
+    write_report(&f, &found, &l, stream.base);
     tm_stream_free(&stream);
-    return filter_finish(&f, tm_examination_is_good(&found) ? 0 : EXIT_GOAL);
+    const bool good = tm_examination_is_good(&found) && is_within(&l);
+    return filter_finish(&f, good ? 0 : EXIT_GOAL);
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* tet-stats: how good the tetrahedra of a mesh are, or of two meshes side by side. */
+#include "common/input/against.h"
 #include "common/input/mesh_input.h"
 #include "common/plot/plot.h"
 
@@ -14,6 +15,7 @@ static const struct option long_options[] = {
     {"plot", required_argument, NULL, OPTION_PLOT},
     {"list", no_argument, NULL, OPTION_LIST},
     {"threshold", required_argument, NULL, 't'},
+    AGAINST_OPTIONS,
     FILTER_OPTIONS};
 
 typedef struct options {
@@ -22,6 +24,7 @@ typedef struct options {
     bool list;
     bool compare;      /* there are two FILEs */
     const char *after; /* the second; NULL: standard input */
+    against against;
 } options;
 
 /* A stream of which the tetrahedra are used, all right-hand positive or flat. */
@@ -77,7 +80,7 @@ static void list(const mesh *m, tm_text *text)
     }
 }
 
-static void write_json(filter *f, const tm_tet_statistics *before,
+static void write_json(filter *f, const options *o, const tm_tet_statistics *before,
                        const tm_tet_statistics *s)
 {
     tm_json *json = filter_json_begin(f);
@@ -87,6 +90,7 @@ static void write_json(filter *f, const tm_tet_statistics *before,
     } else {
         tm_tet_statistics_json(json, s);
     }
+    against_json(json, &o->against);
     filter_json_end(f);
 }
 
@@ -109,6 +113,8 @@ static void write_report(filter *f, const options *o, const mesh *m,
         list(m, &text);
     else
         tm_tet_statistics_table(&text, before, s);
+    if (!o->list)
+        against_text(&text, &o->against, TM_LABEL_WIDTH);
     filter_write_text(f, &text);
     tm_text_free(&text);
 }
@@ -125,8 +131,11 @@ static void read_options(filter *f, options *o)
         case OPTION_PLOT:
             o->plot = optarg;
             break;
-        default: /* OPTION_LIST */
+        case OPTION_LIST:
             o->list = true;
+            break;
+        default:
+            against_option(f, &o->against, c);
         }
     }
     if (f->argc - optind > 2)
@@ -137,6 +146,7 @@ static void read_options(filter *f, options *o)
         o->after = f->argv[--f->argc];
     filter_operands(f);
     filter_other_file(f, "--plot", o->plot);
+    against_check(f, &o->against);
     if (o->after && strcmp(o->after, "-") == 0)
         o->after = NULL;
     if (o->compare && !o->after && !f->input)
@@ -149,19 +159,21 @@ int main(int argc, char **argv)
 {
     filter f = {
         .name = "tet-stats",
-        .synopsis = "[-t DEG] [--plot FILE.svg] [--list] [FILE [AFTER]]",
+        .synopsis =
+            "[-t DEG] [--plot FILE.svg] [--list] " AGAINST_SYNOPSIS " [FILE [AFTER]]",
         .purpose =
             "Says how good the tetrahedra of a mesh are: shares and histograms of\n"
             "dihedral angles and of volume quality; with AFTER, of both meshes.",
-        .help = "  -t, --threshold DEG an angle below DEG or above 180-DEG is bad (30)\n"
-                "      --plot FILE.svg draw the histograms by gnuplot\n"
-                "      --list          a line per tetrahedron: number, smallest and\n"
-                "                      largest dihedral angle, volume quality\n",
+        .help =
+            "  -t, --threshold DEG an angle below DEG or above 180-DEG is bad (30)\n"
+            "      --plot FILE.svg draw the histograms by gnuplot\n"
+            "      --list          a line per tetrahedron: number, smallest and\n"
+            "                      largest dihedral angle, volume quality\n" AGAINST_HELP,
         .options = long_options,
         .letters = "t:" FILTER_LETTERS,
         .json_is_output = true,
     };
-    options o = {.threshold = 30};
+    options o = {.threshold = 30, .against = against_start()};
     mesh first, second;
     tm_tet_statistics before, after;
     filter_start(&f, argc, argv);
@@ -174,12 +186,15 @@ int main(int argc, char **argv)
         g.input = o.after;
         read_mesh(&g, &second);
         measure(&g, &second, &o, &after);
+        against_measure(&g, &o.against, &second.stream);
         tm_stream_free(&second.stream);
+    } else {
+        against_measure(&f, &o.against, &first.stream);
     }
     const tm_tet_statistics *earlier = o.compare ? &before : NULL;
     const tm_tet_statistics *last = o.compare ? &after : &before;
     if (f.json)
-        write_json(&f, earlier, last);
+        write_json(&f, &o, earlier, last);
     if (o.plot)
         write_plot(&f, &o, earlier, last);
     write_report(&f, &o, &first, earlier, last);

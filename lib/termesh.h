@@ -52,6 +52,7 @@
 #include "surface/polygon_surface.h"
 #include "surface/surface.h"
 #include "surface/surface_defects.h"
+#include "surface/surface_distance.h"
 
 /* examine: what is wrong with a mesh, and how good it is */
 #include "examine/element_examine.h"

@@ -104,15 +104,29 @@ static void on_triangle(const double corner[3][3], const double p[3], double clo
         closest[i] = a[i] + v * ab[i] + w * ac[i];
 }
 
-static inline void measure(const tm_tree_triangle *triangle, const double p[3],
-                           tm_surface_point *best)
+static inline double triangle_distance2(const tm_tree_triangle *triangle,
+                                        const double p[3], double q[3])
 {
-    double q[3];
     if (triangle->thin)
         on_edges((const double(*)[3])triangle->corner, p, q);
     else
         on_triangle((const double(*)[3])triangle->corner, p, q);
-    double distance2 = tm_distance2(p, q);
+    return tm_distance2(p, q);
+}
+
+double tm_surface_triangle_distance2(const tm_surface *surface, uint32_t t,
+                                     const double point[3])
+{
+    double q[3];
+    const tm_surface_tree *tree = surface->tree;
+    return triangle_distance2(&tree->triangle[tree->slot[t]], point, q);
+}
+
+static inline void measure(const tm_tree_triangle *triangle, const double p[3],
+                           tm_surface_point *best)
+{
+    double q[3];
+    double distance2 = triangle_distance2(triangle, p, q);
     if (distance2 < best->distance2) {
         best->distance2 = distance2;
         best->triangle = triangle->id;

@@ -3,9 +3,11 @@
 #include "surface_crossings.h"
 
 #include "../geom/predicates.h"
+#include "../geom/vector.h"
 #include "surface_parts.h"
 #include "surface_tree.h"
 
+#include <math.h>
 #include <string.h>
 
 typedef struct finder {
@@ -79,10 +81,77 @@ static bool is_beside(const double *const p[3], const double *const q[3])
            tm_orient3d(p[0], p[1], p[2], q[2]) == side;
 }
 
+/* Most triangles that are near each other are plainly apart. In one plane the exact
+ * orientations are all zero and cost most, so first a plane is looked for that is between
+ * them by more than rounding. */
+static const double margin = 1e-9; /* of lengths */
+
+/* Whether all of p are on one side, and all of q on the other, of a plane across d. */
+static bool is_between(const double d[3], const double *const *p, const double *const *q)
+{
+    double most = -HUGE_VAL, least = HUGE_VAL, size = 0;
+    for (int i = 0; i < 3; i++) {
+        double a = tm_dot(d, p[i]), b = tm_dot(d, q[i]);
+        most = a > most ? a : most;
+        least = b < least ? b : least;
+        size = fmax(size, fmax(tm_norm2(p[i]), tm_norm2(q[i])));
+    }
+    return least - most > margin * sqrt(tm_norm2(d) * size);
+}
+
+static bool strangers_are_apart(const double *const p[3], const double *const q[3])
+{
+    double d[3], normal[3], side[3];
+    for (int x = 0; x < 3; x++)
+        d[x] = q[0][x] - p[0][x] + q[1][x] - p[1][x] + q[2][x] - p[2][x];
+    if (is_between(d, p, q))
+        return true;
+    tm_triangle_normal(normal, p[0], p[1], p[2]);
+    for (int i = 0; i < 3; i++) {
+        tm_subtract(side, p[(i + 1) % 3], p[i]);
+        tm_cross(d, side, normal);
+        if (is_between(d, p, q))
+            return true;
+        tm_subtract(side, q[(i + 1) % 3], q[i]);
+        tm_cross(d, normal, side);
+        if (is_between(d, p, q))
+            return true;
+        for (int x = 0; x < 3; x++)
+            d[x] = -d[x];
+        if (is_between(d, p, q))
+            return true;
+    }
+    return false;
+}
+
+/* The direction from x to y. */
+static void direction(const double x[3], const double y[3], double unit[3])
+{
+    tm_subtract(unit, y, x);
+    double length = tm_norm(unit);
+    for (int i = 0; i < 3; i++)
+        unit[i] /= length;
+}
+
+/* Corner i of p is corner k of q: whether a plane through it is between what is left. */
+static bool corners_are_apart(const double *const p[3], int i, const double *const q[3],
+                              int k)
+{
+    double of_p[2][3], of_q[2][3], d[3];
+    for (int s = 0; s < 2; s++) {
+        direction(p[i], p[(i + 1 + s) % 3], of_p[s]);
+        direction(q[k], q[(k + 1 + s) % 3], of_q[s]);
+    }
+    for (int x = 0; x < 3; x++)
+        d[x] = of_p[0][x] + of_p[1][x] - of_q[0][x] - of_q[1][x];
+    return tm_dot(d, of_p[0]) > margin && tm_dot(d, of_p[1]) > margin &&
+           tm_dot(d, of_q[0]) < -margin && tm_dot(d, of_q[1]) < -margin;
+}
+
 /* Neither has a node of the other. */
 static bool strangers_meet(const double *const p[3], const double *const q[3])
 {
-    if (is_beside(p, q) || is_beside(q, p))
+    if (strangers_are_apart(p, q) || is_beside(p, q) || is_beside(q, p))
         return false;
     for (int i = 0; i < 3; i++)
         if (segment_meets(p[i], p[(i + 1) % 3], q) ||
@@ -95,6 +164,8 @@ static bool strangers_meet(const double *const p[3], const double *const q[3])
  * the node, it reaches the opposite edge of one of them. */
 static bool corners_meet(const double *const p[3], int i, const double *const q[3], int k)
 {
+    if (corners_are_apart(p, i, q, k))
+        return false;
     return segment_meets(p[(i + 1) % 3], p[(i + 2) % 3], q) ||
            segment_meets(q[(k + 1) % 3], q[(k + 2) % 3], p);
 }
@@ -104,6 +175,11 @@ static bool corners_meet(const double *const p[3], int i, const double *const q[
 static bool edges_meet(const double *const p[3], int i, const double *const q[3], int k)
 {
     const double *a = p[(i + 1) % 3], *b = p[(i + 2) % 3];
+    double of_p[3], of_q[3];
+    tm_triangle_normal(of_p, a, b, p[i]);
+    tm_triangle_normal(of_q, a, b, q[k]);
+    if (tm_dot(of_p, of_q) < 0) /* one is beyond the edge from the other */
+        return false;
     if (tm_orient3d(a, b, p[i], q[k]) != 0)
         return false;
     for (unsigned w = 0; w < 3; w++)

@@ -6,9 +6,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Whether the closed triangles of nodes vt and vs meet elsewhere than in the nodes and the
- * edge that they have in common, by exact orientations; touching is meeting, and so are
- * the same three nodes. Constant time. */
-bool tm_triangles_meet(const double (*xyz)[3], const uint32_t vt[3], const uint32_t vs[3]);
+/* Whether the closed triangles of nodes vt and vs meet elsewhere than in the nodes and
+ * the edge that they have in common, by exact orientations; touching is meeting, and so
+ * are the same three nodes. Constant time. */
+bool tm_triangles_meet(const double (*xyz)[3], const uint32_t vt[3],
+                       const uint32_t vs[3]);
 
 #endif

@@ -33,8 +33,8 @@ typedef struct feature_finder {
     sharp_edge *edge;
     size_t *start; /* [nodes + 1]: sharp edges at v are at[start[v] … start[v + 1]) */
     uint32_t *at;
-    bool *corner; /* [nodes] */
-    bool *done;   /* [edges] */
+    bool *corner;     /* [nodes] */
+    bool *done;       /* [edges] */
     uint32_t *parent; /* [triangles]: sets of those in one patch */
 } feature_finder;
 
@@ -235,8 +235,8 @@ static double follow_end(const feature_finder *f, uint32_t v, const uint32_t *de
     }
 }
 
-/* Drops chains of sharp edges that end freely and are shorter than `least`, until there is
- * none. */
+/* Drops chains of sharp edges that end freely and are shorter than `least`, until there
+ * is none. */
 static void prune(feature_finder *f, double least, uint32_t *degree, bool *dropped,
                   uint32_t *chain)
 {
@@ -277,8 +277,8 @@ static void count_network(const feature_finder *f, double least, const uint32_t 
         uint32_t root = tm_set_root(n->root, v);
         if (degree[v] != 2)
             n->arms[root] += degree[v];
-        n->loose[root] += degree[v] == 1 && follow_end(f, v, degree, dropped, chain,
-                                                       &count) < least;
+        n->loose[root] +=
+            degree[v] == 1 && follow_end(f, v, degree, dropped, chain, &count) < least;
     }
 }
 

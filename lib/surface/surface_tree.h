@@ -53,6 +53,10 @@ typedef struct tm_surface_tree {
  * SAH-based bounding volume hierarchies, 2007: borders of equal bins. O(n log n). */
 tm_status tm_surface_tree_build(tm_surface *surface, tm_error *error);
 
+/* The squared distance from a point to one of the triangles of the surface. */
+double tm_surface_triangle_distance2(const tm_surface *surface, uint32_t t,
+                                     const double point[3]);
+
 /* Copies corners and patches to the tree again after they have changed. */
 void tm_surface_tree_refresh(tm_surface *surface);
 

@@ -130,8 +130,8 @@ tm_status surface_input_of_stream(const tm_stream *stream, const char *name,
     return status;
 }
 
-tm_format surface_input_read(const filter *f, tm_polygon_surface *surface,
-                             tm_stream *stream)
+static tm_format read_surface(const filter *f, tm_polygon_surface *surface,
+                              tm_stream *stream, bool mesh_too)
 {
     tm_error error;
     tm_text bytes = {0};
@@ -143,11 +143,13 @@ tm_format surface_input_read(const filter *f, tm_polygon_surface *surface,
     const tm_format format = tm_format_of(bytes.byte, bytes.size, name);
     if (format == TM_FORMAT_STREAM) {
         status = read_stream(&bytes, name, stream, &error);
-        if (status == TM_OK)
+        if (status == TM_OK && !mesh_too) /* else what f itself takes */
             status = kinds_check(f->name, stream, name, &error);
         if (status == TM_OK) {
             rename_surface(stream);
-            status = surface_input_of_stream(stream, name, surface, &error);
+            if (!mesh_too || tm_stream_find(stream, "surface.node") ||
+                tm_content_of(stream) <= TM_CONTENT_SURFACE)
+                status = surface_input_of_stream(stream, name, surface, &error);
         }
     } else {
         if ((format == TM_FORMAT_POLY || format == TM_FORMAT_SMESH) &&
@@ -165,6 +167,18 @@ tm_format surface_input_read(const filter *f, tm_polygon_surface *surface,
     filter_verbose(f, "%s: %s, %zu nodes, %zu faces", name, tm_format_name(format),
                    surface->nodes, surface->facets);
     return format;
+}
+
+tm_format surface_input_read(const filter *f, tm_polygon_surface *surface,
+                             tm_stream *stream)
+{
+    return read_surface(f, surface, stream, false);
+}
+
+tm_format surface_input_read_any(const filter *f, tm_polygon_surface *surface,
+                                 tm_stream *stream)
+{
+    return read_surface(f, surface, stream, true);
 }
 
 /* What was found and mended in the surface. */

@@ -15,6 +15,11 @@
 tm_format surface_input_read(const filter *f, tm_polygon_surface *surface,
                              tm_stream *stream);
 
+/* The same where a mesh is taken, too: of a stream without surface.node that has elements
+ * *surface stays empty. */
+tm_format surface_input_read_any(const filter *f, tm_polygon_surface *surface,
+                                 tm_stream *stream);
+
 /* Reads it and makes a closed surface of it, with a note about what had to be mended;
  * exits on failure. Of a stream, *history gets its history; history may be NULL. */
 void surface_input_build(const filter *f, const tm_surface_options *options,

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "../../base/array.h"
+#include "../../surface/surface_tree.h"
 #include "envelope_parts.h"
 
 #include <math.h>
@@ -12,12 +13,15 @@ void tm_envelope_free(tm_envelope *envelope)
         tm_surface_free(envelope->reference);
         free(envelope->reference);
         free(envelope->closed);
+        free(envelope->leaf);
+        free(envelope->parent);
     }
     free(envelope->below);
     free(envelope->first_kept);
     free(envelope->next_kept);
     free(envelope->first_link);
     free(envelope->link);
+    free(envelope->reach);
     free(envelope->place);
     free(envelope->flood);
     tm_edge_map_free(&envelope->curve);
@@ -82,6 +86,7 @@ bool tm_envelope_copy(tm_envelope *to, const tm_envelope *from)
     made.first_link =
         copy(from->first_link, reference->triangles, sizeof *made.first_link, &done);
     made.link = copy(from->link, from->links, sizeof *made.link, &done);
+    made.reach = copy(from->reach, reference->tree->nodes, sizeof *made.reach, &done);
     made.place = copy(from->place, from->node_room, sizeof *made.place, &done);
     made.curve.slot =
         copy(from->curve.slot, from->curve.room, sizeof *made.curve.slot, &done);
@@ -120,8 +125,8 @@ static size_t nearest(const tm_tet_mesh *mesh, const tm_surface_change *change,
     *distance2 = HUGE_VAL;
     for (size_t k = 0; k < change->count; k++) {
         const uint32_t *n = change->node[k];
-        double to = tm_triangle_distance2(p, mesh->xyz[n[0]], mesh->xyz[n[1]],
-                                          mesh->xyz[n[2]]);
+        double to =
+            tm_triangle_distance2(p, mesh->xyz[n[0]], mesh->xyz[n[1]], mesh->xyz[n[2]]);
         if (!(to < *distance2))
             continue;
         *distance2 = to;
@@ -167,8 +172,30 @@ static bool is_linked(const tm_envelope *e, uint32_t t, uint32_t face)
     return false;
 }
 
-static bool add_link(tm_envelope *e, uint32_t t, uint32_t face)
+/* The boxes of the tree above triangle t hold the face, too. */
+static void extend_reach(tm_envelope *e, const tm_tet_mesh *mesh, uint32_t t,
+                         const uint32_t n[3])
 {
+    for (uint32_t node = e->leaf[t]; node != TM_NONE; node = e->parent[node]) {
+        double *box = e->reach[node];
+        bool grown = false;
+        for (int i = 0; i < 3; i++)
+            for (int x = 0; x < 3; x++) {
+                double p = mesh->xyz[n[i]][x];
+                grown |= p < box[x] || p > box[3 + x];
+                box[x] = p < box[x] ? p : box[x];
+                box[3 + x] = p > box[3 + x] ? p : box[3 + x];
+            }
+        if (!grown)
+            return;
+    }
+}
+
+/* Face `face`, which has or will have the nodes n, is above triangle t. */
+static bool add_link(tm_envelope *e, const tm_tet_mesh *mesh, uint32_t t, uint32_t face,
+                     const uint32_t n[3])
+{
+    extend_reach(e, mesh, t, n);
     if (is_linked(e, t, face))
         return true;
     tm_envelope_link *link =
@@ -186,14 +213,18 @@ bool tm_envelope_link_all(tm_envelope *e, const tm_tet_mesh *mesh)
 {
     e->links = 0;
     memset(e->first_link, -1, e->reference->triangles * sizeof *e->first_link);
+    for (size_t node = 0; node < e->reference->tree->nodes; node++)
+        for (int x = 0; x < 6; x++)
+            e->reach[node][x] = x < 3 ? HUGE_VAL : -HUGE_VAL;
     for (uint32_t f = 0; f < mesh->faces; f++) {
         const tm_constrained_face *face = &mesh->face[f];
         if (face->side[0] == TM_NONE && face->side[1] == TM_NONE)
             continue;
         tm_covered triangle = covered(e, mesh, face->node, f);
-        bool done = tm_envelope_covers(e, &triangle) || add_link(e, e->below[f], f);
+        bool done = tm_envelope_covers(e, &triangle) ||
+                    add_link(e, mesh, e->below[f], f, face->node);
         for (size_t i = 0; i < e->flood_count && done; i++)
-            done = add_link(e, e->flood[i], f);
+            done = add_link(e, mesh, e->flood[i], f, face->node);
         if (!done)
             return false;
     }
@@ -226,7 +257,7 @@ bool tm_envelope_follow(tm_envelope *envelope, const tm_tet_mesh *mesh,
             return false;
         e->below[change->face[k]] = e->flood[0];
         for (size_t i = 0; i < e->flood_count; i++)
-            if (!add_link(e, e->flood[i], change->face[k]))
+            if (!add_link(e, mesh, e->flood[i], change->face[k], change->node[k]))
                 return false;
     }
     for (uint32_t v = kept; v != TM_NONE; v = next) {

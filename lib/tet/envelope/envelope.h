@@ -15,8 +15,8 @@
  * - Every node of the reference inside a patch is within the distance of a face. With the
  *   pieces above, so is what is between the nodes.
  *
- * Faces of a patch are faces that came connected across edges that are no features; a face
- * keeps its patch. (B. Wang, T. Schneider, Y. Hu, M. Attene, D. Panozzo, Exact and
+ * Faces of a patch are faces that came connected across edges that are no features; a
+ * face keeps its patch. (B. Wang, T. Schneider, Y. Hu, M. Attene, D. Panozzo, Exact and
  * efficient polyhedral envelope containment check, 2020, cut faces into pieces; here the
  * reference cuts them.) */
 #ifndef TM_ENVELOPE_ENVELOPE_H
@@ -34,8 +34,9 @@ typedef struct tm_envelope_link {
 typedef struct tm_envelope {
     double tolerance; /* the distance: a length */
     tm_surface *reference;
-    bool *closed;  /* [curves of the reference]: those without an end */
-    bool borrowed; /* both are those of the envelope that this is a copy of */
+    bool *closed;            /* [curves of the reference]: those without an end */
+    uint32_t *leaf, *parent; /* by triangle, and node, of the reference's tree */
+    bool borrowed; /* all these are those of the envelope that this is a copy of */
 
     /* By constrained face: a triangle of the reference below it, which has its patch; the
      * nodes of the reference that are near it, as a list in next_kept. */
@@ -47,6 +48,8 @@ typedef struct tm_envelope {
     uint32_t *first_link; /* [triangles of the reference] */
     tm_envelope_link *link;
     size_t links, link_room, links_at_first;
+    double (
+        *reach)[6]; /* by node of the tree: a box with all those faces; low and high */
 
     tm_edge_map curve; /* edges on feature curves: the curve */
     size_t node_room;
@@ -81,9 +84,14 @@ tm_status tm_envelope_build(tm_envelope *envelope, const tm_tet_mesh *mesh,
                             tm_error *error);
 void tm_envelope_free(tm_envelope *envelope);
 
-/* Makes *to, which is {0} or a copy, the same as *from, or *to the same as its copy; false
- * where memory is out, with *to as it was. */
+/* Makes *to, which is {0} or a copy, the same as *from, or *to the same as its copy;
+ * false where memory is out, with *to as it was. */
 bool tm_envelope_copy(tm_envelope *to, const tm_envelope *from);
+
+/* Verifies what is promised of faces and nodes. TM_ERROR_INTERNAL with the first thing
+ * that does not hold. As long as all of it takes to be found; for tests. */
+tm_status tm_envelope_check(tm_envelope *envelope, const tm_tet_mesh *mesh,
+                            tm_error *error);
 
 /* Room for so many faces and nodes of the mesh in all; false where memory is out. */
 bool tm_envelope_reserve(tm_envelope *envelope, size_t faces, size_t nodes);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The reference: the constrained faces of a mesh as a surface that need be no manifold. */
+/* The reference: the constrained faces of a mesh as a surface that need be no manifold.
+ */
 #include "../../base/array.h"
 #include "../../surface/surface_parts.h"
 #include "../../surface/surface_tree.h"
@@ -9,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A feature that ends freely has to be so many times longer than what the surface may move
- * anyway. */
+/* A feature that ends freely has to be so many times longer than what the surface may
+ * move anyway. */
 static const double short_curve = 16;
 
 typedef struct builder {
@@ -247,6 +248,27 @@ static void keep_nodes(builder *b, const bool *on_feature, tm_tet_marks *seen)
     }
 }
 
+/* The way up the tree. */
+static bool find_parents(builder *b)
+{
+    const tm_surface_tree *tree = b->s->tree;
+    tm_envelope *e = b->e;
+    e->leaf = tm_new(b->s->triangles, sizeof *e->leaf);
+    e->parent = tm_new(tree->nodes, sizeof *e->parent);
+    e->reach = tm_new(tree->nodes, sizeof *e->reach);
+    if (!e->leaf || !e->parent || !e->reach)
+        return false;
+    e->parent[0] = TM_NONE;
+    for (uint32_t n = 0; n < tree->nodes; n++) {
+        const tm_tree_node *node = &tree->node[n];
+        if (node->count == 0)
+            e->parent[node->first] = e->parent[node->first + 1] = n;
+        for (uint32_t i = 0; i < node->count; i++)
+            e->leaf[tree->triangle[node->first + i].id] = n;
+    }
+    return true;
+}
+
 static bool attach(builder *b)
 {
     tm_surface *s = b->s;
@@ -255,7 +277,7 @@ static bool attach(builder *b)
     bool *on_feature = calloc(s->nodes + 1, sizeof *on_feature);
     e->next_kept = tm_new(s->nodes, sizeof *e->next_kept);
     e->first_link = tm_new(s->triangles, sizeof *e->first_link);
-    bool done = on_feature && e->next_kept && e->first_link &&
+    bool done = on_feature && e->next_kept && e->first_link && find_parents(b) &&
                 tm_envelope_reserve(e, b->mesh->faces, b->mesh->nodes) &&
                 place_curves(b, on_feature) && tm_tet_marks_clear(&seen, s->nodes);
     if (done) {

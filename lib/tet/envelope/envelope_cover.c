@@ -145,7 +145,8 @@ static bool is_near_edge(const tm_envelope *e, const frame *f, const double a[3]
     for (int i = 0; i < 3; i++) {
         const double *from = f->corner[i], *to = f->corner[(i + 1) % 3];
         double p[3] = {from[0], from[1], 0}, q[3] = {to[0], to[1], 0};
-        if (tm_segment_distance2(a, p, q) <= most && tm_segment_distance2(b, p, q) <= most)
+        if (tm_segment_distance2(a, p, q) <= most &&
+            tm_segment_distance2(b, p, q) <= most)
             return true;
     }
     return false;
@@ -158,6 +159,13 @@ typedef struct search {
     double area2, true_area2; /* of the pieces: signed, and not */
 } search;
 
+/* The triangle of the same patch across edge i of t; TM_NONE. */
+static uint32_t neighbour(const tm_surface *reference, uint32_t t, int i)
+{
+    uint32_t u = reference->across[t][i];
+    return u != TM_NONE && reference->patch[u] == reference->patch[t] ? u : TM_NONE;
+}
+
 /* Goes on to what is across the edges of triangle t that reach into the triangle. False
  * where the border does too far from its edges, or memory is out. */
 static bool go_on(search *s, uint32_t t, piece corner)
@@ -165,7 +173,7 @@ static bool go_on(search *s, uint32_t t, piece corner)
     const tm_surface *reference = s->e->reference;
     for (int i = 0; i < 3; i++) {
         double a[3], b[3];
-        uint32_t across = reference->across[t][i];
+        uint32_t across = neighbour(reference, t, i);
         if (across != TM_NONE && tm_tet_is_marked(&s->e->seen, across))
             continue;
         memcpy(a, corner[i], sizeof a);
@@ -217,7 +225,7 @@ static bool look_around(search *s, uint32_t t)
 {
     const tm_surface *reference = s->e->reference;
     for (int i = 0; i < 3; i++) {
-        uint32_t across = reference->across[t][i];
+        uint32_t across = neighbour(reference, t, i);
         if (across == TM_NONE || !tm_tet_mark(&s->e->seen, across))
             continue;
         if (!tm_append(&s->e->flood, &s->e->flood_count, &s->e->flood_room, across))

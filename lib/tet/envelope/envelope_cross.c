@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Triangles of a changed surface that meet others. Inside the mesh tetrahedra see to it,
- * on both sides of a face; on the outside there are none. A face that a triangle meets is
- * above the reference near it. */
+ * on both sides of a face; on the outside there are none. The faces are found by the tree
+ * of the reference, whose boxes reach to all faces above. */
 #include "envelope_parts.h"
 
 #include "../../geom/vector.h"
@@ -14,14 +14,14 @@ typedef struct box {
     double low[3], high[3];
 } box;
 
-static box box_of(const tm_tet_mesh *mesh, const uint32_t node[3], double more)
+static box box_of(const tm_tet_mesh *mesh, const uint32_t node[3])
 {
     box b;
     for (int x = 0; x < 3; x++) {
         double p = mesh->xyz[node[0]][x], q = mesh->xyz[node[1]][x];
         double r = mesh->xyz[node[2]][x];
-        b.low[x] = fmin(p, fmin(q, r)) - more;
-        b.high[x] = fmax(p, fmax(q, r)) + more;
+        b.low[x] = fmin(p, fmin(q, r));
+        b.high[x] = fmax(p, fmax(q, r));
     }
     return b;
 }
@@ -58,7 +58,7 @@ static bool meets_above(tm_envelope *e, const tm_tet_mesh *mesh,
         const tm_constrained_face *face = &mesh->face[f];
         if (!tm_tet_mark(&e->seen, f) || !is_outside(face) || is_old(change, f))
             continue;
-        box of_face = box_of(mesh, face->node, 0);
+        box of_face = box_of(mesh, face->node);
         if (boxes_meet(around, &of_face) &&
             tm_triangles_meet((const double(*)[3])mesh->xyz, change->node[k], face->node))
             return true;
@@ -70,7 +70,7 @@ static bool meets_new(const tm_tet_mesh *mesh, const tm_surface_change *change, 
                       const box *around)
 {
     for (size_t i = 0; i < k; i++) {
-        box other = box_of(mesh, change->node[i], 0);
+        box other = box_of(mesh, change->node[i]);
         if (boxes_meet(around, &other) &&
             tm_triangles_meet((const double(*)[3])mesh->xyz, change->node[k],
                               change->node[i]))
@@ -86,19 +86,17 @@ bool tm_envelope_crosses(tm_envelope *e, const tm_tet_mesh *mesh,
     uint32_t stack[TM_TREE_DEPTH], height = 0;
     if (!is_outside(&mesh->face[change->from[k]]))
         return false;
-    box own = box_of(mesh, change->node[k], 0);
-    box around = box_of(mesh, change->node[k], e->tolerance);
+    box own = box_of(mesh, change->node[k]);
     if (meets_new(mesh, change, k, &own) || !tm_tet_marks_clear(&e->seen, mesh->faces))
         return true;
     stack[height++] = 0;
     while (height > 0) {
-        const tm_tree_node *node = &tree->node[stack[--height]];
-        box of_node;
-        for (int x = 0; x < 3; x++) {
-            of_node.low[x] = node->low[x];
-            of_node.high[x] = node->high[x];
-        }
-        if (!boxes_meet(&around, &of_node))
+        const uint32_t at = stack[--height];
+        const tm_tree_node *node = &tree->node[at];
+        const double *reach = e->reach[at];
+        if (!(own.low[0] <= reach[3] && reach[0] <= own.high[0] &&
+              own.low[1] <= reach[4] && reach[1] <= own.high[1] &&
+              own.low[2] <= reach[5] && reach[2] <= own.high[2]))
             continue;
         if (node->count == 0) {
             stack[height++] = node->first + 1;

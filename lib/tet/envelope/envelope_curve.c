@@ -95,7 +95,8 @@ double tm_envelope_onto_curve(const tm_envelope *envelope, uint32_t curve, doubl
 {
     double best = HUGE_VAL, place = from, found[3] = {0, 0, 0};
     for (size_t k = (size_t)floor(from); (double)k < to; k++) {
-        const double *a = node_of(envelope, curve, k), *b = node_of(envelope, curve, k + 1);
+        const double *a = node_of(envelope, curve, k),
+                     *b = node_of(envelope, curve, k + 1);
         double ab[3], ap[3], q[3];
         tm_subtract(ab, b, a);
         tm_subtract(ap, p, a);

@@ -5,7 +5,8 @@
 
 #include "envelope.h"
 
-/* A triangle asked about: corners p[0 … 2], and a triangle of the reference to begin with.
+/* A triangle asked about: corners p[0 … 2], and a triangle of the reference to begin
+ * with.
  */
 typedef struct tm_covered {
     const double *p[3];
@@ -20,7 +21,8 @@ bool tm_envelope_covers(tm_envelope *e, const tm_covered *triangle);
 bool tm_envelope_crosses(tm_envelope *e, const tm_tet_mesh *mesh,
                          const tm_surface_change *change, size_t k);
 
-/* Notes above which triangles of the reference each face is; false where memory is out. */
+/* Notes above which triangles of the reference each face is; false where memory is out.
+ */
 bool tm_envelope_link_all(tm_envelope *e, const tm_tet_mesh *mesh);
 
 /* The squared distances from a point to a segment, and to a triangle. */

@@ -30,6 +30,8 @@ TM_EXTERN_C_BEGIN
     ROW(FACE_REMOVAL, "face-removal", "face_removals", FACES_REMOVED, MOVE, swap)        \
     /* moves a node: inside, in a flat facet, on a straight edge */                      \
     ROW(SMOOTHING, "smoothing", "moves", NODES_MOVED, MOVE, smooth)                      \
+    /* of a tetrahedron under a surface that may move */                                 \
+    ROW(PEELING, "peeling", "peelings", TETS_PEELED, MOVE, peel)                         \
     /* of an edge: removes a node */                                                     \
     ROW(CONTRACTION, "contraction", "contractions", NODES_REMOVED, SHRINK, contract)     \
     /* of a node, at the best point of a cavity, or on an edge */                        \
@@ -51,6 +53,7 @@ typedef enum tm_improve_effect {
     TM_EFFECT_NODES_MOVED,
     TM_EFFECT_POINTS_INSERTED,
     TM_EFFECT_NODES_REMOVED,
+    TM_EFFECT_TETS_PEELED,
     TM_IMPROVE_EFFECTS
 } tm_improve_effect;
 
@@ -58,11 +61,11 @@ enum { TM_IMPROVE_ALL_OPS = (1 << TM_IMPROVE_OPS) - 1 };
 
 typedef struct tm_improve_options {
     double angle; /* degrees; bad: a dihedral angle below it, or above 180 - it */
-    tm_tet_measure measure; /* by which tetrahedra are compared */
-    double max_growth;      /* tetrahedra at most, by those of the input; 0: any */
-    unsigned ops;           /* bits 1 << tm_improve_op */
-    size_t passes;          /* over the bad tetrahedra, at most; 0: any number */
-    bool converge;          /* go on while anything is gained, not only enough */
+    tm_tet_measure measure;    /* by which tetrahedra are compared */
+    double max_growth;         /* tetrahedra at most, by those of the input; 0: any */
+    unsigned ops;              /* bits 1 << tm_improve_op */
+    size_t passes;             /* over the bad tetrahedra, at most; 0: any number */
+    bool converge;             /* go on while anything is gained, not only enough */
     tm_surface_limits surface; /* how far the surface may move */
     const tm_progress *progress;
 } tm_improve_options;
@@ -81,13 +84,16 @@ typedef struct tm_improve_report {
     size_t tried[TM_IMPROVE_OPS]; /* how often it was looked for; 0 for swaps */
     size_t nodes_free[4];         /* of the input, by the dimension they may move in */
     bool too_large;               /* max_growth could not be reached */
+    double tolerance;             /* of the surface, and what that has, if it is not 0 */
+    size_t patches, curves, corners;
 } tm_improve_report;
 
 /* Improves the mesh. The smallest and the largest dihedral angle never get worse; volume,
  * surface, regions and markers stay, but for the rounding of nodes that move in the
- * surface. If nothing is bad, angles above 30 degrees are reached one degree after the
- * other. After an error the mesh is still valid, improved as far as it got.
- * Deterministic. In practice O(tetrahedra). */
+ * surface; with a tolerance the surface stays within that (tet/envelope/envelope.h). If
+ * nothing is bad, angles above 30 degrees are reached one degree after the other. After
+ * an error the mesh is still valid, improved as far as it got. Deterministic. In practice
+ * O(tetrahedra). */
 tm_status tm_improve(tm_tet_mesh *mesh, const tm_improve_options *options,
                      tm_improve_report *report, tm_error *error);
 

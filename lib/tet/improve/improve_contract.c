@@ -54,8 +54,8 @@ static uint32_t best_neighbour(tm_improver *m)
             if (!tm_tet_mark(&m->seen, b) || !may_go_to(m, b))
                 continue;
             double most = old - gain + m->price * (double)ball->size;
-            double cost =
-                tm_contraction_cost(m->mesh, ball, b, &m->cost, least, most, &gone);
+            double cost = tm_contraction_cost(m->mesh, ball, b, moves_surface(m),
+                                              &m->cost, least, most, &gone);
             double gained = old - cost + m->price * (double)gone;
             if (gained > gain &&
                 (!moves_surface(m) || tm_improve_allows_contraction(m, b))) {
@@ -81,9 +81,8 @@ bool tm_improve_contract_node(tm_improver *m, uint32_t t, uint32_t a)
     bool moves = moves_surface(m);
     if (b == TM_NONE || (moves && !tm_improve_allows_contraction(m, b)))
         return false;
-    size_t before = m->mesh->tets;
-    tm_contract(m->mesh, &m->ball, b, m->created);
-    tm_improve_note(m, m->created, m->ball.size - (before - m->mesh->tets));
+    size_t made = tm_contract(m->mesh, &m->ball, b, m->created);
+    tm_improve_note(m, m->created, made);
     if (m->features.dimension[a] == 1)
         tm_features_join(&m->features, a, b);
     if (moves)

@@ -207,7 +207,8 @@ tm_status tm_improve_start(tm_improver *m, tm_tet_mesh *mesh,
     m->most_tets = tm_tet_mesh_most(mesh, options->max_growth);
     m->cost.measure = m->options->measure;
     m->cost.weight = cost_weight;
-    m->status = tm_features_find(&m->features, mesh, &options->surface, &m->marks, m->error);
+    m->status =
+        tm_features_find(&m->features, mesh, &options->surface, &m->marks, m->error);
     if (m->status != TM_OK)
         return m->status;
     if (!reserve_nodes(m, mesh->nodes + 1) || !reserve_tets(m, mesh->slots + 1)) {
@@ -219,6 +220,13 @@ tm_status tm_improve_start(tm_improver *m, tm_tet_mesh *mesh,
     find_limits(m);
     for (size_t v = 0; v < mesh->nodes; v++)
         m->report->nodes_free[m->features.dimension[v]] += m->tet_at[v] != TM_NONE;
+    if (m->features.may_move) {
+        const tm_surface *reference = m->features.envelope.reference;
+        report->tolerance = m->features.envelope.tolerance;
+        report->patches = reference->patches;
+        report->curves = reference->curves;
+        report->corners = reference->corners;
+    }
     tm_improve_set_target(m, options->angle);
     return TM_OK;
 }

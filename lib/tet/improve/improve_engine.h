@@ -61,7 +61,7 @@ typedef struct tm_improver {
     tm_tet_marks seen;  /* on nodes */
     tm_star star, around;
     tm_ball ball, other_ball;
-    tm_tet_marks linked;      /* on nodes */
+    tm_tet_marks linked;                 /* on nodes */
     tm_surface_change change_of_surface; /* that was allowed last */
     tm_cavity cavity;
     tm_edge_removal removal[2]; /* for the two sides of a facet */
@@ -150,6 +150,9 @@ void tm_improve_split_onto_surface(tm_improver *m, double p[3], double *place);
 
 /* Whether that edge may be split at p. */
 bool tm_improve_allows_split(tm_improver *m, const double p[3], double place);
+
+/* Whether tetrahedron t, whose face i is on the outside, may be peeled off. */
+bool tm_improve_allows_peel(tm_improver *m, uint32_t t, uint32_t i);
 
 /* The surface was changed as was allowed last. */
 void tm_improve_follow_surface(tm_improver *m);

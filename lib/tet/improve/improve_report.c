@@ -30,6 +30,14 @@ void tm_improve_report_json(tm_json *json, const tm_improve_report *r)
     tm_json_integer(json, "in_flat_facets", (int64_t)r->nodes_free[2]);
     tm_json_integer(json, "inside", (int64_t)r->nodes_free[3]);
     tm_json_close(json, '}');
+    if (r->tolerance == 0)
+        return;
+    tm_json_open(json, "surface", '{');
+    tm_json_double(json, "tolerance", r->tolerance);
+    tm_json_integer(json, "patches", (int64_t)r->patches);
+    tm_json_integer(json, "curves", (int64_t)r->curves);
+    tm_json_integer(json, "corners", (int64_t)r->corners);
+    tm_json_close(json, '}');
 }
 
 size_t tm_improve_operations(const tm_improve_report *report)

@@ -268,8 +268,8 @@ bool tm_improve_onto_surface(tm_improver *m, double p[3], double *place)
         !tm_features_part(features, v, features->line[v][1], &after))
         return false;
     double end = before.place[1] + (after.place[1] - after.place[0]);
-    *place = tm_envelope_onto_curve(&features->envelope, before.curve, before.place[0], end,
-                                    p);
+    *place = tm_envelope_onto_curve(&features->envelope, before.curve, before.place[0],
+                                    end, p);
     return true;
 }
 
@@ -368,9 +368,30 @@ bool tm_improve_allows_split(tm_improver *m, const double p[3], double place)
         return false;
     memcpy(old, m->mesh->xyz[v], sizeof old);
     memcpy(m->mesh->xyz[v], p, sizeof old);
-    bool allowed = tm_envelope_allows(&m->features.envelope, m->mesh, &m->change_of_surface);
+    bool allowed =
+        tm_envelope_allows(&m->features.envelope, m->mesh, &m->change_of_surface);
     memcpy(m->mesh->xyz[v], old, sizeof old);
     return allowed;
+}
+
+bool tm_improve_allows_peel(tm_improver *m, uint32_t t, uint32_t i)
+{
+    const uint32_t *n = m->mesh->tet[t];
+    tm_surface_change *c = start_change(m);
+    uint32_t face = m->mesh->neighbour[t][i] & ~TM_FACE_BIT, corner[3];
+    uint32_t new_face = (uint32_t)m->mesh->faces;
+    add_old(c, face);
+    tm_tet_face_below(m->mesh, t, i, corner);
+    /* In the order in which tm_peel_face() makes them. */
+    for (uint32_t k = 0; k < 4; k++) {
+        if (k == i)
+            continue;
+        uint32_t p[3];
+        for (int s = 0; s < 3; s++)
+            p[s] = corner[s] == n[k] ? n[i] : corner[s];
+        add_triangle(c, p[0], p[1], p[2], c->count == 0 ? face : new_face++, face);
+    }
+    return tm_envelope_allows(&m->features.envelope, m->mesh, c);
 }
 
 void tm_improve_follow_surface(tm_improver *m)

@@ -8,8 +8,21 @@ static bool has_node(const uint32_t face[3], uint32_t v)
     return face[0] == v || face[1] == v || face[2] == v;
 }
 
+/* Whether tetrahedron t, which has both nodes, may go: the constrained face opposite b,
+ * if there is one, takes the place of the face opposite a. */
+static bool may_go(const tm_tet_mesh *mesh, uint32_t t, uint32_t a, uint32_t b,
+                   bool surface_moves)
+{
+    if (!(mesh->neighbour[t][tm_tet_corner(mesh, t, b)] & TM_FACE_BIT))
+        return true;
+    /* Else it would be flat with b. */
+    return surface_moves &&
+           !(mesh->neighbour[t][tm_tet_corner(mesh, t, a)] & TM_FACE_BIT);
+}
+
 double tm_contraction_cost(const tm_tet_mesh *mesh, const tm_ball *ball, uint32_t b,
-                           const tm_cost *cost, double least, double most, size_t *gone)
+                           bool surface_moves, const tm_cost *cost, double least,
+                           double most, size_t *gone)
 {
     const double(*x)[3] = (const double(*)[3])mesh->xyz;
     double sum = 0;
@@ -17,9 +30,7 @@ double tm_contraction_cost(const tm_tet_mesh *mesh, const tm_ball *ball, uint32_
     for (size_t i = 0; i < ball->size; i++) {
         const uint32_t *f = ball->face[i];
         if (has_node(f, b)) {
-            /* A constrained face opposite b would be flat with b. */
-            uint32_t t = ball->tet[i];
-            if (mesh->neighbour[t][tm_tet_corner(mesh, t, b)] & TM_FACE_BIT)
+            if (!may_go(mesh, ball->tet[i], ball->node, b, surface_moves))
                 return HUGE_VAL;
             ++*gone;
             continue;
@@ -54,13 +65,19 @@ static void move_face(tm_tet_mesh *mesh, uint32_t f, uint32_t a, uint32_t b)
 }
 
 /* Takes tetrahedron t, which has both nodes, out: what lies across its faces opposite a
- * and b meets. */
-static void collapse(tm_tet_mesh *mesh, uint32_t t, uint32_t a, uint32_t b)
+ * and b meets. Returns what was across the one opposite a. */
+static uint32_t collapse(tm_tet_mesh *mesh, uint32_t t, uint32_t a, uint32_t b)
 {
-    uint32_t outside = 4 * t + tm_tet_corner(mesh, t, a);
-    uint32_t inside = mesh->neighbour[t][tm_tet_corner(mesh, t, b)];
-    tm_tet_replace_half(mesh, inside, outside, mesh->neighbour[t][outside % 4]);
+    uint32_t beside_b = 4 * t + tm_tet_corner(mesh, t, a);
+    uint32_t beside_a = 4 * t + tm_tet_corner(mesh, t, b);
+    uint32_t with_b = mesh->neighbour[t][beside_b % 4];
+    uint32_t with_a = mesh->neighbour[t][beside_a % 4];
+    if (with_a & TM_FACE_BIT)
+        tm_tet_replace_half(mesh, with_b, beside_a, with_a);
+    else
+        tm_tet_replace_half(mesh, with_a, beside_b, with_b);
     tm_tet_mesh_delete_tet(mesh, t);
+    return with_b;
 }
 
 static void move_edge(tm_tet_mesh *mesh, uint32_t a, uint32_t x, uint32_t b)
@@ -78,7 +95,7 @@ static void move_edge(tm_tet_mesh *mesh, uint32_t a, uint32_t x, uint32_t b)
     tm_edge_map_put(&mesh->edge_of, b, x, e);
 }
 
-void tm_contract(tm_tet_mesh *mesh, const tm_ball *ball, uint32_t b, uint32_t *created)
+size_t tm_contract(tm_tet_mesh *mesh, const tm_ball *ball, uint32_t b, uint32_t *created)
 {
     uint32_t a = ball->node;
     size_t made = 0;
@@ -90,10 +107,14 @@ void tm_contract(tm_tet_mesh *mesh, const tm_ball *ball, uint32_t b, uint32_t *c
     for (size_t i = 0; i < ball->size; i++) {
         uint32_t t = ball->tet[i];
         if (has_node(ball->face[i], b)) {
-            collapse(mesh, t, a, b);
+            bool peeled = mesh->neighbour[t][tm_tet_corner(mesh, t, b)] & TM_FACE_BIT;
+            uint32_t beyond = collapse(mesh, t, a, b);
+            if (peeled)
+                created[made++] = beyond / 4;
         } else {
             mesh->tet[t][tm_tet_corner(mesh, t, a)] = b;
             created[made++] = t;
         }
     }
+    return made;
 }

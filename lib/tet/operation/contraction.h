@@ -13,14 +13,16 @@
  *
  * The tetrahedra that stay fill the ball exactly if they are positive and b is in every
  * constrained face's plane that the node is in: the ball is bounded by their outer faces,
- * the faces that b has, and those flat ones. */
+ * the faces that b has, and those flat ones. Where the surface moves, other things have
+ * to hold, which the caller sees to; then a tetrahedron with b may go also where its face
+ * opposite b is constrained. */
 double tm_contraction_cost(const tm_tet_mesh *mesh, const tm_ball *ball, uint32_t b,
-                           const tm_cost *cost, double least, double most, size_t *gone);
+                           bool surface_moves, const tm_cost *cost, double least,
+                           double most, size_t *gone);
 
 /* Contracts the ball's node into b. Constrained faces and edges of .edge move along or
- * go. created[0 … ball->size - gone) are the tetrahedra that stay and are changed.
- * O(size).
- */
-void tm_contract(tm_tet_mesh *mesh, const tm_ball *ball, uint32_t b, uint32_t *created);
+ * go. The tetrahedra that are changed, ball->size at most, go to created; returns how
+ * many. O(size). */
+size_t tm_contract(tm_tet_mesh *mesh, const tm_ball *ball, uint32_t b, uint32_t *created);
 
 #endif

@@ -250,7 +250,8 @@ static void place_envelope_nodes(tm_features *features)
     for (size_t v = 0; v < reference->nodes; v++)
         features->dimension[origin[v]] = IN_FACET;
     for (uint32_t c = 0; c < reference->curves; c++) {
-        size_t first = reference->curve_start[c], last = reference->curve_start[c + 1] - 1;
+        size_t first = reference->curve_start[c],
+               last = reference->curve_start[c + 1] - 1;
         const uint32_t *node = reference->curve_node;
         for (size_t k = first; k < last; k++) {
             uint32_t v = origin[node[k]];

@@ -13,8 +13,8 @@
 
 typedef struct tm_features {
     size_t room;
-    uint8_t *dimension;  /* of what a node may move in: 3 inside, 2 a flat facet or a patch,
-                            1 a straight feature edge or a curve, 0 nothing */
+    uint8_t *dimension;  /* of what a node may move in: 3 inside, 2 a flat facet or a
+                            patch,  1 a straight feature edge or a curve, 0 nothing */
     uint32_t (*line)[2]; /* of a node with dimension 1: its neighbours on the edge; on a
                             curve in the order of that */
     double flatness;     /* points that are this near to a plane are in it */
@@ -22,11 +22,12 @@ typedef struct tm_features {
     tm_envelope envelope;
 } tm_features;
 
-/* Finds them. Without a tolerance (limits NULL, or 0) two triangles are in one facet if they have the same marker and are
- * coplanar but for the rounding of coordinates; an edge that is not between two such
- * ones, or has a marker, is a feature edge; with one, see envelope.h. Nodes also stay where they are if the mesh
- * only touches itself there, if they are inside and have a marker, or if their marker is
- * not that of their neighbours in the facet or on the edge. Expected O(n). */
+/* Finds them. Without a tolerance (limits NULL, or 0) two triangles are in one facet if
+ * they have the same marker and are coplanar but for the rounding of coordinates; an edge
+ * that is not between two such ones, or has a marker, is a feature edge; with one, see
+ * envelope.h. Nodes also stay where they are if the mesh only touches itself there, if
+ * they are inside and have a marker, or if their marker is not that of their neighbours
+ * in the facet or on the edge. Expected O(n). */
 tm_status tm_features_find(tm_features *features, const tm_tet_mesh *mesh,
                            const tm_surface_limits *limits, tm_tet_marks *marks,
                            tm_error *error);
@@ -59,8 +60,8 @@ tm_edge_class tm_features_classify(const tm_features *features, const tm_tet_mes
 void tm_features_classify_node(tm_features *features, uint32_t node, tm_edge_class place,
                                uint32_t a, uint32_t b);
 
-/* Node a of a feature edge goes, and its neighbour b is joined to the one beyond. There is
- * room for that after tm_features_reserve(). */
+/* Node a of a feature edge goes, and its neighbour b is joined to the one beyond. There
+ * is room for that after tm_features_reserve(). */
 void tm_features_join(tm_features *features, uint32_t a, uint32_t b);
 
 /* The neighbour of node a, which is on a feature edge, that is not b. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Peeling: a tetrahedron that is alone at an edge between two constrained faces goes from
- * its side of the surface, which is then on the other side of it. */
+/* Peeling: a tetrahedron goes from its side of the surface, which is then on the other
+ * side of it. One that is alone at an edge between two constrained faces, or that has one
+ * face on the outside and its fourth node inside. */
 #ifndef TM_OPERATION_PEEL_H
 #define TM_OPERATION_PEEL_H
 
@@ -17,5 +18,15 @@ bool tm_peel_is_possible(const tm_tet_mesh *mesh, const tm_star *star, tm_star *
  * other two. */
 void tm_peel(tm_tet_mesh *mesh, const tm_star *star, const tm_face_renewal renewal[2],
              bool first, uint32_t beyond[2]);
+
+/* Whether tetrahedron t, whose face i is on the outside, may go as far as it is
+ * concerned: its other faces have tetrahedra beyond. */
+bool tm_peel_face_is_possible(const tm_tet_mesh *mesh, uint32_t t, uint32_t i);
+
+/* Takes it away. Its other faces are constrained then: face[0 … 3), of which the first is
+ * what face i was; its fourth node gets the marker of that. beyond[0 … 3) are the
+ * tetrahedra that were beyond. There must be room for two faces. */
+void tm_peel_face(tm_tet_mesh *mesh, uint32_t t, uint32_t i, uint32_t face[3],
+                  uint32_t beyond[3]);
 
 #endif
