@@ -299,6 +299,13 @@ static bool drop_rough(const feature_finder *f, double least, uint32_t *degree,
         loose += n.loose[v];
         arms += n.arms[v];
     }
+    /* A network without a node that is not just passed is one closed curve. */
+    for (size_t e = 0; e < f->edges && done; e++) {
+        const uint32_t root = tm_set_root(n.root, f->edge[e].node[0]);
+        if (n.arms[root] == 0)
+            arms += n.arms[root] = 2;
+    }
+    f->surface->rough |= 2 * many * loose > arms;
     for (size_t e = 0; e < f->edges && done; e++) {
         const uint32_t root = tm_set_root(n.root, f->edge[e].node[0]);
         if (f->edge[e].triangle[1] == TM_NONE ||

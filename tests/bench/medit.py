@@ -16,7 +16,7 @@ def write_medit(blocks, path):
             print(*row[:3], 0, file=file)
         print("Tetrahedra\n%d" % len(tets), file=file)
         for row in tets:
-            reference = int(float(row[4])) if regions else 1
+            reference = int(float(row[4])) if regions else 0
             print(*(v + 1 for v in row[:4]), reference, file=file)
         marked, faces = blocks.get(".face", (["0"], []))
         print("Triangles\n%d" % len(faces), file=file)

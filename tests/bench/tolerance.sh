@@ -7,14 +7,14 @@
 # parts of D, and as tet-stats --against proves it for curves and surface.
 #   $1 or TM_DATA       the folder of femur.off, part.off, fandisk.off, anchor_dense.off and
 #                       knot.off; without it, only generated ones
-#   ONLY                the names to run, with blanks
+#   ONLY                the names to run, with blanks; strips:200 is the shape so fine
 #   TOLERANCE_OPTIONS   what lepp-improve is given; --surface-tolerance D
 #   JUDGE_SAMPLES       points of the judge; 50000. 0: it is not asked
-# shellcheck source-path=SCRIPTDIR source=common.inc
 data=${1:-${TM_DATA:-}}
 [ ! -f "$data" ] || data=$(dirname "$data")
 set --
 unset TM_DATA
+# shellcheck source-path=SCRIPTDIR source=common.inc
 . "$(dirname "$0")/common.inc"
 
 mmg=${MMG:-$(command -v mmg3d || command -v mmg3d_O3 || :)}
@@ -42,7 +42,9 @@ make_mesh() {
         file=$data/$1.off
         if [ ! -r "$file" ]; then
             file=$work/$1.surface
-            python3 -B tests/shapes/awkward.py "$1" >"$file"
+            fine=${1#"${1%%:*}"}
+            # shellcheck disable=SC2086 # a word or none
+            python3 -B tests/shapes/awkward.py "${1%%:*}" ${fine#:} >"$file"
         fi
         tetgen-mesh --quiet -q --no-history "$file"
         ;;
@@ -95,6 +97,7 @@ ours() {
 theirs() {
     python3 -B tests/bench/medit.py to "$work/$1.tm" "$work/in.mesh"
     rm -f "$work/out.mesh"
+    # shellcheck disable=SC2016 # for the inner shell
     cpu 1 sh -c '"$1" -optim -v 0 "$2" "$3" >/dev/null 2>&1' sh "$mmg" "$work/in.mesh" \
         "$work/out.mesh" | cut -d ' ' -f 1
     [ ! -s "$work/out.mesh" ] ||

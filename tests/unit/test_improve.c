@@ -120,7 +120,7 @@ static void operate_within(bool regions, double tolerance, size_t done[TM_IMPROV
     static tm_improver m;
     tm_improve_options options = {.angle = 30 + 30 * random_unit(),
                                   .ops = TM_IMPROVE_ALL_OPS,
-                                  .surface = {tolerance, 40, false}};
+                                  .surface = {tolerance, 80, false}};
     make_mesh(&mesh, &stream, GRID, 0.3, regions);
     bend(&mesh);
     assert_valid(&mesh);

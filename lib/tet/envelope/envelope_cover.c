@@ -8,8 +8,9 @@
  * much larger, the normals are near.
  *
  * At the border of a patch a triangle may reach beyond the reference: its edge is the
- * chord of a curve there. Then the border that is below the triangle has to be within the
- * distance of one of its edges: what is between both is, too. */
+ * chord of a curve there. Then its corners have to be above the reference, and the border
+ * that is below the triangle within the distance of one of its edges, with nothing but
+ * what is between both uncovered: that is as near. */
 #include "envelope_parts.h"
 
 #include "../../base/array.h"
@@ -137,15 +138,24 @@ static void area_of(piece p, size_t count, double area[3])
     }
 }
 
-/* Whether a piece of the border is within the distance of an edge of the triangle. */
+/* Whether a piece ab of the border, of a triangle with a third corner c, is within the
+ * distance of an edge of the triangle, and what it leaves uncovered is towards that edge.
+ */
 static bool is_near_edge(const tm_envelope *e, const frame *f, const double a[3],
-                         const double b[3])
+                         const double b[3], const double c[3])
 {
-    double most = e->tolerance * e->tolerance;
+    const double most = e->tolerance * e->tolerance, along = 0.5;
+    double side[2] = {b[0] - a[0], b[1] - a[1]};
+    double turn = side[0] * (c[1] - a[1]) - side[1] * (c[0] - a[0]);
+    double out[2] = {turn > 0 ? side[1] : -side[1], turn > 0 ? -side[0] : side[0]};
+    double length = hypot(side[0], side[1]);
     for (int i = 0; i < 3; i++) {
         const double *from = f->corner[i], *to = f->corner[(i + 1) % 3];
         double p[3] = {from[0], from[1], 0}, q[3] = {to[0], to[1], 0};
-        if (tm_segment_distance2(a, p, q) <= most &&
+        double edge[2] = {to[0] - from[0], to[1] - from[1]};
+        double same = out[0] * edge[1] - out[1] * edge[0];
+        if (same >= along * length * hypot(edge[0], edge[1]) &&
+            tm_segment_distance2(a, p, q) <= most &&
             tm_segment_distance2(b, p, q) <= most)
             return true;
     }
@@ -156,6 +166,7 @@ typedef struct search {
     tm_envelope *e;
     frame f;
     bool at_border;
+    bool is_covered[3];       /* the corners */
     double area2, true_area2; /* of the pieces: signed, and not */
 } search;
 
@@ -182,7 +193,7 @@ static bool go_on(search *s, uint32_t t, piece corner)
             continue;
         if (across == TM_NONE) {
             s->at_border = true;
-            if (!is_near_edge(s->e, &s->f, a, b))
+            if (!is_near_edge(s->e, &s->f, a, b, corner[(i + 2) % 3]))
                 return false;
         } else {
             tm_tet_mark(&s->e->seen, across);
@@ -191,6 +202,25 @@ static bool go_on(search *s, uint32_t t, piece corner)
         }
     }
     return true;
+}
+
+/* Notes which corners of the triangle are above one of the reference. */
+static void cover_corners(search *s, piece corner)
+{
+    const double rounding = 1e-6;
+    for (int k = 0; k < 3; k++) {
+        const double *at = s->f.corner[k];
+        double side[3], least = HUGE_VAL, most = -HUGE_VAL;
+        for (int i = 0; i < 3; i++) {
+            const double *a = corner[i], *b = corner[(i + 1) % 3];
+            side[i] = (b[0] - a[0]) * (at[1] - a[1]) - (b[1] - a[1]) * (at[0] - a[0]);
+            side[i] /= hypot(b[0] - a[0], b[1] - a[1]);
+            least = fmin(least, side[i]);
+            most = fmax(most, side[i]);
+        }
+        double off = rounding * s->f.longest;
+        s->is_covered[k] |= least >= -off || most <= off;
+    }
 }
 
 enum answer { REFUSED, APART, OVERLAPS };
@@ -217,6 +247,7 @@ static enum answer look_at(search *s, uint32_t t, double *part)
     s->area2 += area[2];
     s->true_area2 += tm_norm(area);
     *part = fabs(area[2]);
+    cover_corners(s, corner);
     return go_on(s, t, corner) ? OVERLAPS : REFUSED;
 }
 
@@ -275,6 +306,9 @@ bool tm_envelope_covers(tm_envelope *e, const tm_covered *triangle)
         return false;
     double all = s.f.area2, beyond = s.at_border ? 6 * e->tolerance * s.f.longest : 0;
     double area2 = fabs(s.area2);
+    bool corners = s.is_covered[0] && s.is_covered[1] && s.is_covered[2];
+    if (s.at_border && !corners)
+        return false;
     return s.true_area2 <= most_area * all && area2 <= (1 + same_area) * all &&
            area2 >= (1 - same_area) * all - beyond && area2 > 0;
 }

@@ -7,6 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const double degree = 3.14159265358979323846 / 180;
+
+/* Of a rough surface normals side by side may differ by so much: degrees. */
+static const double rough_bend = 80;
+
 /* How much a very bad tetrahedron costs beside 1 for a bad one. */
 static const double cost_weight = 3;
 
@@ -232,6 +237,9 @@ tm_status tm_improve_start(tm_improver *m, tm_tet_mesh *mesh,
         m->report->nodes_free[m->features.dimension[v]] += m->tet_at[v] != TM_NONE;
     if (m->features.may_move) {
         const tm_surface *reference = m->features.envelope.reference;
+        double most = options->surface.feature_angle;
+        m->least_cosine =
+            cos(degree * (reference->rough ? fmax(most, rough_bend) : most));
         report->tolerance = m->features.envelope.tolerance;
         report->patches = reference->patches;
         report->curves = reference->curves;

@@ -19,6 +19,20 @@
 /* Every operation has to lower the cost by this. */
 #define TM_IMPROVE_GAIN 1e-6
 
+/* An edge of a face that goes from the surface; the face beyond stays: its third node. */
+typedef struct tm_improve_bend {
+    uint32_t node[2];
+    uint32_t beyond;
+    uint32_t face; /* that goes */
+} tm_improve_bend;
+
+/* How much a surface bends where it is to be changed. */
+typedef struct tm_improve_bends {
+    double least; /* cosine between normals side by side that is allowed */
+    size_t count;
+    tm_improve_bend edge[3 * TM_CHANGE_MOST];
+} tm_improve_bends;
+
 /* A mesh to come back to. */
 typedef struct tm_improve_state {
     tm_tet_mesh mesh;
@@ -68,6 +82,8 @@ typedef struct tm_improver {
     tm_ball ball, other_ball;
     tm_tet_marks linked;                 /* on nodes */
     tm_surface_change change_of_surface; /* that was allowed last */
+    tm_improve_bends bends;
+    double least_cosine; /* of the feature angle */
     tm_cavity cavity;
     tm_edge_removal removal[2]; /* for the two sides of a facet */
     tm_face_removal face_removal;
@@ -179,6 +195,11 @@ bool tm_improve_allows_split(tm_improver *m, const double p[3], double place);
 
 /* Whether tetrahedron t, whose face i is on the outside, may be peeled off. */
 bool tm_improve_allows_peel(tm_improver *m, uint32_t t, uint32_t i);
+
+/* Notes how much the surface bends at the old faces of the change, and at their edges;
+ * then, with nodes where they will be, whether it would bend more. */
+void tm_improve_look_at_bends(tm_improver *m);
+bool tm_improve_bends_more(const tm_improver *m);
 
 /* The surface was changed as was allowed last. */
 void tm_improve_follow_surface(tm_improver *m);

@@ -31,6 +31,13 @@ static bool add_old(tm_surface_change *c, uint32_t face)
     return true;
 }
 
+/* Whether the change, with all nodes where they will be, keeps within the envelope. */
+static bool is_allowed(tm_improver *m)
+{
+    return !tm_improve_bends_more(m) &&
+           tm_envelope_allows(&m->features.envelope, m->mesh, &m->change_of_surface);
+}
+
 static bool has_node(const uint32_t face[3], uint32_t v)
 {
     return face[0] == v || face[1] == v || face[2] == v;
@@ -79,8 +86,8 @@ bool tm_improve_allows_swap(tm_improver *m, const tm_star *part, int parts)
             return false;
     }
     uint32_t r = part[0].ring[0], s = part[0].ring[part[0].size];
-    return (peeled || !are_neighbours(m, part[0].tet[0], r, s)) &&
-           tm_envelope_allows(&m->features.envelope, m->mesh, c);
+    tm_improve_look_at_bends(m);
+    return (peeled || !are_neighbours(m, part[0].tet[0], r, s)) && is_allowed(m);
 }
 
 /* Whether a node of the ball's faces is in the list. */
@@ -232,8 +239,8 @@ bool tm_improve_allows_contraction(tm_improver *m, uint32_t b)
         return false;
     if (!tm_ball_around(m->mesh, t, b, &m->marks, &m->other_ball))
         return tm_improve_no_memory(m);
-    return surface_links_are_common(m, b) && links_are_common(m, b) &&
-           tm_envelope_allows(&m->features.envelope, m->mesh, &m->change_of_surface);
+    tm_improve_look_at_bends(m);
+    return surface_links_are_common(m, b) && links_are_common(m, b) && is_allowed(m);
 }
 
 /* Whether the node of a ball that is on a curve may be at p, which is that place. */
@@ -286,9 +293,10 @@ bool tm_improve_allows_move(tm_improver *m, const double p[3], double place)
         const uint32_t *n = m->mesh->face[c->old[i]].node;
         add_triangle(c, n[0], n[1], n[2], c->old[i], c->old[i]);
     }
+    tm_improve_look_at_bends(m);
     memcpy(old, m->mesh->xyz[v], sizeof old);
     memcpy(m->mesh->xyz[v], p, sizeof old);
-    bool allowed = tm_envelope_allows(&m->features.envelope, m->mesh, c);
+    bool allowed = is_allowed(m);
     memcpy(m->mesh->xyz[v], old, sizeof old);
     return allowed;
 }
@@ -366,10 +374,10 @@ bool tm_improve_allows_split(tm_improver *m, const double p[3], double place)
     }
     if (!tm_improve_reserve(m, 2 * star->size, 1) || !plan_split_faces(m, v))
         return false;
+    tm_improve_look_at_bends(m);
     memcpy(old, m->mesh->xyz[v], sizeof old);
     memcpy(m->mesh->xyz[v], p, sizeof old);
-    bool allowed =
-        tm_envelope_allows(&m->features.envelope, m->mesh, &m->change_of_surface);
+    bool allowed = is_allowed(m);
     memcpy(m->mesh->xyz[v], old, sizeof old);
     return allowed;
 }
@@ -391,7 +399,8 @@ bool tm_improve_allows_peel(tm_improver *m, uint32_t t, uint32_t i)
             p[s] = corner[s] == n[k] ? n[i] : corner[s];
         add_triangle(c, p[0], p[1], p[2], c->count == 0 ? face : new_face++, face);
     }
-    return tm_envelope_allows(&m->features.envelope, m->mesh, c);
+    tm_improve_look_at_bends(m);
+    return is_allowed(m);
 }
 
 void tm_improve_follow_surface(tm_improver *m)

@@ -26,12 +26,10 @@ static bool is_larger(const tm_lepp_engine *e, uint32_t t, const uint8_t edge[2]
     return sqrt(tm_distance2(a, b)) > longest * (1 + rounding);
 }
 
-/* Whether t is for S. */
+/* Whether t is for S, where this is not of all that is bad. */
 static bool is_target(const tm_lepp_engine *e, uint32_t t, unsigned longest, bool is_bad)
 {
     const tm_lepp_options *o = e->options;
-    if (!e->mesh->has_set && !tm_lepp_has_sizes(o))
-        return is_bad;
     if (!tm_tet_is_in_set(e->mesh, t))
         return false;
     if (tm_lepp_has_sizes(o))
@@ -44,6 +42,8 @@ void tm_lepp_measure(tm_lepp_engine *e, const uint32_t *tet, size_t count)
     const tm_tet_mesh *mesh = e->mesh;
     double sine2[TM_MEASURED_AT_ONCE];
     uint8_t longest[TM_MEASURED_AT_ONCE];
+    const bool is_of_bad = !mesh->has_set && !tm_lepp_has_sizes(e->options);
+    const unsigned bad = TM_LEPP_BAD | (is_of_bad ? TM_LEPP_TARGET : 0);
     for (size_t i = 0, some; i < count; i += some) {
         some = count - i < TM_MEASURED_AT_ONCE ? count - i : TM_MEASURED_AT_ONCE;
         tm_tet_mesh_measure(mesh, tet + i, some, sine2, longest);
@@ -51,9 +51,9 @@ void tm_lepp_measure(tm_lepp_engine *e, const uint32_t *tet, size_t count)
             uint32_t t = tet[i + k];
             e->quality[t] = sine2[k];
             const bool is_bad = sine2[k] < e->bad_below;
-            e->mark[t] =
-                (uint16_t)(longest[k] | (is_bad ? TM_LEPP_BAD : 0) |
-                           (is_target(e, t, longest[k], is_bad) ? TM_LEPP_TARGET : 0));
+            e->mark[t] = (uint16_t)(longest[k] | (is_bad ? bad : 0));
+            if (!is_of_bad && is_target(e, t, longest[k], is_bad))
+                e->mark[t] |= TM_LEPP_TARGET;
         }
     }
     for (size_t i = 0; i < count && e->options->measure != TM_MEASURE_DIHEDRAL; i++) {

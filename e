@@ -1,1 +1,0 @@
-termesh 1

@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* No change of a surface makes a sharp edge within a patch: normals of triangles side by
+ * side differ by no more than the feature angle, or than those did that go. */
+#include "../../geom/vector.h"
+#include "improve_engine.h"
+
+static uint32_t third_node(const uint32_t n[3], uint32_t a, uint32_t b)
+{
+    return n[0] != a && n[0] != b ? n[0] : n[1] != a && n[1] != b ? n[1] : n[2];
+}
+
+static bool has_edge(const uint32_t n[3], uint32_t a, uint32_t b)
+{
+    return (n[0] == a || n[1] == a || n[2] == a) && (n[0] == b || n[1] == b || n[2] == b);
+}
+
+/* The cosine of the angle between the normals of triangles abc and bad. */
+static double cosine(const tm_improver *m, uint32_t a, uint32_t b, uint32_t c, uint32_t d)
+{
+    const double(*x)[3] = (const double(*)[3])m->mesh->xyz;
+    double of_c[3], of_d[3];
+    tm_triangle_normal(of_c, x[a], x[b], x[c]);
+    tm_triangle_normal(of_d, x[b], x[a], x[d]);
+    double size = sqrt(tm_norm2(of_c) * tm_norm2(of_d));
+    return size > 0 ? tm_dot(of_c, of_d) / size : 1;
+}
+
+/* The constrained face at the edge of a star with ring node i; TM_NONE. */
+static uint32_t face_at(const tm_tet_mesh *mesh, const tm_star *star, size_t i)
+{
+    bool last = i == star->size; /* of an open star */
+    uint32_t t = star->tet[last ? i - 1 : i], opposite = star->ring[last ? i - 1 : i + 1];
+    uint32_t across = mesh->neighbour[t][tm_tet_corner(mesh, t, opposite)];
+    return across & TM_FACE_BIT ? across & ~TM_FACE_BIT : TM_NONE;
+}
+
+/* The face beyond edge ab of a face, in its patch; TM_NONE where there is none. */
+static uint32_t face_beyond(tm_improver *m, uint32_t f, uint32_t a, uint32_t b)
+{
+    const tm_constrained_face *face = &m->mesh->face[f];
+    uint32_t t = face->side[face->side[0] == TM_NONE] / 4;
+    if (tm_edge_map_get(&m->features.envelope.curve, a, b))
+        return TM_NONE;
+    uint32_t i = tm_tet_corner(m->mesh, t, a), j = tm_tet_corner(m->mesh, t, b);
+    unsigned e = 0;
+    while (!(tm_edge_corner[e][0] == i && tm_edge_corner[e][1] == j) &&
+           !(tm_edge_corner[e][0] == j && tm_edge_corner[e][1] == i))
+        e++;
+    if (!tm_star_around(m->mesh, t, e, &m->around)) {
+        tm_improve_no_memory(m);
+        return TM_NONE;
+    }
+    for (size_t k = 0; k < m->around.size + !m->around.closed; k++) {
+        uint32_t other = face_at(m->mesh, &m->around, k);
+        if (other != TM_NONE && other != f)
+            return other;
+    }
+    return TM_NONE;
+}
+
+static bool is_old(const tm_surface_change *c, uint32_t face)
+{
+    for (size_t i = 0; i < c->olds; i++)
+        if (c->old[i] == face)
+            return true;
+    return false;
+}
+
+void tm_improve_look_at_bends(tm_improver *m)
+{
+    const tm_surface_change *c = &m->change_of_surface;
+    tm_improve_bends *bends = &m->bends;
+    bends->least = m->least_cosine;
+    bends->count = 0;
+    for (size_t i = 0; i < c->olds; i++) {
+        const uint32_t *n = m->mesh->face[c->old[i]].node;
+        for (int k = 0; k < 3; k++) {
+            uint32_t a = n[k], b = n[(k + 1) % 3],
+                     beyond = face_beyond(m, c->old[i], a, b);
+            if (beyond == TM_NONE)
+                continue;
+            uint32_t d = third_node(m->mesh->face[beyond].node, a, b);
+            double old = cosine(m, a, b, n[(k + 2) % 3], d);
+            bends->least = old < bends->least ? old : bends->least;
+            if (!is_old(c, beyond) && bends->count < 3 * TM_CHANGE_MOST)
+                bends->edge[bends->count++] = (tm_improve_bend){{a, b}, d, c->old[i]};
+        }
+    }
+}
+
+/* The node beyond edge ab of triangle k of the change, in its patch; TM_NONE where the
+ * edge is on a curve. */
+static uint32_t node_beyond(const tm_improver *m, size_t k, uint32_t a, uint32_t b)
+{
+    const tm_surface_change *c = &m->change_of_surface;
+    const tm_envelope *e = &m->features.envelope;
+    const uint32_t *patch = e->reference->patch;
+    for (size_t i = 0; i < m->bends.count; i++)
+        if (has_edge((uint32_t[3]){m->bends.edge[i].node[0], m->bends.edge[i].node[1],
+                                   m->bends.edge[i].node[1]},
+                     a, b) &&
+            patch[e->below[m->bends.edge[i].face]] == patch[e->below[c->from[k]]])
+            return m->bends.edge[i].beyond;
+    for (size_t i = 0; i < k; i++)
+        if (has_edge(c->node[i], a, b) &&
+            patch[e->below[c->from[i]]] == patch[e->below[c->from[k]]])
+            return third_node(c->node[i], a, b);
+    return TM_NONE;
+}
+
+bool tm_improve_bends_more(const tm_improver *m)
+{
+    const tm_surface_change *c = &m->change_of_surface;
+    const double rounding = 1e-9;
+    for (size_t k = 0; k < c->count; k++)
+        for (int i = 0; i < 3; i++) {
+            const uint32_t *n = c->node[k];
+            uint32_t a = n[i], b = n[(i + 1) % 3], d = node_beyond(m, k, a, b);
+            if (d != TM_NONE &&
+                cosine(m, a, b, n[(i + 2) % 3], d) < m->bends.least - rounding)
+                return true;
+        }
+    return false;
+}
