@@ -299,7 +299,8 @@ static void summarise(const settings *o, const result *r, size_t tets, char *tex
     size_t bad_after = is_improve ? r->improve.bad_after : r->lepp.bad_after;
     double before = tm_percent(bad_before, tets_before);
     if (r->changes == 0) {
-        snprintf(text, size, "nothing to improve: %zu tetrahedra, %.2f%% bad", tets,
+        snprintf(text, size, "%s: %zu tetrahedra, %.2f%% bad",
+                 bad_before > 0 ? "nothing found that helps" : "nothing to improve", tets,
                  before);
         return;
     }

@@ -29,6 +29,14 @@ static extremes angles_of(const tm_tet_mesh *mesh)
     return e;
 }
 
+/* No angle is more extreme than before, where it is below `degrees` or above 180 less
+ * that. */
+static void assert_no_worse(const extremes *before, const extremes *after, double degrees)
+{
+    assert_true(after->least >= fmin(before->least, degrees));
+    assert_true(after->most <= fmax(before->most, 180 - degrees));
+}
+
 /* What the improver remembers is so. */
 static void check_memory(const tm_improver *m)
 {
@@ -101,8 +109,7 @@ static void operate_on(bool regions, tm_tet_measure measure, size_t done[TM_IMPR
     }
     tm_improve_finish(&m);
     extremes angles_after = angles_of(&mesh);
-    assert_true(angles_after.least >= angles_before.least);
-    assert_true(angles_after.most <= angles_before.most);
+    assert_no_worse(&angles_before, &angles_after, options.angle);
     for (int op = 0; op < TM_IMPROVE_OPS; op++)
         done[op] += report.done.op[op];
     assert_int_equal(tm_tet_mesh_to_stream(&mesh, &stream, &error), TM_OK);
@@ -160,10 +167,11 @@ static tm_improve_report run(tm_tet_mesh *mesh, const tm_improve_options *option
     invariants after = measure_invariants(mesh);
     assert_same_invariants(&before, &after);
     extremes angles_after = angles_of(mesh);
-    assert_true(angles_after.least >= angles_before.least);
-    assert_true(angles_after.most <= angles_before.most);
+    assert_no_worse(&angles_before, &angles_after, options->angle);
     assert_int_equal(report.tets_before, tets);
     assert_true(report.bad_after <= report.bad_before);
+    if (options->max_growth == 0 || options->max_growth >= 1)
+        assert_true(report.bad_after * tets <= report.bad_before * mesh->tets);
     double most = options->max_growth * (double)tets;
     if (options->max_growth > 0)
         assert_int_equal(report.too_large, (double)mesh->tets > most);
@@ -204,6 +212,62 @@ static void test_growth(void **state)
                                       .ops = TM_IMPROVE_ALL_OPS};
         tm_improve_report report = run(&mesh, &options);
         assert_int_equal(report.too_large, growths[k] == 0.01);
+        tm_tet_mesh_free(&mesh);
+        tm_stream_free(&stream);
+    }
+}
+
+/* The fixture's mesh with so many times its height. */
+static void make_box(tm_tet_mesh *mesh, tm_stream *stream, int n, double by,
+                     double height)
+{
+    make_mesh(mesh, stream, n, by, false);
+    for (size_t v = 0; v < mesh->nodes; v++) {
+        double *p = mesh->xyz[v];
+        p[2] *= height;
+        mesh->node_attribute[v] = p[0] + 2 * p[1] - p[2];
+    }
+}
+
+/* Bricks, each cut into 6: no angle is above 90 degrees, and those below a limit are only
+ * gone if larger ones are made. */
+static void test_bricks(void **state)
+{
+    (void)state;
+    const double heights[] = {0.5, 0.2};
+    for (size_t k = 0; k < sizeof heights / sizeof heights[0]; k++) {
+        tm_stream stream;
+        tm_tet_mesh mesh;
+        make_box(&mesh, &stream, 5, 0, heights[k]);
+        tm_improve_options options = {
+            .angle = 30, .measure = TM_MEASURE_DIHEDRAL, .ops = TM_IMPROVE_ALL_OPS};
+        tm_improve_report report = run(&mesh, &options);
+        assert_true(report.bad_before > mesh.tets / 4);
+        assert_true(report.bad_after < report.bad_before / 10);
+        tm_tet_mesh_free(&mesh);
+        tm_stream_free(&stream);
+    }
+}
+
+/* A mesh that is much too flat: contraction alone would leave a few tetrahedra, all bad.
+ */
+static void test_flat_mesh(void **state)
+{
+    (void)state;
+    const double heights[] = {0.1, 0.03, 0.01};
+    const double angles[] = {30, 45, 60};
+    for (int k = 0; k < 9; k++) {
+        tm_stream stream;
+        tm_tet_mesh mesh;
+        make_box(&mesh, &stream, 4, 0.9, heights[k % 3]);
+        size_t tets = mesh.tets;
+        tm_improve_options options = {.angle = angles[k / 3],
+                                      .measure =
+                                          k % 2 ? TM_MEASURE_VOLUME : TM_MEASURE_DIHEDRAL,
+                                      .ops = TM_IMPROVE_ALL_OPS};
+        tm_improve_report report = run(&mesh, &options);
+        assert_true(options.measure == TM_MEASURE_VOLUME || report.bad_after == 0 ||
+                    mesh.tets > tets / 2);
         tm_tet_mesh_free(&mesh);
         tm_stream_free(&stream);
     }
@@ -269,6 +333,8 @@ int main(void)
         cmocka_unit_test(test_operations_with_regions),
         cmocka_unit_test(test_every_palette),
         cmocka_unit_test(test_growth),
+        cmocka_unit_test(test_bricks),
+        cmocka_unit_test(test_flat_mesh),
         cmocka_unit_test(test_deterministic),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -14,6 +14,9 @@ static const double insertion_price = 0.1, kick_price = -1, kick_price_most = -4
  * converge, this least one. */
 static const double enough_gain = 0.05, least_gain = 0.002;
 
+/* Where passes leave this share of the tetrahedra, and bad ones, there are too few. */
+static const double fewest = 0.5;
+
 enum { PASSES_MAX = 8, KICKS_MAX = 1000, FEW = 100, MANY = 1000 };
 
 /* Kicks that fail one after the other differ within a cycle; `wider_by` is in degrees. */
@@ -48,6 +51,16 @@ static size_t count_bad(const tm_improver *m)
     for (uint32_t t = 0; t < m->mesh->slots; t++)
         bad += is_bad(m, t);
     return bad;
+}
+
+/* What a tetrahedron costs on the average. */
+static double mean_cost(const tm_improver *m)
+{
+    double sum = 0;
+    for (uint32_t t = 0; t < m->mesh->slots; t++)
+        if (is_bad(m, t))
+            sum += tm_cost_of(&m->cost, m->quality[t]);
+    return m->mesh->tets > 0 ? sum / (double)m->mesh->tets : 0;
 }
 
 /* Whether anything around t has changed since it was tried. */
@@ -119,6 +132,7 @@ static void run_pass(tm_improver *m, tm_improve_phase phase)
 {
     if (is_over(m) || !find_targets(m))
         return;
+    m->mean = mean_cost(m);
     tell_pass(m);
     for (size_t k = 0; k < m->targets && m->status == TM_OK; k++) {
         uint32_t t = m->target[k];
@@ -129,21 +143,54 @@ static void run_pass(tm_improver *m, tm_improve_phase phase)
     m->report->passes++;
 }
 
-/* Whether so many bad ones are enough less than before. */
-static bool is_gain(size_t before, size_t after, double share)
+/* Whether that is enough less than before. */
+static bool is_gain(double before, double after, double share)
 {
-    return (double)after < (1 - share) * (double)before;
+    return after < (1 - share) * before;
+}
+
+/* How bad the mesh is, with so many bad tetrahedra. */
+static double badness_of(const tm_improver *m, size_t bad)
+{
+    double tets = (double)m->mesh->tets, full = (double)m->full_size;
+    return tets > 0 ? (double)bad * fmax(1, full / tets) : 0;
+}
+
+/* Whether a pass took away the good: it left fewer tetrahedra than there were, and these
+ * cost more on the average, or are few. */
+static bool is_emptied(const tm_improver *m, size_t tets, double mean)
+{
+    double left = (double)m->mesh->tets, now = mean_cost(m);
+    return left < (double)tets &&
+           (now > mean || (now > 0 && left < fewest * (double)m->full_size));
+}
+
+/* A pass. Where it takes away the good, it is undone, and tetrahedra are worth something
+ * from then on. */
+static void run_thrifty_pass(tm_improver *m, tm_improve_phase phase)
+{
+    size_t tets = m->mesh->tets;
+    double mean = mean_cost(m);
+    bool watched = phase > TM_PHASE_MOVE && !m->thrifty;
+    if (watched)
+        tm_improve_snapshot(m, &m->earlier, count_bad(m), 0);
+    run_pass(m, phase);
+    if (!watched || !is_emptied(m, tets, mean))
+        return;
+    tm_improve_restore(m, &m->earlier);
+    m->thrifty = true;
+    run_pass(m, phase);
 }
 
 /* Passes until one gains too little. */
 static void settle(tm_improver *m, tm_improve_phase phase, double price)
 {
-    size_t before, after = count_bad(m);
+    double before, after = badness_of(m, count_bad(m));
     tm_improve_set_price(m, price);
     for (int k = 0; k < PASSES_MAX && after > 0 && !is_over(m); k++) {
         before = after;
-        run_pass(m, phase);
-        after = count_bad(m);
+        run_thrifty_pass(m, phase);
+        after = badness_of(m, count_bad(m));
         if (!is_gain(before, after, enough_gain))
             break;
     }
@@ -175,16 +222,40 @@ static void coarsen(tm_improver *m)
     settle(m, TM_PHASE_SHRINK, 0);
 }
 
-/* Keeps the mesh if it is the best so far, or goes back to that. Returns how many are
- * bad. */
-static size_t snapshot_best(tm_improver *m)
+/* Those that the report calls bad: by their angles. */
+static size_t count_bad_angles(const tm_improver *m)
 {
+    const tm_tet_mesh *mesh = m->mesh;
+    const double(*x)[3] = (const double(*)[3])mesh->xyz;
+    double limit = tm_bad_sine2(m->options->angle);
+    size_t bad = 0;
+    for (uint32_t t = 0; t < mesh->slots; t++) {
+        const uint32_t *n = mesh->tet[t];
+        bad += tm_tet_lives(mesh, t) &&
+               tm_tet_sine2(x[n[0]], x[n[1]], x[n[2]], x[n[3]]) < limit;
+    }
+    return bad;
+}
+
+/* Whether the mesh is no worse than the input by its angles, whatever the measure is. */
+static bool keeps_angles(const tm_improver *m)
+{
+    return m->cost.measure == TM_MEASURE_DIHEDRAL ||
+           badness_of(m, count_bad_angles(m)) <= m->angle_badness;
+}
+
+/* Keeps the mesh if it is the best so far, or goes back to that. Returns how bad it is.
+ */
+static double snapshot_best(tm_improver *m)
+{
+    bool is_first = m->best.bad == SIZE_MAX;
     size_t bad = count_bad(m);
-    if (bad > m->best.bad)
+    double badness = badness_of(m, bad);
+    if (is_first || (badness < m->best.badness && keeps_angles(m)))
+        tm_improve_snapshot(m, &m->best, bad, badness);
+    else if (badness > m->best.badness || !keeps_angles(m))
         tm_improve_restore(m, &m->best);
-    if (bad < m->best.bad)
-        tm_improve_snapshot(m, &m->best, bad);
-    return m->best.bad;
+    return m->best.badness;
 }
 
 /* A pass at a price per tetrahedron that may be below 0: operations that add some are
@@ -209,9 +280,9 @@ static void kick(tm_improver *m)
 {
     bool converge = m->options->converge;
     double price = kick_price;
-    size_t after = snapshot_best(m);
+    double after = snapshot_best(m);
     for (int k = 0; k < KICKS_MAX && after > 0 && !is_over(m); k++) {
-        size_t before = after;
+        double before = after;
         if (!kick_once(m, price))
             break;
         if (m->fails % 2 == 0)
@@ -223,7 +294,7 @@ static void kick(tm_improver *m)
             m->fails = 0;
             continue;
         }
-        if ((after > FEW && !converge) || ++m->fails == FAILS_MAX)
+        if ((m->best.bad > FEW && !converge) || ++m->fails == FAILS_MAX)
             break;
         price = price > kick_price_most ? price * 2 : kick_price;
     }
@@ -256,7 +327,7 @@ static void climb(tm_improver *m, double first, double last)
     double reached = first;
     while (reached < last && count_bad(m) == 0 && !is_over(m)) {
         double degrees = fmin(reached + step, last);
-        tm_improve_snapshot(m, &m->reached, 0);
+        tm_improve_snapshot(m, &m->reached, 0, 0);
         tm_improve_set_target(m, degrees);
         reach(m);
         if (count_bad(m) > 0) {
@@ -278,30 +349,15 @@ static void run(tm_improver *m)
     const double first = 30, last = m->options->angle;
     m->input.bad = SIZE_MAX;
     if (first < last && m->mesh->tets <= m->most_tets)
-        tm_improve_snapshot(m, &m->input, count_bad(m));
+        tm_improve_snapshot(m, &m->input, count_bad(m), badness_of(m, count_bad(m)));
     tm_improve_set_target(m, fmin(first, last));
     reach(m);
     if (first >= last)
         return;
     climb(m, first, last);
     tm_improve_set_target(m, last);
-    if (count_bad(m) > m->input.bad)
+    if (m->input.bad != SIZE_MAX && badness_of(m, count_bad(m)) > m->input.badness)
         tm_improve_restore(m, &m->input);
-}
-
-/* Those that the report calls bad: by their angles. */
-static size_t count_bad_angles(const tm_improver *m)
-{
-    const tm_tet_mesh *mesh = m->mesh;
-    const double(*x)[3] = (const double(*)[3])mesh->xyz;
-    double limit = tm_bad_sine2(m->options->angle);
-    size_t bad = 0;
-    for (uint32_t t = 0; t < mesh->slots; t++) {
-        const uint32_t *n = mesh->tet[t];
-        bad += tm_tet_lives(mesh, t) &&
-               tm_tet_sine2(x[n[0]], x[n[1]], x[n[2]], x[n[3]]) < limit;
-    }
-    return bad;
 }
 
 tm_status tm_improve(tm_tet_mesh *mesh, const tm_improve_options *options,
@@ -313,6 +369,8 @@ tm_status tm_improve(tm_tet_mesh *mesh, const tm_improve_options *options,
     tm_status status = tm_improve_start(m, mesh, options, report, error);
     if (status == TM_OK) {
         report->bad_before = count_bad_angles(m);
+        m->angle_badness =
+            mesh->tets <= m->most_tets ? badness_of(m, report->bad_before) : HUGE_VAL;
         run(m);
         status = m->status;
         report->bad_after = count_bad_angles(m);

@@ -155,11 +155,13 @@ static void note_all(tm_improver *m)
             note(m, t);
 }
 
-void tm_improve_snapshot(tm_improver *m, tm_improve_state *state, size_t bad)
+void tm_improve_snapshot(tm_improver *m, tm_improve_state *state, size_t bad,
+                         double badness)
 {
     if (m->status != TM_OK)
         return;
     state->bad = bad;
+    state->badness = badness;
     state->done = m->report->done;
     m->status = tm_tet_mesh_copy(&state->mesh, m->mesh, m->error);
     if (m->status == TM_OK && !tm_features_copy(&state->features, &m->features))
@@ -183,7 +185,7 @@ void tm_improve_forbid(tm_improver *m, double degrees)
     tm_angle_limits_narrow(&m->cost.limits, degrees);
 }
 
-/* No angle may be more extreme than those of the mesh. */
+/* No angle may be bad and more extreme than those of the mesh. */
 static void find_limits(tm_improver *m)
 {
     const double(*x)[3] = (const double(*)[3])m->mesh->xyz;
@@ -192,6 +194,7 @@ static void find_limits(tm_improver *m)
         const uint32_t *n = m->mesh->tet[t];
         tm_angle_limits_include(&m->cost.limits, x[n[0]], x[n[1]], x[n[2]], x[n[3]]);
     }
+    tm_angle_limits_widen(&m->cost.limits, m->options->angle);
 }
 
 tm_status tm_improve_start(tm_improver *m, tm_tet_mesh *mesh,
@@ -204,6 +207,7 @@ tm_status tm_improve_start(tm_improver *m, tm_tet_mesh *mesh,
     tm_progress_tell(options->progress, &m->at);
     *report = (tm_improve_report){.tets_before = mesh->tets};
     m->most_tets = tm_tet_mesh_most(mesh, options->max_growth);
+    m->full_size = mesh->tets < m->most_tets ? mesh->tets : m->most_tets;
     m->cost.measure = m->options->measure;
     m->cost.weight = cost_weight;
     m->status = tm_features_find(&m->features, mesh, &m->marks, m->error);
@@ -230,7 +234,7 @@ void tm_improve_finish(tm_improver *m)
         free(list[k]);
     free(m->quality);
     free(m->node);
-    tm_improve_state *state[] = {&m->best, &m->reached, &m->input};
+    tm_improve_state *state[] = {&m->best, &m->earlier, &m->reached, &m->input};
     for (size_t k = 0; k < sizeof state / sizeof state[0]; k++) {
         tm_tet_mesh_free(&state[k]->mesh);
         tm_features_free(&state[k]->features);

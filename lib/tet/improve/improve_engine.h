@@ -23,7 +23,8 @@ typedef struct tm_improve_state {
     tm_tet_mesh mesh;
     tm_features features;
     tm_improve_counts done;
-    size_t bad; /* tetrahedra; SIZE_MAX: nothing is kept */
+    size_t bad;     /* tetrahedra; SIZE_MAX: nothing is kept */
+    double badness; /* see tm_improver.full_size */
 } tm_improve_state;
 
 typedef struct tm_improver {
@@ -37,6 +38,8 @@ typedef struct tm_improver {
     tm_cost cost;
     double degrees;   /* the target, by the angle or, for volume, a hundredth of it */
     double price;     /* of one more tetrahedron; negative to kick */
+    double mean;      /* cost of a tetrahedron, when the pass began */
+    bool thrifty;     /* that is what one is worth while the mesh is below full_size */
     unsigned fails;   /* kicks without success, since one had it */
     size_t most_tets; /* the mesh never grows beyond */
 
@@ -51,7 +54,14 @@ typedef struct tm_improver {
     size_t node_room;
     uint32_t change; /* counts them */
 
+    /* States are compared by their bad tetrahedra, times this by all of them where these
+     * are fewer: so neither the count nor the share of bad ones gets worse, and neither
+     * growth nor what takes away the good looks like a gain. */
+    size_t full_size;     /* tetrahedra of the input, or that it may keep */
+    double angle_badness; /* of the input by its angles: the most that is allowed */
+
     tm_improve_state best;    /* for this target, so far */
+    tm_improve_state earlier; /* before the pass */
     tm_improve_state reached; /* the last target that left nothing bad */
     tm_improve_state input;   /* where there are several targets */
 
@@ -85,8 +95,9 @@ double tm_improve_target(const tm_improver *m, double degrees);
 /* Sets the target; the price is 0 then. */
 void tm_improve_set_target(tm_improver *m, double degrees);
 
-/* Keeps the mesh, which has so many bad tetrahedra. */
-void tm_improve_snapshot(tm_improver *m, tm_improve_state *state, size_t bad);
+/* Keeps the mesh, which has so many bad tetrahedra and is so bad by them. */
+void tm_improve_snapshot(tm_improver *m, tm_improve_state *state, size_t bad,
+                         double badness);
 
 /* Goes back to the mesh that was kept. */
 void tm_improve_restore(tm_improver *m, const tm_improve_state *state);
@@ -130,6 +141,15 @@ bool tm_improve_no_memory(tm_improver *m);
 static inline bool tm_improve_has(const tm_improver *m, tm_improve_op op)
 {
     return (m->options->ops >> op & 1) != 0;
+}
+
+/* What it costs that the mesh has so many tetrahedra more, beside what these cost. Where
+ * it is thrifty, the sum of all costs for each tetrahedron has to fall, not the sum: else
+ * an empty mesh is the best. */
+static inline double tm_improve_growth_cost(const tm_improver *m, ptrdiff_t growth)
+{
+    double worth = m->thrifty && m->mesh->tets < m->full_size ? m->mean : 0;
+    return (m->price - worth) * (double)growth;
 }
 
 /* Whether the mesh may have so many tetrahedra more. */
