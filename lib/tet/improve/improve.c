@@ -7,21 +7,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Prices of a tetrahedron: those at which insertions begin, and at which a kick ends. */
-static const double insertion_price = 0.1, kick_price = -1, kick_price_most = -4;
+/* Prices of a tetrahedron: those at which insertions begin, and of a kick. */
+static const double insertion_price = 0.1, kick_price = -1;
 
-/* Passes and kicks go on while each leaves this share of the bad tetrahedra less; to
- * converge, this least one. */
-static const double enough_gain = 0.05, least_gain = 0.002;
+/* Passes go on while each leaves this share of the bad tetrahedra less, kicks of all of
+ * them too while it is much, and those of one after the other; to converge, this least
+ * one. */
+static const double enough_gain = 0.05, much_gain = 0.1, least_gain = 0.002;
+
+/* Of what was tried before, so much is tried by kicks of one after the other; to
+ * converge. */
+static const double local_share = 0.6, converging_share = 2;
 
 /* Where passes leave this share of the tetrahedra, and bad ones, there are too few. */
 static const double fewest = 0.5;
 
-enum { PASSES_MAX = 8, KICKS_MAX = 1000, FEW = 100, MANY = 1000 };
-
-/* Kicks that fail one after the other differ within a cycle; `wider_by` is in degrees. */
-enum { CYCLE = 12, FAILS_MAX = 3 * CYCLE };
-static const double wider_by = 1.5;
+enum { PASSES_MAX = 8, KICKS_MAX = 1000 };
 
 /* The table of operations, as far as it says when what is tried. */
 #define ROW(op, name, key, effect, phase, function)                                      \
@@ -40,7 +41,7 @@ static bool has_phase(const tm_improver *m, tm_improve_phase phase)
     return false;
 }
 
-static bool is_bad(const tm_improver *m, uint32_t t)
+bool tm_improve_is_bad(const tm_improver *m, uint32_t t)
 {
     return tm_tet_lives(m->mesh, t) && m->quality[t] < m->cost.target;
 }
@@ -49,7 +50,7 @@ static size_t count_bad(const tm_improver *m)
 {
     size_t bad = 0;
     for (uint32_t t = 0; t < m->mesh->slots; t++)
-        bad += is_bad(m, t);
+        bad += tm_improve_is_bad(m, t);
     return bad;
 }
 
@@ -58,13 +59,12 @@ static double mean_cost(const tm_improver *m)
 {
     double sum = 0;
     for (uint32_t t = 0; t < m->mesh->slots; t++)
-        if (is_bad(m, t))
+        if (tm_improve_is_bad(m, t))
             sum += tm_cost_of(&m->cost, m->quality[t]);
     return m->mesh->tets > 0 ? sum / (double)m->mesh->tets : 0;
 }
 
-/* Whether anything around t has changed since it was tried. */
-static bool is_due(const tm_improver *m, uint32_t t)
+bool tm_improve_is_due(const tm_improver *m, uint32_t t)
 {
     const uint32_t *n = m->mesh->tet[t];
     uint32_t tried = m->tried[t];
@@ -72,9 +72,7 @@ static bool is_due(const tm_improver *m, uint32_t t)
            m->changed[n[2]] > tried || m->changed[n[3]] > tried;
 }
 
-/* The bad tetrahedra that are due, along a space-filling curve; false where memory is
- * out. */
-static bool find_targets(tm_improver *m)
+bool tm_improve_find_targets(tm_improver *m, bool all)
 {
     const tm_tet_mesh *mesh = m->mesh;
     size_t bad = count_bad(m), count = 0;
@@ -82,7 +80,7 @@ static bool find_targets(tm_improver *m)
     uint32_t *target = tm_grow(m->target, &m->target_room, bad + 1, sizeof *target);
     m->target = target ? target : m->target;
     for (uint32_t t = 0; t < mesh->slots && placed; t++)
-        if (is_bad(m, t) && is_due(m, t))
+        if (tm_improve_is_bad(m, t) && (all || tm_improve_is_due(m, t)))
             placed[count++] = (tm_curve_point){
                 tm_space_position(&m->space, mesh->xyz[mesh->tet[t][0]]), t};
     bool done = placed && target && tm_space_sort(placed, count);
@@ -94,10 +92,10 @@ static bool find_targets(tm_improver *m)
     return done || tm_improve_no_memory(m);
 }
 
-/* Tries the operations of a phase until something is done. */
-static bool try_on(tm_improver *m, uint32_t t, tm_improve_phase phase)
+bool tm_improve_try_on(tm_improver *m, uint32_t t, tm_improve_phase phase)
 {
     bool (*tried)(tm_improver *, uint32_t) = NULL;
+    m->tries++;
     for (int op = 0; op < TM_IMPROVE_OPS; op++) {
         if (operation[op].phase > phase || operation[op].try == tried ||
             !tm_improve_has(m, (tm_improve_op)op))
@@ -109,8 +107,7 @@ static bool try_on(tm_improver *m, uint32_t t, tm_improve_phase phase)
     return false;
 }
 
-/* Whether no pass is left. */
-static bool is_over(const tm_improver *m)
+bool tm_improve_is_over(const tm_improver *m)
 {
     return m->status != TM_OK ||
            (m->options->passes > 0 && m->report->passes >= m->options->passes);
@@ -118,7 +115,7 @@ static bool is_over(const tm_improver *m)
 
 /* A pass begins. Of bad tetrahedra it is told how many the result has, if there were no
  * more. */
-static void tell_pass(tm_improver *m)
+void tm_improve_tell_pass(tm_improver *m)
 {
     tm_progress_at *at = &m->at;
     at->pass = m->report->passes + 1;
@@ -130,14 +127,15 @@ static void tell_pass(tm_improver *m)
 /* Tries all bad tetrahedra once. */
 static void run_pass(tm_improver *m, tm_improve_phase phase)
 {
-    if (is_over(m) || !find_targets(m))
+    if (tm_improve_is_over(m) || !tm_improve_find_targets(m, false))
         return;
     m->mean = mean_cost(m);
-    tell_pass(m);
+    tm_improve_tell_pass(m);
     for (size_t k = 0; k < m->targets && m->status == TM_OK; k++) {
         uint32_t t = m->target[k];
         tm_progress_step(m->options->progress, &m->at, k);
-        if (is_bad(m, t) && is_due(m, t) && !try_on(m, t, phase))
+        if (tm_improve_is_bad(m, t) && tm_improve_is_due(m, t) &&
+            !tm_improve_try_on(m, t, phase))
             m->tried[t] = m->change + 1;
     }
     m->report->passes++;
@@ -149,11 +147,14 @@ static bool is_gain(double before, double after, double share)
     return after < (1 - share) * before;
 }
 
-/* How bad the mesh is, with so many bad tetrahedra. */
+double tm_improve_badness(const tm_improver *m, size_t tets, size_t bad)
+{
+    return tets > 0 ? (double)bad * fmax(1, (double)m->full_size / (double)tets) : 0;
+}
+
 static double badness_of(const tm_improver *m, size_t bad)
 {
-    double tets = (double)m->mesh->tets, full = (double)m->full_size;
-    return tets > 0 ? (double)bad * fmax(1, full / tets) : 0;
+    return tm_improve_badness(m, m->mesh->tets, bad);
 }
 
 /* Whether a pass took away the good: it left fewer tetrahedra than there were, and these
@@ -187,7 +188,7 @@ static void settle(tm_improver *m, tm_improve_phase phase, double price)
 {
     double before, after = badness_of(m, count_bad(m));
     tm_improve_set_price(m, price);
-    for (int k = 0; k < PASSES_MAX && after > 0 && !is_over(m); k++) {
+    for (int k = 0; k < PASSES_MAX && after > 0 && !tm_improve_is_over(m); k++) {
         before = after;
         run_thrifty_pass(m, phase);
         after = badness_of(m, count_bad(m));
@@ -258,47 +259,32 @@ static double snapshot_best(tm_improver *m)
     return m->best.badness;
 }
 
-/* A pass at a price per tetrahedron that may be below 0: operations that add some are
- * then done although nothing else gets better. Where a cycle of such passes has failed,
- * what is nearly bad is worked on too; false where that is too many. */
-static bool kick_once(tm_improver *m, double price)
-{
-    unsigned cycle = m->fails / CYCLE;
-    double target = m->cost.target;
-    tm_improve_set_price(m, price);
-    m->cost.target = tm_improve_target(m, m->degrees + wider_by * cycle);
-    bool cheap = cycle == 0 || m->options->converge || count_bad(m) <= MANY;
-    if (cheap)
-        run_pass(m, TM_PHASE_ALL);
-    m->cost.target = target;
-    return cheap;
-}
-
-/* Kicks, and after each what is good for the mesh again; as long as that leaves fewer bad
- * ones. For few of them it is cheap to insist. */
+/* Passes at a price per tetrahedron below 0: operations that add some are then done
+ * although nothing else gets better; and after each what is good for the mesh again. As
+ * long as that leaves much less bad. */
 static void kick(tm_improver *m)
 {
-    bool converge = m->options->converge;
-    double price = kick_price;
-    double after = snapshot_best(m);
-    for (int k = 0; k < KICKS_MAX && after > 0 && !is_over(m); k++) {
-        double before = after;
-        if (!kick_once(m, price))
-            break;
-        if (m->fails % 2 == 0)
-            settle(m, TM_PHASE_MOVE, 0);
+    double before, after = snapshot_best(m);
+    for (int k = 0; k < KICKS_MAX && after > 0 && !tm_improve_is_over(m); k++) {
+        before = after;
+        tm_improve_set_price(m, kick_price);
+        run_pass(m, TM_PHASE_ALL);
+        settle(m, TM_PHASE_MOVE, 0);
         settle(m, TM_PHASE_ALL, 0);
         after = snapshot_best(m);
         m->report->kicks++;
-        if (is_gain(before, after, converge ? least_gain : enough_gain)) {
-            m->fails = 0;
-            continue;
-        }
-        if ((m->best.bad > FEW && !converge) || ++m->fails == FAILS_MAX)
-            break;
-        price = price > kick_price_most ? price * 2 : kick_price;
+        if (!is_gain(before, after, much_gain))
+            return;
     }
-    m->fails = 0;
+}
+
+/* The same around one bad tetrahedron after the other. */
+static void kick_locally(tm_improver *m)
+{
+    double share = m->options->converge ? converging_share : local_share;
+    if (m->best.bad > 0)
+        tm_improve_kick_locally(m, m->options->converge ? least_gain : enough_gain,
+                                (size_t)(share * (double)m->tries));
 }
 
 /* Everything for one target. */
@@ -315,6 +301,7 @@ static void reach(tm_improver *m)
         settle(m, TM_PHASE_ALL, insertion_price);
         settle(m, TM_PHASE_ALL, 0);
         kick(m);
+        kick_locally(m);
     }
     snapshot_best(m);
 }
@@ -325,7 +312,7 @@ static void climb(tm_improver *m, double first, double last)
 {
     const double step = 1;
     double reached = first;
-    while (reached < last && count_bad(m) == 0 && !is_over(m)) {
+    while (reached < last && count_bad(m) == 0 && !tm_improve_is_over(m)) {
         double degrees = fmin(reached + step, last);
         tm_improve_snapshot(m, &m->reached, 0, 0);
         tm_improve_set_target(m, degrees);

@@ -54,8 +54,10 @@ static bool reserve_tets(tm_improver *m, size_t needed)
     if (needed <= m->tet_room)
         return true;
     if (!grow(&m->quality, m->tet_room, room, sizeof *m->quality) ||
-        !grow(&m->tried, m->tet_room, room, sizeof *m->tried))
+        !grow(&m->tried, m->tet_room, room, sizeof *m->tried) ||
+        !grow(&m->stubborn, m->tet_room, room, sizeof *m->stubborn))
         return false;
+    memset(m->stubborn + m->tet_room, 0, (room - m->tet_room) * sizeof *m->stubborn);
     m->tet_room = room;
     return true;
 }
@@ -104,8 +106,11 @@ static void note(tm_improver *m, uint32_t t)
 void tm_improve_note(tm_improver *m, const uint32_t *created, size_t count)
 {
     m->change++;
-    for (size_t k = 0; k < count; k++)
+    for (size_t k = 0; k < count; k++) {
         note(m, created[k]);
+        if (m->recording && !tm_mesh_part_add(&m->changes, m->mesh, created[k]))
+            tm_improve_no_memory(m);
+    }
 }
 
 double tm_improve_old_cost(const tm_improver *m, const uint32_t *old, size_t count,
@@ -228,8 +233,8 @@ tm_status tm_improve_start(tm_improver *m, tm_tet_mesh *mesh,
 
 void tm_improve_finish(tm_improver *m)
 {
-    uint32_t *list[] = {m->tet_at,    m->changed, m->smoothed, m->contracted,
-                        m->swallowed, m->created, m->target,   m->tried};
+    uint32_t *list[] = {m->tet_at,  m->changed, m->smoothed, m->contracted, m->swallowed,
+                        m->created, m->target,  m->tried,    m->stubborn,   m->cluster};
     for (size_t k = 0; k < sizeof list / sizeof list[0]; k++)
         free(list[k]);
     free(m->quality);
@@ -239,6 +244,7 @@ void tm_improve_finish(tm_improver *m)
         tm_tet_mesh_free(&state[k]->mesh);
         tm_features_free(&state[k]->features);
     }
+    tm_mesh_part_free(&m->changes);
     tm_features_free(&m->features);
     tm_tet_marks_free(&m->marks);
     tm_tet_marks_free(&m->seen);

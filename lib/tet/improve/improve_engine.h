@@ -12,6 +12,7 @@
 #include "../operation/edge_removal.h"
 #include "../operation/face_removal.h"
 #include "../operation/features.h"
+#include "../operation/mesh_part.h"
 #include "../operation/replacement.h"
 #include "../star.h"
 
@@ -40,13 +41,14 @@ typedef struct tm_improver {
     double price;     /* of one more tetrahedron; negative to kick */
     double mean;      /* cost of a tetrahedron, when the pass began */
     bool thrifty;     /* that is what one is worth while the mesh is below full_size */
-    unsigned fails;   /* kicks without success, since one had it */
+    unsigned fails;   /* rounds of local kicks; they differ by it */
     size_t most_tets; /* the mesh never grows beyond */
 
     /* By tetrahedron: its quality by cost.measure; the change after which it was tried.
      */
     double *quality;
     uint32_t *tried;
+    uint32_t *stubborn; /* kicks without success */
     size_t tet_room;
     /* By node: a tetrahedron that has it; the last change around it; the changes after
      * which it was tried. */
@@ -61,7 +63,9 @@ typedef struct tm_improver {
     double angle_badness; /* of the input by its angles: the most that is allowed */
 
     tm_improve_state best;    /* for this target, so far */
-    tm_improve_state earlier; /* before the pass */
+    tm_improve_state earlier; /* before the pass, or the kick of one tetrahedron */
+    tm_mesh_part changes;     /* since that kick began */
+    bool recording;           /* of what changes */
     tm_improve_state reached; /* the last target that left nothing bad */
     tm_improve_state input;   /* where there are several targets */
 
@@ -81,6 +85,9 @@ typedef struct tm_improver {
     size_t made_room;
     uint32_t *target;
     size_t targets, target_room;
+    uint32_t *cluster; /* bad tetrahedra that are kicked together */
+    size_t cluster_size, cluster_room;
+    size_t tries; /* of a tetrahedron: how much was done */
 } tm_improver;
 
 /* What is known of a mesh that is to be improved. tm_improve_finish() in any case. */
@@ -102,16 +109,43 @@ void tm_improve_snapshot(tm_improver *m, tm_improve_state *state, size_t bad,
 /* Goes back to the mesh that was kept. */
 void tm_improve_restore(tm_improver *m, const tm_improve_state *state);
 
+/* What a pass tries: what neither adds nor removes nodes; what makes the mesh smaller
+ * too; all. */
+typedef enum { TM_PHASE_MOVE, TM_PHASE_SHRINK, TM_PHASE_ALL } tm_improve_phase;
+
+/* Kicks bad tetrahedra one after the other, and after each does what is good for the mesh
+ * around it; what does not make the mesh less bad is undone. The mesh is the best so far.
+ * Ends after some rounds that gain less than the share `enough` each, or so many tries.
+ */
+void tm_improve_kick_locally(tm_improver *m, double enough, size_t tries);
+
+/* Whether no pass is left. */
+bool tm_improve_is_over(const tm_improver *m);
+
+/* A pass over m->target begins. */
+void tm_improve_tell_pass(tm_improver *m);
+
+bool tm_improve_is_bad(const tm_improver *m, uint32_t t);
+
+/* Whether anything around t has changed since it was tried. */
+bool tm_improve_is_due(const tm_improver *m, uint32_t t);
+
+/* Lists the bad tetrahedra in m->target, those that are due or all, along a space-filling
+ * curve; false where memory is out. */
+bool tm_improve_find_targets(tm_improver *m, bool all);
+
+/* Tries the operations of a phase on t until something is done. */
+bool tm_improve_try_on(tm_improver *m, uint32_t t, tm_improve_phase phase);
+
+/* How bad a mesh of so many tetrahedra is with so many bad ones: see full_size. */
+double tm_improve_badness(const tm_improver *m, size_t tets, size_t bad);
+
 /* From here on no operation makes an angle below so many degrees, or above 180 less
  * that. */
 void tm_improve_forbid(tm_improver *m, double degrees);
 
 /* The price of a tetrahedron; all may be tried again. */
 void tm_improve_set_price(tm_improver *m, double price);
-
-/* What a pass tries: what neither adds nor removes nodes; what makes the mesh smaller
- * too; all. */
-typedef enum { TM_PHASE_MOVE, TM_PHASE_SHRINK, TM_PHASE_ALL } tm_improve_phase;
 
 /* The functions of the table: each tries its operations on tetrahedron t, or at its
  * nodes; whether one was done. */
