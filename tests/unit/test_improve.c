@@ -153,6 +153,70 @@ static void test_operations_with_regions(void **state)
     operate_on_some(true);
 }
 
+static void assert_same_mesh(const tm_tet_mesh *a, const tm_tet_mesh *b)
+{
+    assert_int_equal(a->tets, b->tets);
+    assert_int_equal(a->slots, b->slots);
+    assert_int_equal(a->nodes, b->nodes);
+    assert_int_equal(a->faces, b->faces);
+    assert_int_equal(a->edge_of.count, b->edge_of.count);
+    for (uint32_t t = 0; t < a->slots; t++) {
+        assert_int_equal(tm_tet_lives(a, t), tm_tet_lives(b, t));
+        if (!tm_tet_lives(a, t))
+            continue;
+        assert_memory_equal(a->tet[t], b->tet[t], sizeof a->tet[t]);
+        assert_memory_equal(a->neighbour[t], b->neighbour[t], sizeof a->neighbour[t]);
+    }
+    for (uint32_t v = 0; v < a->nodes; v++) {
+        assert_int_equal(tm_node_lives(a, v), tm_node_lives(b, v));
+        if (tm_node_lives(a, v))
+            assert_memory_equal(a->xyz[v], b->xyz[v], sizeof a->xyz[v]);
+    }
+    for (size_t f = 0; f < a->faces; f++)
+        assert_memory_equal(a->face[f].node, b->face[f].node, sizeof a->face[f].node);
+}
+
+/* What some operations changed is kept in a copy, or undone, and all is as it was. */
+static void test_parts(void **state)
+{
+    (void)state;
+    enum { ROUNDS = 200, OPERATIONS = 12 };
+    tm_stream stream;
+    tm_tet_mesh mesh, kept = {0};
+    tm_features features = {0};
+    tm_error error = {0};
+    tm_improve_report report;
+    static tm_improver m;
+    tm_improve_options options = {
+        .angle = 45, .measure = TM_MEASURE_DIHEDRAL, .ops = TM_IMPROVE_ALL_OPS};
+    make_mesh(&mesh, &stream, GRID, 0.9, true);
+    assert_int_equal(tm_improve_start(&m, &mesh, &options, &report, &error), TM_OK);
+    assert_int_equal(tm_tet_mesh_copy(&kept, &mesh, &error), TM_OK);
+    assert_true(tm_features_copy(&features, &m.features));
+    for (int k = 0; k < ROUNDS; k++) {
+        tm_mesh_part_clear(&m.changes);
+        m.recording = true;
+        for (int i = 0; i < OPERATIONS; i++)
+            operate(&m);
+        m.recording = false;
+        assert_true(tm_mesh_part_close(&m.changes, &mesh, &kept, &m.marks));
+        tm_tet_mesh *to = k % 3 ? &mesh : &kept, *from = k % 3 ? &kept : &mesh;
+        assert_int_equal(tm_mesh_part_copy(&m.changes, to, from, &error), TM_OK);
+        assert_true(k % 3 ? tm_features_copy(&m.features, &features)
+                          : tm_features_copy(&features, &m.features));
+        assert_same_mesh(&mesh, &kept);
+        assert_valid(&mesh);
+        for (uint32_t t = 0; t < mesh.slots; t++)
+            if (tm_tet_lives(&mesh, t))
+                tm_improve_note(&m, &t, 1);
+    }
+    tm_improve_finish(&m);
+    tm_features_free(&features);
+    tm_tet_mesh_free(&kept);
+    tm_tet_mesh_free(&mesh);
+    tm_stream_free(&stream);
+}
+
 /* A whole run. */
 static tm_improve_report run(tm_tet_mesh *mesh, const tm_improve_options *options)
 {
@@ -331,6 +395,7 @@ int main(void)
         cmocka_unit_test(test_features),
         cmocka_unit_test(test_operations),
         cmocka_unit_test(test_operations_with_regions),
+        cmocka_unit_test(test_parts),
         cmocka_unit_test(test_every_palette),
         cmocka_unit_test(test_growth),
         cmocka_unit_test(test_bricks),
