@@ -483,8 +483,12 @@ static void summarise(const settings *o, const result *r, size_t tets, char *tex
     size_t bad_after = is_improve ? r->improve.bad_after : r->lepp.bad_after;
     double before = tm_percent(bad_before, tets_before);
     if (r->changes == 0)
-        snprintf(text, size, "nothing to %s: %zu tetrahedra, %.2f%% bad",
-                 has_sizes(o) ? "refine" : "improve", tets, before);
+        snprintf(text, size, "%s%s: %zu tetrahedra, %.2f%% bad",
+                 bad_before > 0 && !has_sizes(o) ? "nothing found that helps" : "nothing to ",
+                 has_sizes(o)     ? "refine"
+                 : bad_before > 0 ? ""
+                                  : "improve",
+                 tets, before);
     else
         snprintf(text, size, "%zu -> %zu tetrahedra, %.2f%% -> %.2f%% bad; ", tets_before,
                  tets, before, tm_percent(bad_after, tets));

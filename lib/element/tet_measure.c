@@ -62,6 +62,13 @@ void tm_angle_limits_include(tm_angle_limits *limits, const double a[3],
     find_safe(limits);
 }
 
+void tm_angle_limits_widen(tm_angle_limits *limits, double degrees)
+{
+    limits->least = fmin(limits->least, degrees);
+    limits->most = fmax(limits->most, straight_angle - degrees);
+    find_safe(limits);
+}
+
 void tm_angle_limits_narrow(tm_angle_limits *limits, double degrees)
 {
     limits->least = fmax(limits->least, degrees);

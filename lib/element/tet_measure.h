@@ -65,7 +65,7 @@ static inline double tm_gain_bound(const tm_gain *gain, double value)
     return bound > DBL_MIN ? bound : DBL_MIN;
 }
 
-/* Limits of dihedral angles that an improver keeps: the extreme ones of its input. */
+/* Limits of dihedral angles that an improver keeps. */
 typedef struct tm_angle_limits {
     double least, most; /* degrees */
     double safe;        /* a tm_tet_sine2() from which on no angle is beyond */
@@ -77,6 +77,9 @@ tm_angle_limits tm_angle_limits_none(void);
 /* Widens the limits so that they hold for abcd. */
 void tm_angle_limits_include(tm_angle_limits *limits, const double a[3],
                              const double b[3], const double c[3], const double d[3]);
+
+/* Widens the limits to degrees … 180 - degrees where they are narrower. */
+void tm_angle_limits_widen(tm_angle_limits *limits, double degrees);
 
 /* Narrows the limits to degrees … 180 - degrees where they are wider. */
 void tm_angle_limits_narrow(tm_angle_limits *limits, double degrees);

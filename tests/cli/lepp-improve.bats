@@ -163,7 +163,7 @@ assert after["min_dihedral"] >= before["min_dihedral"] - 1e-9
 END
         lepp-improve -a selective --no-history "$out/1.tm" >"$out/2.tm" 2>"$out/err"
         cmp "$out/1.tm" "$out/2.tm"
-        grep -q '^lepp-improve: nothing to improve: ' "$out/err"
+        grep -q '^lepp-improve: nothing \(to improve\|found that helps\): ' "$out/err"
     done
 }
 
@@ -174,13 +174,15 @@ END
             # shellcheck disable=SC2086 # words
             lepp-improve -q --json "$out/json" --max-growth $growth $options "$mesh.tm" \
                 >"$out/1.tm"
-            python3 - "$out/json" "$growth" <<'END'
+            python3 - "$out/json" "$growth" "$options" <<'END'
 import json, sys
 run = json.load(open(sys.argv[1]))
 before, after, growth = run["before"], run["after"], float(sys.argv[2])
+words = sys.argv[3].split()
+limit = float(words[words.index("-t") + 1]) if "-t" in words else 30
 assert after["bad_percent"] * after["tets"] <= before["bad_percent"] * before["tets"]
-assert after["min_dihedral"] >= before["min_dihedral"]
-assert after["max_dihedral"] <= before["max_dihedral"]
+assert after["min_dihedral"] >= min(before["min_dihedral"], limit)
+assert after["max_dihedral"] <= max(before["max_dihedral"], 180 - limit)
 assert after["tets"] <= growth * before["tets"]
 assert abs(after["volume"] / before["volume"] - 1) < 1e-12
 END
@@ -201,6 +203,96 @@ END
     [ "$status" -eq 1 ]
     [ "${lines[-1]}" = .end ]
     [[ $stderr == *"could not be made as small as --max-growth says"* ]]
+}
+
+# Prints a grid of bricks of 1 x 1 x $1, each cut into 6 tetrahedra.
+bricks() {
+    awk -v height="$1" 'BEGIN {
+        n = 5; m = n + 1
+        print "termesh 1\n.node"
+        print m * m * m, 3, 0, 0
+        for (i = 0; i < m * m * m; i++)
+            print i, i % m, int(i / m) % m, height * int(i / m / m)
+        print ".ele"
+        print 6 * n * n * n, 4, 0
+        split("0137 0327 0267 0647 0457 0517", tet, " ")
+        for (z = 0; z < n; z++) for (y = 0; y < n; y++) for (x = 0; x < n; x++)
+            for (k = 1; k <= 6; k++) {
+                row = t++
+                for (i = 1; i <= 4; i++) {
+                    c = substr(tet[k], i, 1)
+                    row = row " " ((z + int(c / 4)) * m + y + int(c / 2) % 2) * m + x + c % 2
+                }
+                print row
+            }
+        print ".end"
+    }'
+}
+
+# Points in a slab of that thickness, joined to tetrahedra.
+slab() {
+    awk -v height="$1" 'BEGIN {
+        srand(3)
+        print 300, 3
+        for (i = 0; i < 300; i++) print i, rand(), rand(), height * rand()
+    }' | tetgen-mesh --no-history
+}
+
+@test "improve: never worse than the input, and than a part of the operations by far" {
+    local mesh options
+    bricks 0.5 >"$out/bricks.tm"
+    bricks 0.05 >"$out/flat.tm"
+    slab 0.03 >"$out/slab.tm"
+    slab 0.01 >"$out/thin.tm"
+    for mesh in "$out"/{bricks,flat,slab,thin}.tm points.tm; do
+        while read -r options; do
+            # shellcheck disable=SC2086 # words
+            lepp-improve -q --json "$out/json" $options "$mesh" >"$out/1.tm"
+            python3 - "$out/json" "$options" <<'END'
+import json, sys
+run, words = json.load(open(sys.argv[1])), sys.argv[2].split()
+before, after = run["before"], run["after"]
+limit = float(words[words.index("-t") + 1]) if "-t" in words else 30
+assert after["bad_percent"] <= before["bad_percent"]
+assert after["bad_percent"] * after["tets"] <= before["bad_percent"] * before["tets"] + 1e-6
+assert after["min_dihedral"] >= min(before["min_dihedral"], limit) - 1e-9
+assert after["max_dihedral"] <= max(before["max_dihedral"], 180 - limit) + 1e-9
+END
+        done <<'END'
+
+-t 20
+-t 45
+-t 60
+-Q volume
+-t 60 -Q volume --max-growth 1
+--ops contraction
+--ops contraction,smoothing -t 60
+--ops insertion,face-removal
+END
+    done
+    # Contraction does not take away what is good.
+    for mesh in slab thin; do
+        lepp-improve -q --json "$out/all" "$out/$mesh.tm" >"$out/1.tm"
+        lepp-improve -q --json "$out/some" "$out/$mesh.tm" \
+            --ops edge-removal,boundary-swap,face-removal,smoothing,insertion >"$out/1.tm"
+        python3 - "$out/all" "$out/some" <<'END'
+import json, sys
+full, part = (json.load(open(name)) for name in sys.argv[1:])
+assert full["after"]["tets"] > 0.5 * full["before"]["tets"]
+assert full["after"]["bad_percent"] <= part["after"]["bad_percent"] + 1
+END
+    done
+    lepp-improve -q --json "$out/json" "$out/bricks.tm" >"$out/1.tm"
+    [ "$(json "$out/json" after bad_percent | cut -d . -f 1)" -lt 5 ]
+}
+
+@test "what is bad and stays so is told from what is not bad" {
+    bricks 0.5 >"$out/bricks.tm"
+    run --separate-stderr lepp-improve --ops boundary-swap -t 20 "$out/bricks.tm"
+    [[ $stderr == "lepp-improve: nothing to improve: 750 tetrahedra, 0.00% bad" ]]
+    run --separate-stderr lepp-improve --ops boundary-swap "$out/bricks.tm"
+    [[ $stderr == "lepp-improve: nothing found that helps: 750 tetrahedra, 66.67% bad" ]]
+    [[ ${lines[1]} == "# lepp-improve "*": nothing found that helps: "* ]]
 }
 
 @test "improve: where nothing is bad nothing changes; JSON tells what was done" {

@@ -29,6 +29,15 @@ static extremes angles_of(const tm_tet_mesh *mesh)
     return e;
 }
 
+/* No angle is more extreme than before, where it is below `degrees` or above 180 less
+ * that. */
+static void assert_no_worse(const extremes *before, const extremes *after, double degrees)
+{
+    const double rounding = 1e-9; /* by the order of nodes */
+    assert_true(after->least >= fmin(before->least, degrees) - rounding);
+    assert_true(after->most <= fmax(before->most, 180 - degrees) + rounding);
+}
+
 /* What the improver remembers is so. */
 static void check_memory(const tm_improver *m)
 {
@@ -170,9 +179,7 @@ static void operate_on(bool regions, tm_tet_measure measure, size_t done[TM_IMPR
     }
     tm_improve_finish(&m);
     extremes angles_after = angles_of(&mesh);
-    const double rounding = 1e-12; /* by the order of nodes */
-    assert_true(angles_after.least >= angles_before.least - rounding);
-    assert_true(angles_after.most <= angles_before.most + rounding);
+    assert_no_worse(&angles_before, &angles_after, options.angle);
     for (int op = 0; op < TM_IMPROVE_OPS; op++)
         done[op] += report.done.op[op];
     assert_int_equal(tm_tet_mesh_to_stream(&mesh, &stream, &error), TM_OK);
@@ -228,6 +235,70 @@ static void test_operations_within(void **state)
     }
 }
 
+static void assert_same_mesh(const tm_tet_mesh *a, const tm_tet_mesh *b)
+{
+    assert_int_equal(a->tets, b->tets);
+    assert_int_equal(a->slots, b->slots);
+    assert_int_equal(a->nodes, b->nodes);
+    assert_int_equal(a->faces, b->faces);
+    assert_int_equal(a->edge_of.count, b->edge_of.count);
+    for (uint32_t t = 0; t < a->slots; t++) {
+        assert_int_equal(tm_tet_lives(a, t), tm_tet_lives(b, t));
+        if (!tm_tet_lives(a, t))
+            continue;
+        assert_memory_equal(a->tet[t], b->tet[t], sizeof a->tet[t]);
+        assert_memory_equal(a->neighbour[t], b->neighbour[t], sizeof a->neighbour[t]);
+    }
+    for (uint32_t v = 0; v < a->nodes; v++) {
+        assert_int_equal(tm_node_lives(a, v), tm_node_lives(b, v));
+        if (tm_node_lives(a, v))
+            assert_memory_equal(a->xyz[v], b->xyz[v], sizeof a->xyz[v]);
+    }
+    for (size_t f = 0; f < a->faces; f++)
+        assert_memory_equal(a->face[f].node, b->face[f].node, sizeof a->face[f].node);
+}
+
+/* What some operations changed is kept in a copy, or undone, and all is as it was. */
+static void test_parts(void **state)
+{
+    (void)state;
+    enum { ROUNDS = 200, OPERATIONS = 12 };
+    tm_stream stream;
+    tm_tet_mesh mesh, kept = {0};
+    tm_features features = {0};
+    tm_error error = {0};
+    tm_improve_report report;
+    static tm_improver m;
+    tm_improve_options options = {
+        .angle = 45, .measure = TM_MEASURE_DIHEDRAL, .ops = TM_IMPROVE_ALL_OPS};
+    make_mesh(&mesh, &stream, GRID, 0.9, true);
+    assert_int_equal(tm_improve_start(&m, &mesh, &options, &report, &error), TM_OK);
+    assert_int_equal(tm_tet_mesh_copy(&kept, &mesh, &error), TM_OK);
+    assert_true(tm_features_copy(&features, &m.features));
+    for (int k = 0; k < ROUNDS; k++) {
+        tm_mesh_part_clear(&m.changes);
+        m.recording = true;
+        for (int i = 0; i < OPERATIONS; i++)
+            operate(&m);
+        m.recording = false;
+        assert_true(tm_mesh_part_close(&m.changes, &mesh, &kept, &m.marks));
+        tm_tet_mesh *to = k % 3 ? &mesh : &kept, *from = k % 3 ? &kept : &mesh;
+        assert_int_equal(tm_mesh_part_copy(&m.changes, to, from, &error), TM_OK);
+        assert_true(k % 3 ? tm_features_copy(&m.features, &features)
+                          : tm_features_copy(&features, &m.features));
+        assert_same_mesh(&mesh, &kept);
+        assert_valid(&mesh);
+        for (uint32_t t = 0; t < mesh.slots; t++)
+            if (tm_tet_lives(&mesh, t))
+                tm_improve_note(&m, &t, 1);
+    }
+    tm_improve_finish(&m);
+    tm_features_free(&features);
+    tm_tet_mesh_free(&kept);
+    tm_tet_mesh_free(&mesh);
+    tm_stream_free(&stream);
+}
+
 /* A whole run. */
 static tm_improve_report run(tm_tet_mesh *mesh, const tm_improve_options *options)
 {
@@ -242,11 +313,11 @@ static tm_improve_report run(tm_tet_mesh *mesh, const tm_improve_options *option
     invariants after = measure_invariants(mesh);
     assert_same_invariants(&before, &after);
     extremes angles_after = angles_of(mesh);
-    const double rounding = 1e-12; /* by the order of nodes */
-    assert_true(angles_after.least >= angles_before.least - rounding);
-    assert_true(angles_after.most <= angles_before.most + rounding);
+    assert_no_worse(&angles_before, &angles_after, options->angle);
     assert_int_equal(report.tets_before, tets);
     assert_true(report.bad_after <= report.bad_before);
+    if (options->max_growth == 0 || options->max_growth >= 1)
+        assert_true(report.bad_after * tets <= report.bad_before * mesh->tets);
     double most = options->max_growth * (double)tets;
     if (options->max_growth > 0)
         assert_int_equal(report.too_large, (double)mesh->tets > most);
@@ -287,6 +358,62 @@ static void test_growth(void **state)
                                       .ops = TM_IMPROVE_ALL_OPS};
         tm_improve_report report = run(&mesh, &options);
         assert_int_equal(report.too_large, growths[k] == 0.01);
+        tm_tet_mesh_free(&mesh);
+        tm_stream_free(&stream);
+    }
+}
+
+/* The fixture's mesh with so many times its height. */
+static void make_box(tm_tet_mesh *mesh, tm_stream *stream, int n, double by,
+                     double height)
+{
+    make_mesh(mesh, stream, n, by, false);
+    for (size_t v = 0; v < mesh->nodes; v++) {
+        double *p = mesh->xyz[v];
+        p[2] *= height;
+        mesh->node_attribute[v] = p[0] + 2 * p[1] - p[2];
+    }
+}
+
+/* Bricks, each cut into 6: no angle is above 90 degrees, and those below a limit are only
+ * gone if larger ones are made. */
+static void test_bricks(void **state)
+{
+    (void)state;
+    const double heights[] = {0.5, 0.2};
+    for (size_t k = 0; k < sizeof heights / sizeof heights[0]; k++) {
+        tm_stream stream;
+        tm_tet_mesh mesh;
+        make_box(&mesh, &stream, 5, 0, heights[k]);
+        tm_improve_options options = {
+            .angle = 30, .measure = TM_MEASURE_DIHEDRAL, .ops = TM_IMPROVE_ALL_OPS};
+        tm_improve_report report = run(&mesh, &options);
+        assert_true(report.bad_before > mesh.tets / 4);
+        assert_true(report.bad_after < report.bad_before / 10);
+        tm_tet_mesh_free(&mesh);
+        tm_stream_free(&stream);
+    }
+}
+
+/* A mesh that is much too flat: contraction alone would leave a few tetrahedra, all bad.
+ */
+static void test_flat_mesh(void **state)
+{
+    (void)state;
+    const double heights[] = {0.1, 0.03, 0.01};
+    const double angles[] = {30, 45, 60};
+    for (int k = 0; k < 9; k++) {
+        tm_stream stream;
+        tm_tet_mesh mesh;
+        make_box(&mesh, &stream, 4, 0.9, heights[k % 3]);
+        size_t tets = mesh.tets;
+        tm_improve_options options = {.angle = angles[k / 3],
+                                      .measure =
+                                          k % 2 ? TM_MEASURE_VOLUME : TM_MEASURE_DIHEDRAL,
+                                      .ops = TM_IMPROVE_ALL_OPS};
+        tm_improve_report report = run(&mesh, &options);
+        assert_true(options.measure == TM_MEASURE_VOLUME || report.bad_after == 0 ||
+                    mesh.tets > tets / 2);
         tm_tet_mesh_free(&mesh);
         tm_stream_free(&stream);
     }
@@ -351,8 +478,11 @@ int main(void)
         cmocka_unit_test(test_operations),
         cmocka_unit_test(test_operations_with_regions),
         cmocka_unit_test(test_operations_within),
+        cmocka_unit_test(test_parts),
         cmocka_unit_test(test_every_palette),
         cmocka_unit_test(test_growth),
+        cmocka_unit_test(test_bricks),
+        cmocka_unit_test(test_flat_mesh),
         cmocka_unit_test(test_deterministic),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -8,18 +8,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Prices of a tetrahedron: those at which insertions begin, and at which a kick ends. */
-static const double insertion_price = 0.1, kick_price = -1, kick_price_most = -4;
+/* Prices of a tetrahedron: those at which insertions begin, and of a kick. */
+static const double insertion_price = 0.1, kick_price = -1;
 
-/* Passes and kicks go on while each leaves this share of the bad tetrahedra less; to
- * converge, this least one. */
-static const double enough_gain = 0.05, least_gain = 0.002;
+/* Passes go on while each leaves this share of the bad tetrahedra less, kicks of all of
+ * them too while it is much, and those of one after the other; to converge, this least
+ * one. */
+static const double enough_gain = 0.05, much_gain = 0.1, least_gain = 0.002;
 
-enum { PASSES_MAX = 8, KICKS_MAX = 1000, FEW = 100, MANY = 1000 };
+/* Of what was tried before, so much is tried by kicks of one after the other; to
+ * converge. */
+static const double local_share = 0.6, converging_share = 2;
 
-/* Kicks that fail one after the other differ within a cycle; `wider_by` is in degrees. */
-enum { CYCLE = 12, FAILS_MAX = 3 * CYCLE };
-static const double wider_by = 1.5;
+/* Where passes leave this share of the tetrahedra, and bad ones, there are too few. */
+static const double fewest = 0.5;
+
+enum { PASSES_MAX = 8, KICKS_MAX = 1000 };
 
 /* Work, see improve_engine.h: of a tetrahedron tried in a phase; by so many that are only
  * looked at. */
@@ -42,7 +46,7 @@ static bool has_phase(const tm_improver *m, tm_improve_phase phase)
     return false;
 }
 
-static bool is_bad(const tm_improver *m, uint32_t t)
+bool tm_improve_is_bad(const tm_improver *m, uint32_t t)
 {
     return tm_tet_lives(m->mesh, t) && m->quality[t] < m->cost.target &&
            tm_tet_is_in_set(m->mesh, t);
@@ -52,12 +56,21 @@ static size_t count_bad(const tm_improver *m)
 {
     size_t bad = 0;
     for (uint32_t t = 0; t < m->mesh->slots; t++)
-        bad += is_bad(m, t);
+        bad += tm_improve_is_bad(m, t);
     return bad;
 }
 
-/* Whether anything around t has changed since it was tried. */
-static bool is_due(const tm_improver *m, uint32_t t)
+/* What a tetrahedron costs on the average. */
+static double mean_cost(const tm_improver *m)
+{
+    double sum = 0;
+    for (uint32_t t = 0; t < m->mesh->slots; t++)
+        if (tm_improve_is_bad(m, t))
+            sum += tm_cost_of(&m->cost, m->quality[t]);
+    return m->mesh->tets > 0 ? sum / (double)m->mesh->tets : 0;
+}
+
+bool tm_improve_is_due(const tm_improver *m, uint32_t t)
 {
     const uint32_t *n = m->mesh->tet[t];
     uint32_t tried = m->tried[t];
@@ -65,9 +78,7 @@ static bool is_due(const tm_improver *m, uint32_t t)
            m->changed[n[2]] > tried || m->changed[n[3]] > tried;
 }
 
-/* The bad tetrahedra that are due, along a space-filling curve; false where memory is
- * out. */
-static bool find_targets(tm_improver *m)
+bool tm_improve_find_targets(tm_improver *m, bool all)
 {
     const tm_tet_mesh *mesh = m->mesh;
     size_t bad = count_bad(m), count = 0;
@@ -75,7 +86,7 @@ static bool find_targets(tm_improver *m)
     uint32_t *target = tm_grow(m->target, &m->target_room, bad + 1, sizeof *target);
     m->target = target ? target : m->target;
     for (uint32_t t = 0; t < mesh->slots && placed; t++)
-        if (is_bad(m, t) && is_due(m, t))
+        if (tm_improve_is_bad(m, t) && (all || tm_improve_is_due(m, t)))
             placed[count++] = (tm_curve_point){
                 tm_space_position(&m->space, mesh->xyz[mesh->tet[t][0]]), t};
     bool done = placed && target && tm_space_sort(placed, count);
@@ -90,6 +101,7 @@ static bool find_targets(tm_improver *m)
 bool tm_improve_try(tm_improver *m, uint32_t t, tm_improve_phase phase)
 {
     bool (*tried)(tm_improver *, uint32_t) = NULL;
+    m->tries++;
     for (int op = 0; op < TM_IMPROVE_OPS; op++) {
         if (operation[op].phase > phase || operation[op].try == tried ||
             !tm_improve_has(m, (tm_improve_op)op))
@@ -101,8 +113,7 @@ bool tm_improve_try(tm_improver *m, uint32_t t, tm_improve_phase phase)
     return false;
 }
 
-/* Whether no pass or no time is left. */
-static bool is_over(const tm_improver *m)
+bool tm_improve_is_over(const tm_improver *m)
 {
     return m->status != TM_OK || m->work >= m->work_most ||
            (m->options->passes > 0 && m->report->passes >= m->options->passes);
@@ -110,7 +121,7 @@ static bool is_over(const tm_improver *m)
 
 /* A pass begins. Of bad tetrahedra it is told how many the result has, if there were no
  * more. */
-static void tell_pass(tm_improver *m)
+void tm_improve_tell_pass(tm_improver *m)
 {
     tm_progress_at *at = &m->at;
     at->pass = m->report->passes + 1;
@@ -122,34 +133,72 @@ static void tell_pass(tm_improver *m)
 /* Tries all bad tetrahedra once. */
 static void run_pass(tm_improver *m, tm_improve_phase phase)
 {
-    if (is_over(m) || !find_targets(m))
+    if (tm_improve_is_over(m) || !tm_improve_find_targets(m, false))
         return;
-    tell_pass(m);
+    m->mean = mean_cost(m);
+    tm_improve_tell_pass(m);
     for (size_t k = 0; k < m->targets && m->status == TM_OK; k++) {
         uint32_t t = m->target[k];
         tm_progress_step(m->options->progress, &m->at, k);
-        if (is_bad(m, t) && is_due(m, t) && !tm_improve_try(m, t, phase))
+        if (tm_improve_is_bad(m, t) && tm_improve_is_due(m, t) &&
+            !tm_improve_try(m, t, phase))
             m->tried[t] = m->change + 1;
     }
     m->report->passes++;
     m->work += m->targets * work_of_try[phase] + m->mesh->slots / tets_scanned;
 }
 
-/* Whether so many bad ones are enough less than before. */
-static bool is_gain(size_t before, size_t after, double share)
+/* Whether that is enough less than before. */
+static bool is_gain(double before, double after, double share)
 {
-    return (double)after < (1 - share) * (double)before;
+    return after < (1 - share) * before;
+}
+
+double tm_improve_badness(const tm_improver *m, size_t tets, size_t bad)
+{
+    return tets > 0 ? (double)bad * fmax(1, (double)m->full_size / (double)tets) : 0;
+}
+
+static double badness_of(const tm_improver *m, size_t bad)
+{
+    return tm_improve_badness(m, m->mesh->tets, bad);
+}
+
+/* Whether a pass took away the good: it left fewer tetrahedra than there were, and these
+ * cost more on the average, or are few. */
+static bool is_emptied(const tm_improver *m, size_t tets, double mean)
+{
+    double left = (double)m->mesh->tets, now = mean_cost(m);
+    return left < (double)tets &&
+           (now > mean || (now > 0 && left < fewest * (double)m->full_size));
+}
+
+/* A pass. Where it takes away the good, it is undone, and tetrahedra are worth something
+ * from then on. */
+static void run_thrifty_pass(tm_improver *m, tm_improve_phase phase)
+{
+    size_t tets = m->mesh->tets;
+    double mean = mean_cost(m);
+    bool watched = phase > TM_PHASE_MOVE && !m->thrifty;
+    if (watched)
+        tm_improve_snapshot(m, &m->earlier, count_bad(m), 0);
+    run_pass(m, phase);
+    if (!watched || !is_emptied(m, tets, mean))
+        return;
+    tm_improve_restore(m, &m->earlier);
+    m->thrifty = true;
+    run_pass(m, phase);
 }
 
 /* Passes until one gains too little. */
 static void settle(tm_improver *m, tm_improve_phase phase, double price)
 {
-    size_t before, after = count_bad(m);
+    double before, after = badness_of(m, count_bad(m));
     tm_improve_set_price(m, price);
-    for (int k = 0; k < PASSES_MAX && after > 0 && !is_over(m); k++) {
+    for (int k = 0; k < PASSES_MAX && after > 0 && !tm_improve_is_over(m); k++) {
         before = after;
-        run_pass(m, phase);
-        after = count_bad(m);
+        run_thrifty_pass(m, phase);
+        after = badness_of(m, count_bad(m));
         if (!is_gain(before, after, enough_gain))
             break;
     }
@@ -181,59 +230,68 @@ static void coarsen(tm_improver *m)
     settle(m, TM_PHASE_SHRINK, 0);
 }
 
-/* Keeps the mesh if it is the best so far, or goes back to that. Returns how many are
- * bad. */
-static size_t snapshot_best(tm_improver *m)
+/* Those that the report calls bad: by their angles. */
+static size_t count_bad_angles(const tm_improver *m)
 {
+    const tm_tet_mesh *mesh = m->mesh;
+    const double(*x)[3] = (const double(*)[3])mesh->xyz;
+    double limit = tm_bad_sine2(m->options->angle);
+    size_t bad = 0;
+    for (uint32_t t = 0; t < mesh->slots; t++) {
+        const uint32_t *n = mesh->tet[t];
+        bad += tm_tet_lives(mesh, t) &&
+               tm_tet_sine2(x[n[0]], x[n[1]], x[n[2]], x[n[3]]) < limit;
+    }
+    return bad;
+}
+
+/* Whether the mesh is no worse than the input by its angles, whatever the measure is. */
+static bool keeps_angles(const tm_improver *m)
+{
+    return m->cost.measure == TM_MEASURE_DIHEDRAL ||
+           badness_of(m, count_bad_angles(m)) <= m->angle_badness;
+}
+
+/* Keeps the mesh if it is the best so far, or goes back to that. Returns how bad it is.
+ */
+static double snapshot_best(tm_improver *m)
+{
+    bool is_first = m->best.bad == SIZE_MAX;
     size_t bad = count_bad(m);
-    if (bad > m->best.bad)
+    double badness = badness_of(m, bad);
+    if (is_first || (badness < m->best.badness && keeps_angles(m)))
+        tm_improve_snapshot(m, &m->best, bad, badness);
+    else if (badness > m->best.badness || !keeps_angles(m))
         tm_improve_restore(m, &m->best);
-    if (bad < m->best.bad)
-        tm_improve_snapshot(m, &m->best, bad);
-    return m->best.bad;
+    return m->best.badness;
 }
 
-/* A pass at a price per tetrahedron that may be below 0: operations that add some are
- * then done although nothing else gets better. Where a cycle of such passes has failed,
- * what is nearly bad is worked on too; false where that is too many. */
-static bool kick_once(tm_improver *m, double price)
-{
-    unsigned cycle = m->fails / CYCLE;
-    double target = m->cost.target;
-    tm_improve_set_price(m, price);
-    m->cost.target = tm_improve_target(m, m->degrees + wider_by * cycle);
-    bool cheap = cycle == 0 || m->options->converge || count_bad(m) <= MANY;
-    if (cheap)
-        run_pass(m, TM_PHASE_ALL);
-    m->cost.target = target;
-    return cheap;
-}
-
-/* Kicks, and after each what is good for the mesh again; as long as that leaves fewer bad
- * ones. For few of them it is cheap to insist. */
+/* Passes at a price per tetrahedron below 0: operations that add some are then done
+ * although nothing else gets better; and after each what is good for the mesh again. As
+ * long as that leaves much less bad. */
 static void kick(tm_improver *m)
 {
-    bool converge = m->options->converge;
-    double price = kick_price;
-    size_t after = snapshot_best(m);
-    for (int k = 0; k < KICKS_MAX && after > 0 && !is_over(m); k++) {
-        size_t before = after;
-        if (!kick_once(m, price))
-            break;
-        if (m->fails % 2 == 0)
-            settle(m, TM_PHASE_MOVE, 0);
+    double before, after = snapshot_best(m);
+    for (int k = 0; k < KICKS_MAX && after > 0 && !tm_improve_is_over(m); k++) {
+        before = after;
+        tm_improve_set_price(m, kick_price);
+        run_pass(m, TM_PHASE_ALL);
+        settle(m, TM_PHASE_MOVE, 0);
         settle(m, TM_PHASE_ALL, 0);
         after = snapshot_best(m);
         m->report->kicks++;
-        if (is_gain(before, after, converge ? least_gain : enough_gain)) {
-            m->fails = 0;
-            continue;
-        }
-        if ((after > FEW && !converge) || ++m->fails == FAILS_MAX)
-            break;
-        price = price > kick_price_most ? price * 2 : kick_price;
+        if (!is_gain(before, after, much_gain))
+            return;
     }
-    m->fails = 0;
+}
+
+/* The same around one bad tetrahedron after the other. */
+static void kick_locally(tm_improver *m)
+{
+    double share = m->options->converge ? converging_share : local_share;
+    if (m->best.bad > 0)
+        tm_improve_kick_locally(m, m->options->converge ? least_gain : enough_gain,
+                                (size_t)(share * (double)m->tries));
 }
 
 /* Everything for one target. */
@@ -250,6 +308,7 @@ static void reach(tm_improver *m)
         settle(m, TM_PHASE_ALL, insertion_price);
         settle(m, TM_PHASE_ALL, 0);
         kick(m);
+        kick_locally(m);
     }
     snapshot_best(m);
 }
@@ -260,9 +319,9 @@ static void climb(tm_improver *m, double first, double last)
 {
     const double step = 1;
     double reached = first;
-    while (reached < last && count_bad(m) == 0 && !is_over(m)) {
+    while (reached < last && count_bad(m) == 0 && !tm_improve_is_over(m)) {
         double degrees = fmin(reached + step, last);
-        tm_improve_snapshot(m, &m->reached, 0);
+        tm_improve_snapshot(m, &m->reached, 0, 0);
         tm_improve_set_target(m, degrees);
         reach(m);
         if (count_bad(m) > 0) {
@@ -284,14 +343,14 @@ static void run(tm_improver *m)
     const double first = 30, last = m->options->angle;
     m->input.bad = SIZE_MAX;
     if (first < last && m->mesh->tets <= m->most_tets)
-        tm_improve_snapshot(m, &m->input, count_bad(m));
+        tm_improve_snapshot(m, &m->input, count_bad(m), badness_of(m, count_bad(m)));
     tm_improve_set_target(m, fmin(first, last));
     reach(m);
     if (first >= last)
         return;
     climb(m, first, last);
     tm_improve_set_target(m, last);
-    if (count_bad(m) > m->input.bad)
+    if (m->input.bad != SIZE_MAX && badness_of(m, count_bad(m)) > m->input.badness)
         tm_improve_restore(m, &m->input);
 }
 
@@ -306,26 +365,11 @@ static void run_all(tm_improver *m)
     run(m);
     tm_improve_worst(m, reach);
     m->options = options;
-    if (!options->converge || is_over(m))
+    if (!options->converge || tm_improve_is_over(m))
         return;
     tm_improve_set_target(m, options->angle);
     reach(m);
     tm_improve_worst(m, reach);
-}
-
-/* Those that the report calls bad: by their angles. */
-static size_t count_bad_angles(const tm_improver *m)
-{
-    const tm_tet_mesh *mesh = m->mesh;
-    const double(*x)[3] = (const double(*)[3])mesh->xyz;
-    double limit = tm_bad_sine2(m->options->angle);
-    size_t bad = 0;
-    for (uint32_t t = 0; t < mesh->slots; t++) {
-        const uint32_t *n = mesh->tet[t];
-        bad += tm_tet_lives(mesh, t) &&
-               tm_tet_sine2(x[n[0]], x[n[1]], x[n[2]], x[n[3]]) < limit;
-    }
-    return bad;
 }
 
 tm_status tm_improve(tm_tet_mesh *mesh, const tm_improve_options *options,
@@ -337,6 +381,8 @@ tm_status tm_improve(tm_tet_mesh *mesh, const tm_improve_options *options,
     tm_status status = tm_improve_start(m, mesh, options, report, error);
     if (status == TM_OK) {
         report->bad_before = count_bad_angles(m);
+        m->angle_badness =
+            mesh->tets <= m->most_tets ? badness_of(m, report->bad_before) : HUGE_VAL;
         run_all(m);
         status = m->status;
         report->bad_after = count_bad_angles(m);

@@ -91,12 +91,13 @@ typedef struct tm_improve_report {
     size_t patches, curves, corners;
 } tm_improve_report;
 
-/* Improves the mesh. The smallest and the largest dihedral angle never get worse; volume,
- * surface, regions and markers stay, but for the rounding of nodes that move in the
- * surface; with a tolerance the surface stays within that (tet/envelope/envelope.h). If
- * nothing is bad, angles above 30 degrees are reached one degree after the other. After
- * an error the mesh is still valid, improved as far as it got. Deterministic. In practice
- * O(tetrahedra). */
+/* Improves the mesh. The smallest and the largest dihedral angle never get worse but
+ * where they are still good; neither does the number of bad tetrahedra or their share,
+ * where the mesh need not become smaller. Volume, surface, regions and markers stay, but
+ * for the rounding of nodes that move in the surface; with a tolerance the surface stays
+ * within that (tet/envelope/envelope.h). If nothing is bad, angles above 30 degrees are
+ * reached one degree after the other. After an error the mesh is still valid, improved as
+ * far as it got. Deterministic. In practice O(tetrahedra). */
 tm_status tm_improve(tm_tet_mesh *mesh, const tm_improve_options *options,
                      tm_improve_report *report, tm_error *error);
 

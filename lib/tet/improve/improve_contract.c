@@ -53,10 +53,10 @@ static uint32_t best_neighbour(tm_improver *m)
             uint32_t b = ball->face[k][i];
             if (!tm_tet_mark(&m->seen, b) || !may_go_to(m, b))
                 continue;
-            double most = old - gain + m->price * (double)ball->size;
+            double most = old - gain + fmax(m->price, 0) * (double)ball->size;
             double cost = tm_contraction_cost(m->mesh, ball, b, moves_surface(m),
                                               &m->cost, least, most, &gone);
-            double gained = old - cost + m->price * (double)gone;
+            double gained = old - cost - tm_improve_growth_cost(m, -(ptrdiff_t)gone);
             if (gained > gain &&
                 (!moves_surface(m) || tm_improve_allows_contraction(m, b))) {
                 gain = gained;

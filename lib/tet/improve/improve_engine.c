@@ -66,8 +66,10 @@ static bool reserve_tets(tm_improver *m, size_t needed)
     if (needed <= m->tet_room)
         return true;
     if (!grow(&m->quality, m->tet_room, room, sizeof *m->quality) ||
-        !grow(&m->tried, m->tet_room, room, sizeof *m->tried))
+        !grow(&m->tried, m->tet_room, room, sizeof *m->tried) ||
+        !grow(&m->stubborn, m->tet_room, room, sizeof *m->stubborn))
         return false;
+    memset(m->stubborn + m->tet_room, 0, (room - m->tet_room) * sizeof *m->stubborn);
     m->tet_room = room;
     return true;
 }
@@ -117,8 +119,11 @@ static void note(tm_improver *m, uint32_t t)
 void tm_improve_note(tm_improver *m, const uint32_t *created, size_t count)
 {
     m->change++;
-    for (size_t k = 0; k < count; k++)
+    for (size_t k = 0; k < count; k++) {
         note(m, created[k]);
+        if (m->recording && !tm_mesh_part_add(&m->changes, m->mesh, created[k]))
+            tm_improve_no_memory(m);
+    }
 }
 
 double tm_improve_old_cost(const tm_improver *m, const uint32_t *old, size_t count,
@@ -168,12 +173,14 @@ static void note_all(tm_improver *m)
             note(m, t);
 }
 
-void tm_improve_snapshot(tm_improver *m, tm_improve_state *state, size_t bad)
+void tm_improve_snapshot(tm_improver *m, tm_improve_state *state, size_t bad,
+                         double badness)
 {
     if (m->status != TM_OK)
         return;
     state->bad = bad;
     m->work += m->mesh->slots / tets_kept;
+    state->badness = badness;
     state->done = m->report->done;
     m->status = tm_tet_mesh_copy(&state->mesh, m->mesh, m->error);
     if (m->status == TM_OK && !tm_features_copy(&state->features, &m->features))
@@ -198,7 +205,7 @@ void tm_improve_forbid(tm_improver *m, double degrees)
     tm_angle_limits_narrow(&m->cost.limits, degrees);
 }
 
-/* No angle may be more extreme than those of the mesh. */
+/* No angle may be bad and more extreme than those of the mesh. */
 static void find_limits(tm_improver *m)
 {
     const double(*x)[3] = (const double(*)[3])m->mesh->xyz;
@@ -207,6 +214,7 @@ static void find_limits(tm_improver *m)
         const uint32_t *n = m->mesh->tet[t];
         tm_angle_limits_include(&m->cost.limits, x[n[0]], x[n[1]], x[n[2]], x[n[3]]);
     }
+    tm_angle_limits_widen(&m->cost.limits, m->options->angle);
 }
 
 tm_status tm_improve_start(tm_improver *m, tm_tet_mesh *mesh,
@@ -220,6 +228,7 @@ tm_status tm_improve_start(tm_improver *m, tm_tet_mesh *mesh,
     *report = (tm_improve_report){.tets_before = mesh->tets};
     m->work_most = SIZE_MAX;
     m->most_tets = tm_tet_mesh_most(mesh, options->max_growth);
+    m->full_size = mesh->tets < m->most_tets ? mesh->tets : m->most_tets;
     m->cost.measure = m->options->measure;
     m->cost.weight = cost_weight;
     m->status =
@@ -251,17 +260,18 @@ tm_status tm_improve_start(tm_improver *m, tm_tet_mesh *mesh,
 
 void tm_improve_finish(tm_improver *m)
 {
-    uint32_t *list[] = {m->tet_at,    m->changed, m->smoothed, m->contracted,
-                        m->swallowed, m->created, m->target,   m->tried};
+    uint32_t *list[] = {m->tet_at,  m->changed, m->smoothed, m->contracted, m->swallowed,
+                        m->created, m->target,  m->tried,    m->stubborn,   m->cluster};
     for (size_t k = 0; k < sizeof list / sizeof list[0]; k++)
         free(list[k]);
     free(m->quality);
     free(m->node);
-    tm_improve_state *state[] = {&m->best, &m->reached, &m->input, &m->kept};
+    tm_improve_state *state[] = {&m->best, &m->earlier, &m->reached, &m->input, &m->kept};
     for (size_t k = 0; k < sizeof state / sizeof state[0]; k++) {
         tm_tet_mesh_free(&state[k]->mesh);
         tm_features_free(&state[k]->features);
     }
+    tm_mesh_part_free(&m->changes);
     tm_features_free(&m->features);
     tm_tet_marks_free(&m->marks);
     tm_tet_marks_free(&m->seen);

@@ -13,6 +13,7 @@
 #include "../operation/edge_removal.h"
 #include "../operation/face_removal.h"
 #include "../operation/features.h"
+#include "../operation/mesh_part.h"
 #include "../operation/replacement.h"
 #include "../star.h"
 
@@ -38,7 +39,8 @@ typedef struct tm_improve_state {
     tm_tet_mesh mesh;
     tm_features features;
     tm_improve_counts done;
-    size_t bad; /* tetrahedra; SIZE_MAX: nothing is kept */
+    size_t bad;     /* tetrahedra; SIZE_MAX: nothing is kept */
+    double badness; /* see tm_improver.full_size */
 } tm_improve_state;
 
 typedef struct tm_improver {
@@ -52,7 +54,9 @@ typedef struct tm_improver {
     tm_cost cost;
     double degrees; /* the target, by the angle or, for volume, a hundredth of it */
     double price;   /* of one more tetrahedron; negative to kick */
-    unsigned fails; /* kicks without success, since one had it */
+    double mean;    /* cost of a tetrahedron, when the pass began */
+    bool thrifty;   /* that is what one is worth while the mesh is below full_size */
+    unsigned fails; /* rounds of local kicks; they differ by it */
     bool last;      /* the worst ones are worked on: nothing made is as bad as they */
     size_t work;    /* some 20 µs each: tetrahedra tried, and what else takes time */
     size_t work_most;
@@ -62,6 +66,7 @@ typedef struct tm_improver {
      */
     double *quality;
     uint32_t *tried;
+    uint32_t *stubborn; /* kicks without success */
     size_t tet_room;
     /* By node: a tetrahedron that has it; the last change around it; the changes after
      * which it was tried. */
@@ -69,7 +74,16 @@ typedef struct tm_improver {
     size_t node_room;
     uint32_t change; /* counts them */
 
+    /* States are compared by their bad tetrahedra, times this by all of them where these
+     * are fewer: so neither the count nor the share of bad ones gets worse, and neither
+     * growth nor what takes away the good looks like a gain. */
+    size_t full_size;     /* tetrahedra of the input, or that it may keep */
+    double angle_badness; /* of the input by its angles: the most that is allowed */
+
     tm_improve_state best;    /* for this target, so far */
+    tm_improve_state earlier; /* before the pass, or the kick of one tetrahedron */
+    tm_mesh_part changes;     /* since that kick began */
+    bool recording;           /* of what changes */
     tm_improve_state reached; /* the last target that left nothing bad */
     tm_improve_state input;   /* where there are several targets */
     tm_improve_state kept;    /* before the worst ones were worked on */
@@ -95,6 +109,9 @@ typedef struct tm_improver {
     size_t made_room;
     uint32_t *target;
     size_t targets, target_room;
+    uint32_t *cluster; /* bad tetrahedra that are kicked together */
+    size_t cluster_size, cluster_room;
+    size_t tries; /* of a tetrahedron: how much was done */
 } tm_improver;
 
 /* What is known of a mesh that is to be improved. tm_improve_finish() in any case. */
@@ -109,18 +126,12 @@ double tm_improve_target(const tm_improver *m, double degrees);
 /* Sets the target; the price is 0 then. */
 void tm_improve_set_target(tm_improver *m, double degrees);
 
-/* Keeps the mesh, which has so many bad tetrahedra. */
-void tm_improve_snapshot(tm_improver *m, tm_improve_state *state, size_t bad);
+/* Keeps the mesh, which has so many bad tetrahedra and is so bad by them. */
+void tm_improve_snapshot(tm_improver *m, tm_improve_state *state, size_t bad,
+                         double badness);
 
 /* Goes back to the mesh that was kept. */
 void tm_improve_restore(tm_improver *m, const tm_improve_state *state);
-
-/* From here on no operation makes an angle below so many degrees, or above 180 less
- * that. */
-void tm_improve_forbid(tm_improver *m, double degrees);
-
-/* The price of a tetrahedron; all may be tried again. */
-void tm_improve_set_price(tm_improver *m, double price);
 
 /* What a pass tries: what neither adds nor removes nodes; what makes the mesh smaller
  * too; what makes it larger; what takes long. */
@@ -131,8 +142,39 @@ typedef enum {
     TM_PHASE_LAST
 } tm_improve_phase;
 
+/* Kicks bad tetrahedra one after the other, and after each does what is good for the mesh
+ * around it; what does not make the mesh less bad is undone. The mesh is the best so far.
+ * Ends after some rounds that gain less than the share `enough` each, or so many tries.
+ */
+void tm_improve_kick_locally(tm_improver *m, double enough, size_t tries);
+
+/* Whether no pass is left. */
+bool tm_improve_is_over(const tm_improver *m);
+
+/* A pass over m->target begins. */
+void tm_improve_tell_pass(tm_improver *m);
+
+bool tm_improve_is_bad(const tm_improver *m, uint32_t t);
+
+/* Whether anything around t has changed since it was tried. */
+bool tm_improve_is_due(const tm_improver *m, uint32_t t);
+
+/* Lists the bad tetrahedra in m->target, those that are due or all, along a space-filling
+ * curve; false where memory is out. */
+bool tm_improve_find_targets(tm_improver *m, bool all);
+
 /* Tries the operations of a phase on t until something is done. */
 bool tm_improve_try(tm_improver *m, uint32_t t, tm_improve_phase phase);
+
+/* How bad a mesh of so many tetrahedra is with so many bad ones: see full_size. */
+double tm_improve_badness(const tm_improver *m, size_t tets, size_t bad);
+
+/* From here on no operation makes an angle below so many degrees, or above 180 less
+ * that. */
+void tm_improve_forbid(tm_improver *m, double degrees);
+
+/* The price of a tetrahedron; all may be tried again. */
+void tm_improve_set_price(tm_improver *m, double price);
 
 /* All that is done for one target. */
 typedef void tm_improve_reach(tm_improver *m);
@@ -172,7 +214,7 @@ double tm_improve_old_cost(const tm_improver *m, const uint32_t *old, size_t cou
 bool tm_improve_no_memory(tm_improver *m);
 
 /* Changes of a surface that may move (features.may_move), each asked about as it is
- * planned. What was allowed last is in m->change_of_surface. */
+ * planned; none is allowed while changes are recorded to be undone. What was allowed last is in m->change_of_surface. */
 
 /* Whether the edge of m->star, which is in a patch, may be swapped; its parts. */
 bool tm_improve_allows_swap(tm_improver *m, const tm_star *part, int parts);
@@ -207,6 +249,15 @@ void tm_improve_follow_surface(tm_improver *m);
 static inline bool tm_improve_has(const tm_improver *m, tm_improve_op op)
 {
     return (m->options->ops >> op & 1) != 0;
+}
+
+/* What it costs that the mesh has so many tetrahedra more, beside what these cost. Where
+ * it is thrifty, the sum of all costs for each tetrahedron has to fall, not the sum: else
+ * an empty mesh is the best. */
+static inline double tm_improve_growth_cost(const tm_improver *m, ptrdiff_t growth)
+{
+    double worth = m->thrifty && m->mesh->tets < m->full_size ? m->mean : 0;
+    return (m->price - worth) * (double)growth;
 }
 
 /* Whether the mesh may have so many tetrahedra more. */

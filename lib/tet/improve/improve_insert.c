@@ -65,7 +65,7 @@ static double plan_cavity(tm_improver *m, uint32_t t, unsigned e, double needed,
         tm_cavity_boundary_climb(&boundary, m->cost.measure, &anywhere, enough, STEPS, p);
     double old = tm_improve_old_cost(m, m->cavity.tet, m->cavity.size, &least);
     ptrdiff_t growth = (ptrdiff_t)m->cavity.faces - (ptrdiff_t)m->cavity.size;
-    double most = old - m->price * (double)growth - needed;
+    double most = old - tm_improve_growth_cost(m, growth) - needed;
     double cost = tm_cavity_boundary_cost(&boundary, &m->cost, p, least, most);
     return cost < most && tm_improve_may_grow(m, growth) ? most + needed - cost : 0;
 }

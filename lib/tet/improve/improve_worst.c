@@ -93,7 +93,7 @@ static bool raise_worst(tm_improver *m, tm_improve_reach *reach, double degrees,
         return false;
     if (!m->options->converge && !are_few(m, count_below(m, low, &worst), low_share))
         return false;
-    tm_improve_snapshot(m, &m->kept, bad);
+    tm_improve_snapshot(m, &m->kept, bad, 0);
     lower_and_raise(m, reach, degrees, work_most);
     size_t after = count_below(m, m->cost.target, &raised);
     if (after <= bad && raised >= worst && (after < bad || raised > worst))

@@ -170,7 +170,7 @@ static tm_status run(tm_lepp_engine *e)
     return status == TM_OK ? improve_all(e) : status;
 }
 
-/* Finds the extreme angles of the mesh. */
+/* No angle may be bad and more extreme than those of the mesh. */
 static void measure_angles(tm_lepp_engine *e)
 {
     const tm_tet_mesh *mesh = e->mesh;
@@ -182,6 +182,7 @@ static void measure_angles(tm_lepp_engine *e)
             tm_angle_limits_include(&e->sweeper.limits, x[n[0]], x[n[1]], x[n[2]],
                                     x[n[3]]);
     }
+    tm_angle_limits_widen(&e->sweeper.limits, e->options->angle);
 }
 
 static tm_status start(tm_lepp_engine *e)

@@ -48,6 +48,12 @@ bool tm_features_copy(tm_features *to, const tm_features *from)
     return true;
 }
 
+void tm_features_copy_node(tm_features *to, const tm_features *from, uint32_t node)
+{
+    to->dimension[node] = from->dimension[node];
+    memcpy(to->line[node], from->line[node], sizeof to->line[node]);
+}
+
 static uint32_t third_node(const tm_constrained_face *face, uint32_t a, uint32_t b)
 {
     for (int i = 0; i < 2; i++)

@@ -40,6 +40,9 @@ bool tm_features_reserve(tm_features *features, size_t nodes, size_t faces);
  * was, where memory is out. */
 bool tm_features_copy(tm_features *to, const tm_features *from);
 
+/* Makes a node of *to what it is in *from; both have room for it. */
+void tm_features_copy_node(tm_features *to, const tm_features *from, uint32_t node);
+
 /* How the node of a ball may move. */
 tm_freedom tm_features_freedom(const tm_features *features, const tm_tet_mesh *mesh,
                                const tm_ball *ball);
