@@ -24,6 +24,7 @@ void tm_envelope_free(tm_envelope *envelope)
     free(envelope->reach);
     free(envelope->place);
     free(envelope->flood);
+    free(envelope->entry);
     tm_edge_map_free(&envelope->curve);
     tm_tet_marks_free(&envelope->seen);
     *envelope = (tm_envelope){0};
@@ -31,7 +32,7 @@ void tm_envelope_free(tm_envelope *envelope)
 
 bool tm_envelope_reserve(tm_envelope *envelope, size_t faces, size_t nodes)
 {
-    enum { new_edges = 4 }; /* of an operation on a curve */
+    enum { new_edges = 4, entries_most = 16 }; /* of an operation on a curve */
     const size_t old = envelope->face_room, old_nodes = envelope->node_room;
     if (faces > old) {
         size_t room = old, same_room = old;
@@ -55,7 +56,10 @@ bool tm_envelope_reserve(tm_envelope *envelope, size_t faces, size_t nodes)
         envelope->place = place;
         envelope->node_room = room;
     }
-    return tm_edge_map_reserve(&envelope->curve, new_edges);
+    tm_envelope_entry *entry = tm_grow(envelope->entry, &envelope->entry_room,
+                                       envelope->entries + entries_most, sizeof *entry);
+    envelope->entry = entry ? entry : envelope->entry;
+    return entry && tm_edge_map_reserve(&envelope->curve, new_edges);
 }
 
 static void *copy(const void *from, size_t count, size_t size, bool *done)
@@ -93,6 +97,9 @@ bool tm_envelope_copy(tm_envelope *to, const tm_envelope *from)
     made.seen = to->seen;
     made.flood = to->flood;
     made.flood_room = to->flood_room;
+    made.recording = false;
+    made.entry = NULL;
+    made.entries = made.entry_room = 0;
     to->seen = (tm_tet_marks){0};
     to->flood = NULL;
     if (!done) {
@@ -108,6 +115,76 @@ bool tm_envelope_copy(tm_envelope *to, const tm_envelope *from)
     tm_envelope_free(to);
     *to = made;
     return true;
+}
+
+void tm_envelope_record(tm_envelope *envelope, bool on)
+{
+    envelope->recording = on;
+    envelope->entries = 0;
+}
+
+static void put_edge(tm_envelope *e, uint32_t a, uint32_t b, uint32_t curve)
+{
+    if (curve == TM_NONE)
+        tm_edge_map_remove(&e->curve, a, b);
+    else
+        tm_edge_map_put(&e->curve, a, b, curve);
+}
+
+void tm_envelope_put_edge(tm_envelope *envelope, uint32_t a, uint32_t b, uint32_t curve)
+{
+    const uint32_t *was = tm_edge_map_get(&envelope->curve, a, b);
+    if (envelope->recording)
+        envelope->entry[envelope->entries++] =
+            (tm_envelope_entry){TM_WAS_CURVE, {a, b}, was ? *was : TM_NONE, 0};
+    put_edge(envelope, a, b, curve);
+}
+
+void tm_envelope_put_node(tm_envelope *envelope, uint32_t v, double place)
+{
+    if (envelope->recording)
+        envelope->entry[envelope->entries++] =
+            (tm_envelope_entry){TM_WAS_PLACE, {v, v}, TM_NONE, envelope->place[v]};
+    envelope->place[v] = place;
+}
+
+static uint32_t *number_at(tm_envelope *e, int what, uint32_t i)
+{
+    return what == TM_WAS_BELOW   ? &e->below[i]
+           : what == TM_WAS_FIRST ? &e->first_kept[i]
+                                  : &e->next_kept[i];
+}
+
+/* Writes a number of one of the arrays; false where memory is out. */
+static bool put(tm_envelope *e, int what, uint32_t i, uint32_t number)
+{
+    uint32_t *at = number_at(e, what, i);
+    if (e->recording) {
+        tm_envelope_entry *entry =
+            tm_grow(e->entry, &e->entry_room, e->entries + 1, sizeof *entry);
+        if (!entry)
+            return false;
+        e->entry = entry;
+        entry[e->entries].what = what;
+        entry[e->entries].at[0] = i;
+        entry[e->entries++].was = *at;
+    }
+    *at = number;
+    return true;
+}
+
+void tm_envelope_undo(tm_envelope *envelope)
+{
+    tm_envelope *e = envelope;
+    while (e->entries > 0) {
+        const tm_envelope_entry *entry = &e->entry[--e->entries];
+        if (entry->what == TM_WAS_CURVE)
+            put_edge(e, entry->at[0], entry->at[1], entry->was);
+        else if (entry->what == TM_WAS_PLACE)
+            e->place[entry->at[0]] = entry->place;
+        else
+            *number_at(e, entry->what, entry->at[0]) = entry->was;
+    }
 }
 
 static tm_covered covered(const tm_envelope *e, const tm_tet_mesh *mesh,
@@ -232,43 +309,62 @@ bool tm_envelope_link_all(tm_envelope *e, const tm_tet_mesh *mesh)
     return true;
 }
 
+/* The nodes kept by the old faces, as one list. */
+static bool gather_kept(tm_envelope *e, const tm_surface_change *change, uint32_t *kept)
+{
+    *kept = TM_NONE;
+    for (size_t i = 0; i < change->olds; i++) {
+        for (uint32_t v = e->first_kept[change->old[i]], next; v != TM_NONE; v = next) {
+            next = e->next_kept[v];
+            if (!put(e, TM_WAS_NEXT, v, *kept))
+                return false;
+            *kept = v;
+        }
+        if (!put(e, TM_WAS_FIRST, change->old[i], TM_NONE))
+            return false;
+    }
+    return true;
+}
+
+/* Face `face` is new, or new there. */
+static bool place_face(tm_envelope *e, const tm_tet_mesh *mesh, uint32_t face,
+                       const uint32_t node[3], uint32_t below)
+{
+    tm_covered triangle = {{mesh->xyz[node[0]], mesh->xyz[node[1]], mesh->xyz[node[2]]},
+                           below};
+    if (!tm_envelope_covers(e, &triangle) || !put(e, TM_WAS_BELOW, face, e->flood[0]) ||
+        !put(e, TM_WAS_FIRST, face, TM_NONE))
+        return false;
+    for (size_t i = 0; i < e->flood_count; i++)
+        if (!add_link(e, mesh, e->flood[i], face, node))
+            return false;
+    return true;
+}
+
 bool tm_envelope_follow(tm_envelope *envelope, const tm_tet_mesh *mesh,
                         const tm_surface_change *change)
 {
     const size_t most = 4; /* times the links that there are */
     tm_envelope *e = envelope;
-    uint32_t from[TM_CHANGE_MOST], kept = TM_NONE, next;
+    uint32_t from[TM_CHANGE_MOST], kept, next;
     for (size_t k = 0; k < change->count; k++)
         from[k] = e->below[change->from[k]];
-    /* The nodes kept by old faces, as one list. */
-    for (size_t i = 0; i < change->olds; i++) {
-        for (uint32_t v = e->first_kept[change->old[i]]; v != TM_NONE; v = next) {
-            next = e->next_kept[v];
-            e->next_kept[v] = kept;
-            kept = v;
-        }
-        e->first_kept[change->old[i]] = TM_NONE;
-    }
-    for (size_t k = 0; k < change->count; k++) {
-        e->below[change->face[k]] = from[k];
-        e->first_kept[change->face[k]] = TM_NONE;
-        tm_covered triangle = covered(e, mesh, change->node[k], change->face[k]);
-        if (!tm_envelope_covers(e, &triangle))
+    if (!gather_kept(e, change, &kept))
+        return false;
+    for (size_t k = 0; k < change->count; k++)
+        if (!place_face(e, mesh, change->face[k], change->node[k], from[k]))
             return false;
-        e->below[change->face[k]] = e->flood[0];
-        for (size_t i = 0; i < e->flood_count; i++)
-            if (!add_link(e, mesh, e->flood[i], change->face[k], change->node[k]))
-                return false;
-    }
     for (uint32_t v = kept; v != TM_NONE; v = next) {
         double distance2;
         uint32_t face =
             change->face[nearest(mesh, change, e->reference->xyz[v], &distance2)];
         next = e->next_kept[v];
-        e->next_kept[v] = e->first_kept[face];
-        e->first_kept[face] = v;
+        if (!put(e, TM_WAS_NEXT, v, e->first_kept[face]) ||
+            !put(e, TM_WAS_FIRST, face, v))
+            return false;
     }
-    return e->links <= most * e->links_at_first || tm_envelope_link_all(e, mesh);
+    return e->recording || e->links <= most * e->links_at_first ||
+           tm_envelope_link_all(e, mesh);
 }
 
 void tm_envelope_onto_patch(const tm_envelope *envelope, uint32_t face, double p[3])

@@ -31,6 +31,15 @@ typedef struct tm_envelope_link {
     uint32_t face, next;
 } tm_envelope_link;
 
+/* What was written over, while changes are recorded: a number of one of the arrays, the
+ * curve of an edge, or the place of a node. */
+typedef struct tm_envelope_entry {
+    enum { TM_WAS_BELOW, TM_WAS_FIRST, TM_WAS_NEXT, TM_WAS_CURVE, TM_WAS_PLACE } what;
+    uint32_t at[2]; /* an index; the nodes of an edge */
+    uint32_t was;   /* a curve: TM_NONE for none */
+    double place;
+} tm_envelope_entry;
+
 typedef struct tm_envelope {
     double tolerance; /* the distance: a length */
     tm_surface *reference;
@@ -55,6 +64,11 @@ typedef struct tm_envelope {
     size_t node_room;
     double *place; /* by node: where it is on its curve, in segments of that from its
                       beginning; NaN: at an end, or on none */
+
+    /* While changes are recorded. */
+    bool recording;
+    tm_envelope_entry *entry;
+    size_t entries, entry_room;
 
     /* For one question. */
     tm_tet_marks seen; /* triangles of the reference, or faces */
@@ -106,6 +120,16 @@ bool tm_envelope_allows(tm_envelope *envelope, const tm_tet_mesh *mesh,
 /* Notes that it was changed so. There must be room. False where memory is out. */
 bool tm_envelope_follow(tm_envelope *envelope, const tm_tet_mesh *mesh,
                         const tm_surface_change *change);
+
+/* Changes are recorded from here on, or not any more; they are kept, or undone. */
+void tm_envelope_record(tm_envelope *envelope, bool on);
+void tm_envelope_undo(tm_envelope *envelope);
+
+/* An edge of the mesh is on a curve, or on none for TM_NONE; a node is at a place of its
+ * curve, or on none for NaN. There is room after tm_envelope_reserve(), for the few of an
+ * operation. */
+void tm_envelope_put_edge(tm_envelope *envelope, uint32_t a, uint32_t b, uint32_t curve);
+void tm_envelope_put_node(tm_envelope *envelope, uint32_t v, double place);
 
 /* Whether a curve of the reference, between two places on it in order, is within the
  * distance of the edge pq whose ends are there. */

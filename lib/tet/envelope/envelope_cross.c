@@ -55,6 +55,8 @@ static bool meets_above(tm_envelope *e, const tm_tet_mesh *mesh,
 {
     for (uint32_t l = e->first_link[t]; l != TM_NONE; l = e->link[l].next) {
         const uint32_t f = e->link[l].face;
+        if (f >= mesh->faces) /* made by what was undone */
+            continue;
         const tm_constrained_face *face = &mesh->face[f];
         if (!tm_tet_mark(&e->seen, f) || !is_outside(face) || is_old(change, f))
             continue;

@@ -214,7 +214,7 @@ double tm_improve_old_cost(const tm_improver *m, const uint32_t *old, size_t cou
 bool tm_improve_no_memory(tm_improver *m);
 
 /* Changes of a surface that may move (features.may_move), each asked about as it is
- * planned; none is allowed while changes are recorded to be undone. What was allowed last is in m->change_of_surface. */
+ * planned. What was allowed last is in m->change_of_surface. */
 
 /* Whether the edge of m->star, which is in a patch, may be swapped; its parts. */
 bool tm_improve_allows_swap(tm_improver *m, const tm_star *part, int parts);

@@ -82,6 +82,7 @@ static void undo_changes(tm_improver *m)
 {
     const tm_improve_state *kept = &m->earlier;
     m->report->done = kept->done;
+    tm_envelope_undo(&m->features.envelope);
     copy_changes(m, m->mesh, &m->features, &kept->mesh, &kept->features);
     if (m->status != TM_OK)
         return;
@@ -187,6 +188,7 @@ static void kick_one(tm_improver *m, uint32_t t)
 {
     tm_mesh_part_clear(&m->changes);
     m->recording = true;
+    tm_envelope_record(&m->features.envelope, true);
     bool done = kick_cluster(m, t);
     if (done)
         settle_changes(m);
@@ -195,6 +197,7 @@ static void kick_one(tm_improver *m, uint32_t t)
         judge(m, t);
     else
         m->stubborn[t]++;
+    tm_envelope_record(&m->features.envelope, false);
 }
 
 /* Kicks all bad ones; those that did not gain anything, the more rarely the more often

@@ -34,7 +34,7 @@ static bool add_old(tm_surface_change *c, uint32_t face)
 /* Whether the change, with all nodes where they will be, keeps within the envelope. */
 static bool is_allowed(tm_improver *m)
 {
-    return !m->recording && !tm_improve_bends_more(m) &&
+    return !tm_improve_bends_more(m) &&
            tm_envelope_allows(&m->features.envelope, m->mesh, &m->change_of_surface);
 }
 

@@ -404,17 +404,17 @@ void tm_features_classify_node(tm_features *features, uint32_t node, tm_edge_cla
                                 : place == TM_EDGE_IN_FACET ? IN_FACET
                                                             : ON_EDGE;
     if (features->may_move)
-        features->envelope.place[node] = NAN;
+        tm_envelope_put_node(&features->envelope, node, NAN);
     if (place != TM_EDGE_OF_FEATURE)
         return;
     bool forward = true;
     tm_curve_part part;
     if (features->may_move && tm_features_part(features, a, b, &part)) {
-        tm_edge_map *curve = &features->envelope.curve;
+        tm_envelope *e = &features->envelope;
         forward = part.node[0] == a;
-        tm_edge_map_remove(curve, a, b);
-        tm_edge_map_put(curve, a, node, part.curve);
-        tm_edge_map_put(curve, node, b, part.curve);
+        tm_envelope_put_edge(e, a, b, TM_NONE);
+        tm_envelope_put_edge(e, a, node, part.curve);
+        tm_envelope_put_edge(e, node, b, part.curve);
     }
     features->line[node][0] = forward ? a : b;
     features->line[node][1] = forward ? b : a;
@@ -433,10 +433,10 @@ void tm_features_join(tm_features *features, uint32_t a, uint32_t b)
     uint32_t beyond = tm_features_beyond(features, a, b);
     tm_curve_part part;
     if (features->may_move && tm_features_part(features, a, b, &part)) {
-        tm_edge_map *curve = &features->envelope.curve;
-        tm_edge_map_remove(curve, a, b);
-        tm_edge_map_remove(curve, a, beyond);
-        tm_edge_map_put(curve, b, beyond, part.curve);
+        tm_envelope *e = &features->envelope;
+        tm_envelope_put_edge(e, a, b, TM_NONE);
+        tm_envelope_put_edge(e, a, beyond, TM_NONE);
+        tm_envelope_put_edge(e, b, beyond, part.curve);
     }
     replace_on_line(features, b, a, beyond);
     replace_on_line(features, beyond, a, b);
@@ -474,5 +474,5 @@ void tm_features_put(tm_features *features, uint32_t v, uint32_t curve, double p
 {
     double segments = (double)tm_envelope_segments(&features->envelope, curve);
     bool again = tm_envelope_is_closed(&features->envelope, curve) && place >= segments;
-    features->envelope.place[v] = again ? place - segments : place;
+    tm_envelope_put_node(&features->envelope, v, again ? place - segments : place);
 }
