@@ -145,6 +145,12 @@ static void operate_within(bool regions, double tolerance, size_t done[TM_IMPROV
         check_memory(&m);
         assert_within(&m, &before);
     }
+    tm_improve_set_price(&m, 1); /* all that may be peeled off is */
+    for (uint32_t t = 0; t < mesh.slots; t++)
+        if (tm_tet_lives(&mesh, t) && tm_improve_peel(&m, t)) {
+            assert_valid(&mesh);
+            assert_within(&m, &before);
+        }
     tm_improve_finish(&m);
     for (int op = 0; op < TM_IMPROVE_OPS; op++)
         done[op] += report.done.op[op];
@@ -291,6 +297,60 @@ static void test_parts(void **state)
         for (uint32_t t = 0; t < mesh.slots; t++)
             if (tm_tet_lives(&mesh, t))
                 tm_improve_note(&m, &t, 1);
+    }
+    tm_improve_finish(&m);
+    tm_features_free(&features);
+    tm_tet_mesh_free(&kept);
+    tm_tet_mesh_free(&mesh);
+    tm_stream_free(&stream);
+}
+
+/* What operations did to a surface that may move is kept, or undone with what is known of
+ * it. */
+static void test_parts_within(void **state)
+{
+    (void)state;
+    enum { ROUNDS = 300, OPERATIONS = 12 };
+    tm_stream stream;
+    tm_tet_mesh mesh, kept = {0};
+    tm_features features = {0};
+    tm_error error = {0};
+    tm_improve_report report;
+    static tm_improver m;
+    tm_improve_options options = {
+        .angle = 45, .ops = TM_IMPROVE_ALL_OPS, .surface = {0.3, 80, false}};
+    make_mesh(&mesh, &stream, GRID, 0.3, true);
+    bend(&mesh);
+    invariants before = measure_invariants(&mesh);
+    assert_int_equal(tm_improve_start(&m, &mesh, &options, &report, &error), TM_OK);
+    assert_int_equal(tm_tet_mesh_copy(&kept, &mesh, &error), TM_OK);
+    assert_true(tm_features_copy(&features, &m.features));
+    for (int k = 0; k < ROUNDS; k++) {
+        tm_mesh_part_clear(&m.changes);
+        m.recording = true;
+        tm_envelope_record(&m.features.envelope, true);
+        for (int i = 0; i < OPERATIONS; i++)
+            operate(&m);
+        m.recording = false;
+        assert_true(tm_mesh_part_close(&m.changes, &mesh, &kept, &m.marks));
+        bool undo = k % 3 > 0;
+        tm_tet_mesh *to = undo ? &mesh : &kept, *from = undo ? &kept : &mesh;
+        if (undo)
+            tm_envelope_undo(&m.features.envelope);
+        tm_envelope_record(&m.features.envelope, false);
+        assert_int_equal(tm_mesh_part_copy(&m.changes, to, from, &error), TM_OK);
+        assert_true(tm_features_reserve(&features, m.features.room, 0));
+        for (size_t i = 0; i < m.changes.nodes; i++)
+            if (m.changes.node[i] < from->nodes)
+                tm_features_copy_node(undo ? &m.features : &features,
+                                      undo ? &features : &m.features, m.changes.node[i]);
+        assert_same_mesh(&mesh, &kept);
+        assert_valid(&mesh);
+        for (uint32_t t = 0; t < mesh.slots; t++)
+            if (tm_tet_lives(&mesh, t))
+                tm_improve_note(&m, &t, 1);
+        check_memory(&m);
+        assert_within(&m, &before);
     }
     tm_improve_finish(&m);
     tm_features_free(&features);
@@ -479,6 +539,7 @@ int main(void)
         cmocka_unit_test(test_operations_with_regions),
         cmocka_unit_test(test_operations_within),
         cmocka_unit_test(test_parts),
+        cmocka_unit_test(test_parts_within),
         cmocka_unit_test(test_every_palette),
         cmocka_unit_test(test_growth),
         cmocka_unit_test(test_bricks),

@@ -93,10 +93,12 @@ static bool raise_worst(tm_improver *m, tm_improve_reach *reach, double degrees,
         return false;
     if (!m->options->converge && !are_few(m, count_below(m, low, &worst), low_share))
         return false;
-    tm_improve_snapshot(m, &m->kept, bad, 0);
+    const double badness = tm_improve_badness(m, m->mesh->tets, bad);
+    tm_improve_snapshot(m, &m->kept, bad, badness);
     lower_and_raise(m, reach, degrees, work_most);
     size_t after = count_below(m, m->cost.target, &raised);
-    if (after <= bad && raised >= worst && (after < bad || raised > worst))
+    if (after <= bad && tm_improve_badness(m, m->mesh->tets, after) <= badness &&
+        raised >= worst && (after < bad || raised > worst))
         return true;
     tm_improve_restore(m, &m->kept);
     m->cost.limits = limits;
@@ -145,6 +147,9 @@ static void try_last(tm_improver *m, size_t work_most)
 {
     const tm_cost cost = m->cost;
     const size_t passes = m->options->passes;
+    double worst;
+    size_t bad = count_below(m, cost.target, &worst);
+    tm_improve_snapshot(m, &m->kept, bad, tm_improve_badness(m, m->mesh->tets, bad));
     m->last = true;
     m->cost.weight = last_weight;
     tm_improve_set_target(m, m->degrees);
@@ -153,6 +158,9 @@ static void try_last(tm_improver *m, size_t work_most)
             break;
     m->cost = cost;
     m->last = false;
+    bad = count_below(m, cost.target, &worst);
+    if (tm_improve_badness(m, m->mesh->tets, bad) > m->kept.badness)
+        tm_improve_restore(m, &m->kept);
 }
 
 /* Raises the worst by lower targets, until that fails or for once. */
