@@ -8,8 +8,6 @@
 #include "../../surface/surface_crossings.h"
 #include "../../surface/surface_tree.h"
 
-#include <math.h>
-
 typedef struct box {
     double low[3], high[3];
 } box;
@@ -20,8 +18,9 @@ static box box_of(const tm_tet_mesh *mesh, const uint32_t node[3])
     for (int x = 0; x < 3; x++) {
         double p = mesh->xyz[node[0]][x], q = mesh->xyz[node[1]][x];
         double r = mesh->xyz[node[2]][x];
-        b.low[x] = fmin(p, fmin(q, r));
-        b.high[x] = fmax(p, fmax(q, r));
+        double low = p < q ? p : q, high = p < q ? q : p;
+        b.low[x] = low < r ? low : r;
+        b.high[x] = high > r ? high : r;
     }
     return b;
 }
@@ -31,6 +30,18 @@ static bool boxes_meet(const box *a, const box *b)
     return a->low[0] <= b->high[0] && b->low[0] <= a->high[0] &&
            a->low[1] <= b->high[1] && b->low[1] <= a->high[1] &&
            a->low[2] <= b->high[2] && b->low[2] <= a->high[2];
+}
+
+/* A quick look: whether the nodes are all beyond the same side of a box. */
+static bool is_beyond(const tm_tet_mesh *mesh, const uint32_t node[3], const box *b)
+{
+    const double *p = mesh->xyz[node[0]], *q = mesh->xyz[node[1]];
+    const double *r = mesh->xyz[node[2]];
+    for (int x = 0; x < 3; x++)
+        if ((p[x] > b->high[x] && q[x] > b->high[x] && r[x] > b->high[x]) ||
+            (p[x] < b->low[x] && q[x] < b->low[x] && r[x] < b->low[x]))
+            return true;
+    return false;
 }
 
 static bool is_old(const tm_surface_change *change, uint32_t face)
@@ -60,8 +71,7 @@ static bool meets_above(tm_envelope *e, const tm_tet_mesh *mesh,
         const tm_constrained_face *face = &mesh->face[f];
         if (!tm_tet_mark(&e->seen, f) || !is_outside(face) || is_old(change, f))
             continue;
-        box of_face = box_of(mesh, face->node);
-        if (boxes_meet(around, &of_face) &&
+        if (!is_beyond(mesh, face->node, around) &&
             tm_triangles_meet((const double(*)[3])mesh->xyz, change->node[k], face->node))
             return true;
     }
