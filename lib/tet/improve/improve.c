@@ -16,9 +16,9 @@ static const double insertion_price = 0.1, kick_price = -1;
  * one. */
 static const double enough_gain = 0.05, much_gain = 0.1, least_gain = 0.002;
 
-/* Of what was tried before, so much is tried by kicks of one after the other; to
- * converge. */
-static const double local_share = 0.6, converging_share = 2;
+/* Of what was tried before, so much is tried by kicks of one after the other; where the
+ * surface may move and little is left; to converge. */
+static const double local_share = 0.6, moving_share = 0.1, converging_share = 2;
 
 /* Where passes leave this share of the tetrahedra, and bad ones, there are too few. */
 static const double fewest = 0.5;
@@ -288,7 +288,9 @@ static void kick(tm_improver *m)
 /* The same around one bad tetrahedron after the other. */
 static void kick_locally(tm_improver *m)
 {
-    double share = m->options->converge ? converging_share : local_share;
+    double share = m->options->converge   ? converging_share
+                   : m->features.may_move ? moving_share
+                                          : local_share;
     if (m->best.bad > 0)
         tm_improve_kick_locally(m, m->options->converge ? least_gain : enough_gain,
                                 (size_t)(share * (double)m->tries));
