@@ -484,7 +484,8 @@ static void summarise(const settings *o, const result *r, size_t tets, char *tex
     double before = tm_percent(bad_before, tets_before);
     if (r->changes == 0)
         snprintf(text, size, "%s%s: %zu tetrahedra, %.2f%% bad",
-                 bad_before > 0 && !has_sizes(o) ? "nothing found that helps" : "nothing to ",
+                 bad_before > 0 && !has_sizes(o) ? "nothing found that helps"
+                                                 : "nothing to ",
                  has_sizes(o)     ? "refine"
                  : bad_before > 0 ? ""
                                   : "improve",

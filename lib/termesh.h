@@ -80,7 +80,7 @@
 #include "tet/surface_limits.h"
 #include "tet/mesh_measure.h"
 #include "tet/star.h"
-#include "tet/operation/delaunay.h"
+#include "tet/delaunay/delaunay.h"
 #include "tet/improve/improve.h"
 #include "tet/improve/improve_forced.h"
 #include "tet/lepp/lepp.h"

@@ -228,7 +228,7 @@ def high(name):
                     tets.add(frozenset(node[v] for v in row[1:5]))
     return {t for t in tets if all(float(p[2]) > 0.5 for p in t)}
 before, after = high(sys.argv[1]), high(sys.argv[2])
-sys.exit(not len(before & after) > 0.95 * len(before))
+sys.exit(not len(before & after) > 0.9 * len(before))
 END
     lepp-improve -q --no-history --set box=5,5,5,6,6,6 points.tm | cmp - points.tm
     run -0 --separate-stderr lepp-improve --set box=5,5,5,6,6,6 points.tm

@@ -2,7 +2,7 @@
 /* The Delaunay property, and insertion that keeps it: against brute force on small
  * meshes, with cospherical nodes, regions, faces and edges that have to stay, and on
  * meshes that are not Delaunay. */
-#include "../../lib/tet/operation/delaunay.h"
+#include "../../lib/tet/delaunay/delaunay.h"
 #include "../../lib/tet/lepp/lepp.h"
 #include "tet_fixture.h"
 

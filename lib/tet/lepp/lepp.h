@@ -13,7 +13,7 @@
 #include "../../text/json.h"
 #include "../../base/progress.h"
 #include "../../element/tet_measure.h"
-#include "../operation/delaunay.h"
+#include "../delaunay/delaunay.h"
 #include "../mesh.h"
 
 TM_EXTERN_C_BEGIN

@@ -10,7 +10,7 @@
 
 #include "../../element/tet_measure.h"
 #include "../operation/ball.h"
-#include "../operation/delaunay_insertion.h"
+#include "../delaunay/delaunay_insertion.h"
 #include "../operation/edge_removal.h"
 #include "../operation/features.h"
 #include "../operation/replacement.h"

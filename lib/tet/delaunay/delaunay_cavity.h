@@ -3,10 +3,10 @@
  * there without crossing a face that stays and has the node strictly inside its sphere.
  * (A. Bowyer, Computing Dirichlet tessellations; D. F. Watson, Computing the
  * n-dimensional Delaunay tessellation; both The Computer Journal 24 (1981).) */
-#ifndef TM_OPERATION_DELAUNAY_CAVITY_H
-#define TM_OPERATION_DELAUNAY_CAVITY_H
+#ifndef TM_DELAUNAY_DELAUNAY_CAVITY_H
+#define TM_DELAUNAY_DELAUNAY_CAVITY_H
 
-#include "ball.h"
+#include "../operation/ball.h"
 #include "delaunay.h"
 #include "../../mesh/edge_map.h"
 #include "../star.h"

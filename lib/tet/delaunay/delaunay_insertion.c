@@ -3,7 +3,7 @@
 
 #include "../../base/array.h"
 #include "../mesh_measure.h"
-#include "star_insertion.h"
+#include "../operation/star_insertion.h"
 
 #include <stdlib.h>
 #include <string.h>

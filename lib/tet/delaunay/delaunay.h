@@ -14,8 +14,8 @@
  *     triangulations I, Discrete & Computational Geometry 39 (2008).
  *
  * Nodes on a common sphere are not inside it: any way to fill a cube is Delaunay. */
-#ifndef TM_OPERATION_DELAUNAY_H
-#define TM_OPERATION_DELAUNAY_H
+#ifndef TM_DELAUNAY_DELAUNAY_H
+#define TM_DELAUNAY_DELAUNAY_H
 
 #include "../../base/extern_c.h"
 #include "../mesh.h"

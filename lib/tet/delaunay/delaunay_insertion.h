@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Insertion of a point into a mesh that keeps it Delaunay (delaunay.h). */
-#ifndef TM_OPERATION_DELAUNAY_INSERTION_H
-#define TM_OPERATION_DELAUNAY_INSERTION_H
+#ifndef TM_DELAUNAY_DELAUNAY_INSERTION_H
+#define TM_DELAUNAY_DELAUNAY_INSERTION_H
 
 #include "delaunay_cavity.h"
 #include "../star.h"
