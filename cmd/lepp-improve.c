@@ -269,11 +269,13 @@ static void check_options(const filter *f, const settings *o, const bool given[]
         filter_usage_error(f, "-m is for selective: %s does not compare so", name);
     if (!selective && given[WITH])
         filter_usage_error(f, "--with is for selective: %s has no sweeps", name);
-    if (!o->is_improve && (given[TOLERANCE] || given[FEATURE_ANGLE]))
+    bool may_move = o->improve.surface.tolerance > 0;
+    if (given[OPS] && o->improve.ops == 1u << TM_OP_PEELING && !may_move)
+        filter_usage_error(f, "--ops peeling goes with a --surface-tolerance above 0");
+    if (!o->is_improve && (may_move || given[FEATURE_ANGLE]))
         filter_usage_error(f, "%s is for improve: %s keeps the surface",
-                           given[TOLERANCE] ? "--surface-tolerance" : "--feature-angle",
-                           name);
-    if (given[FEATURE_ANGLE] && !(o->improve.surface.tolerance > 0))
+                           may_move ? "--surface-tolerance" : "--feature-angle", name);
+    if (given[FEATURE_ANGLE] && !may_move)
         filter_usage_error(f, "--feature-angle goes with a --surface-tolerance above 0");
     if (!o->is_improve && given[OPS])
         filter_usage_error(f, "--ops is for improve: %s does what its name says", name);

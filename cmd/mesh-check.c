@@ -39,10 +39,12 @@ static void read_options(filter *f, limits *l)
 
 static bool is_within(const limits *l)
 {
+    const double rounding = 1e-14; /* of the diagonal */
     if (l->within < 0)
         return true;
     return against_most(&l->against) <=
-           (l->is_length ? l->within : l->within * l->against.found.diagonal);
+           (l->is_length ? l->within : l->within * l->against.found.diagonal) +
+               rounding * l->against.found.diagonal;
 }
 
 /* The blocks of elements; the first that there is, is examined. */

@@ -421,7 +421,7 @@ static tm_status compare_sharp(tm_surface_comparison *c, const tm_surface *first
         tm_surface_find_sharp(&a, first, feature_angle, markers_count, error);
     if (status == TM_OK)
         status = tm_surface_find_sharp(&b, second, feature_angle, markers_count, error);
-    c->rough = a.rough || b.rough;
+    c->rough = b.rough;
     if (status == TM_OK && !c->rough)
         status = measure_ways(c->curve, &a.curve, &b.curve, c->diagonal, error);
     if (status == TM_OK && !c->rough)

@@ -36,7 +36,7 @@ enum { TM_THERE, TM_BACK, TM_WAYS };
 typedef struct tm_surface_comparison {
     double diagonal;  /* of the bounding box of the second set */
     double tolerance; /* bound - most, at most: 1e-6 diagonals; see below */
-    bool rough;       /* one of them has sharp edges all over: curves are not compared */
+    bool rough;       /* the second has sharp edges all over: curves are not compared */
     tm_distance surface[TM_WAYS]; /* from the first set to the second, and back */
     tm_distance curve[TM_WAYS];   /* of feature curves to feature curves */
     tm_distance corner[TM_WAYS];  /* of corners to corners */

@@ -227,10 +227,8 @@ static tm_status list_sharp(const finder *f, tm_surface_sharp *sharp, tm_error *
     for (size_t v = 0; v < nodes; v++)
         ends += number[v] == 1;
     sharp->rough = ends > count / many;
-    tm_status status = TM_OK;
-    if (!sharp->rough)
-        status = list_curves(f, count, &sharp->curve, error);
-    if (!sharp->rough && status == TM_OK)
+    tm_status status = list_curves(f, count, &sharp->curve, error);
+    if (status == TM_OK)
         status = list_corners(f, number, &sharp->corner, error);
     free(number);
     return status;

@@ -10,7 +10,7 @@
 typedef struct tm_surface_sharp {
     tm_surface curve;
     tm_surface corner;
-    bool rough; /* many sharp edges end freely: none of them is there */
+    bool rough; /* many sharp edges end freely, as on a scan */
 } tm_surface_sharp;
 
 /* Finds what tm_surface_compare() says; edges between different markers only where they

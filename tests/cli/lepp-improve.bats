@@ -317,7 +317,7 @@ END
     [ "${lines[-1]}" = reconnection ]
     for op in "${lines[@]}"; do
         grep -q "^\.It Cm $op\$" "$BATS_TEST_DIRNAME/../../man/lepp-improve.1"
-        lepp-improve --ops "$op" points.tm >/dev/null
+        lepp-improve --ops "$op" --surface-tolerance 0.001 points.tm >/dev/null
     done
     lepp-improve -q --ops "$(lepp-improve --ops list | paste -sd ,)" --no-history points.tm |
         cmp - <(lepp-improve -q --no-history points.tm)

@@ -2,6 +2,7 @@
 /* The reference: the constrained faces of a mesh as a surface that need be no manifold.
  */
 #include "../../base/array.h"
+#include "../../geom/vector.h"
 #include "../../surface/surface_parts.h"
 #include "../../surface/surface_tree.h"
 #include "envelope_parts.h"
@@ -11,8 +12,8 @@
 #include <string.h>
 
 /* A feature that ends freely has to be so many times longer than what the surface may
- * move anyway. */
-static const double short_curve = 16;
+ * move anyway, or this part of the diagonal. */
+static const double short_curve = 16, short_of_diagonal = 0.05;
 
 typedef struct builder {
     tm_envelope *e;
@@ -310,9 +311,12 @@ tm_status tm_envelope_build(tm_envelope *envelope, const tm_tet_mesh *mesh,
     tm_status status = collect(&b) ? TM_OK : tm_fail_memory(error);
     if (status == TM_OK)
         status = tm_surface_tree_build(b.s, error);
+    double least_length =
+        fmin(short_curve * tolerance,
+             short_of_diagonal * sqrt(tm_distance2(b.s->low, b.s->high)));
     if (status == TM_OK)
-        status = tm_surface_find_features(b.s, feature_angle, unless_rough,
-                                          short_curve * tolerance, error);
+        status = tm_surface_find_features(b.s, feature_angle, unless_rough, least_length,
+                                          error);
     if (status == TM_OK) {
         tm_surface_tree_refresh(b.s);
         if (!attach(&b))

@@ -23,6 +23,9 @@ static const double local_share = 0.6, moving_share = 0.1, converging_share = 2;
 /* Where passes leave this share of the tetrahedra, and bad ones, there are too few. */
 static const double fewest = 0.5;
 
+/* For few tetrahedra it is cheap to insist. */
+static const size_t tries_least = 3000;
+
 enum { PASSES_MAX = 8, KICKS_MAX = 1000 };
 
 /* Work, see improve_engine.h: of a tetrahedron tried in a phase; by so many that are only
@@ -293,7 +296,7 @@ static void kick_locally(tm_improver *m)
                                           : local_share;
     if (m->best.bad > 0)
         tm_improve_kick_locally(m, m->options->converge ? least_gain : enough_gain,
-                                (size_t)(share * (double)m->tries));
+                                tries_least + (size_t)(share * (double)m->tries));
 }
 
 /* Everything for one target. */

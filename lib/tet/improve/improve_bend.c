@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* No change of a surface makes a sharp edge within a patch: normals of triangles side by
- * side differ by no more than the feature angle, or than those did that go. */
+/* No change of a surface makes a sharp edge within a patch, or a feature edge blunt:
+ * normals of triangles side by side differ by no more than the feature angle in a patch,
+ * and by no less at a feature edge that is one by its angle; or than those did that go.
+ */
 #include "../../geom/vector.h"
 #include "improve_engine.h"
 
@@ -34,13 +36,12 @@ static uint32_t face_at(const tm_tet_mesh *mesh, const tm_star *star, size_t i)
     return across & TM_FACE_BIT ? across & ~TM_FACE_BIT : TM_NONE;
 }
 
-/* The face beyond edge ab of a face, in its patch; TM_NONE where there is none. */
+/* The face beyond edge ab of a face, where there is one more and that is alike; TM_NONE.
+ */
 static uint32_t face_beyond(tm_improver *m, uint32_t f, uint32_t a, uint32_t b)
 {
     const tm_constrained_face *face = &m->mesh->face[f];
-    uint32_t t = face->side[face->side[0] == TM_NONE] / 4;
-    if (tm_edge_map_get(&m->features.envelope.curve, a, b))
-        return TM_NONE;
+    uint32_t t = face->side[face->side[0] == TM_NONE] / 4, beyond = TM_NONE;
     uint32_t i = tm_tet_corner(m->mesh, t, a), j = tm_tet_corner(m->mesh, t, b);
     unsigned e = 0;
     while (!(tm_edge_corner[e][0] == i && tm_edge_corner[e][1] == j) &&
@@ -52,10 +53,18 @@ static uint32_t face_beyond(tm_improver *m, uint32_t f, uint32_t a, uint32_t b)
     }
     for (size_t k = 0; k < m->around.size + !m->around.closed; k++) {
         uint32_t other = face_at(m->mesh, &m->around, k);
-        if (other != TM_NONE && other != f)
-            return other;
+        if (other == TM_NONE || other == f)
+            continue;
+        if (beyond != TM_NONE || m->mesh->face[other].marker != face->marker)
+            return TM_NONE;
+        beyond = other;
     }
-    return TM_NONE;
+    return beyond;
+}
+
+static bool is_on_curve(const tm_improver *m, uint32_t a, uint32_t b)
+{
+    return tm_edge_map_get(&m->features.envelope.curve, a, b) != NULL;
 }
 
 static bool is_old(const tm_surface_change *c, uint32_t face)
@@ -70,7 +79,7 @@ void tm_improve_look_at_bends(tm_improver *m)
 {
     const tm_surface_change *c = &m->change_of_surface;
     tm_improve_bends *bends = &m->bends;
-    bends->least = m->least_cosine;
+    bends->least = bends->most = m->least_cosine;
     bends->count = 0;
     for (size_t i = 0; i < c->olds; i++) {
         const uint32_t *n = m->mesh->face[c->old[i]].node;
@@ -81,31 +90,43 @@ void tm_improve_look_at_bends(tm_improver *m)
                 continue;
             uint32_t d = third_node(m->mesh->face[beyond].node, a, b);
             double old = cosine(m, a, b, n[(k + 2) % 3], d);
-            bends->least = old < bends->least ? old : bends->least;
+            if (is_on_curve(m, a, b))
+                bends->most = old > bends->most ? old : bends->most;
+            else
+                bends->least = old < bends->least ? old : bends->least;
             if (!is_old(c, beyond) && bends->count < 3 * TM_CHANGE_MOST)
                 bends->edge[bends->count++] = (tm_improve_bend){{a, b}, d, c->old[i]};
         }
     }
 }
 
-/* The node beyond edge ab of triangle k of the change, in its patch; TM_NONE where the
- * edge is on a curve. */
-static uint32_t node_beyond(const tm_improver *m, size_t k, uint32_t a, uint32_t b)
+/* The node beyond edge ab of triangle k of the change; TM_NONE where that is not known.
+ * Whether it is in another patch, too. */
+static uint32_t node_beyond(const tm_improver *m, size_t k, uint32_t a, uint32_t b,
+                            bool *is_curve)
 {
     const tm_surface_change *c = &m->change_of_surface;
     const tm_envelope *e = &m->features.envelope;
-    const uint32_t *patch = e->reference->patch;
-    for (size_t i = 0; i < m->bends.count; i++)
-        if (has_edge((uint32_t[3]){m->bends.edge[i].node[0], m->bends.edge[i].node[1],
-                                   m->bends.edge[i].node[1]},
-                     a, b) &&
-            patch[e->below[m->bends.edge[i].face]] == patch[e->below[c->from[k]]])
-            return m->bends.edge[i].beyond;
-    for (size_t i = 0; i < k; i++)
-        if (has_edge(c->node[i], a, b) &&
-            patch[e->below[c->from[i]]] == patch[e->below[c->from[k]]])
-            return third_node(c->node[i], a, b);
-    return TM_NONE;
+    const uint32_t *patch = e->reference->patch, own = patch[e->below[c->from[k]]];
+    for (size_t i = 0; i < m->bends.count; i++) {
+        const tm_improve_bend *bend = &m->bends.edge[i];
+        *is_curve = is_on_curve(m, a, b);
+        if (has_edge((uint32_t[3]){bend->node[0], bend->node[1], bend->node[1]}, a, b) &&
+            patch[e->below[bend->face]] == own)
+            return bend->beyond;
+    }
+    uint32_t found = TM_NONE;
+    for (size_t i = 0; i < c->count; i++) {
+        if (i == k || !has_edge(c->node[i], a, b))
+            continue;
+        if (found != TM_NONE)
+            return TM_NONE;
+        found = third_node(c->node[i], a, b);
+        *is_curve = patch[e->below[c->from[i]]] != own;
+        if (m->mesh->face[c->from[i]].marker != m->mesh->face[c->from[k]].marker)
+            return TM_NONE;
+    }
+    return found;
 }
 
 bool tm_improve_bends_more(const tm_improver *m)
@@ -114,10 +135,14 @@ bool tm_improve_bends_more(const tm_improver *m)
     const double rounding = 1e-9;
     for (size_t k = 0; k < c->count; k++)
         for (int i = 0; i < 3; i++) {
+            bool is_curve;
             const uint32_t *n = c->node[k];
-            uint32_t a = n[i], b = n[(i + 1) % 3], d = node_beyond(m, k, a, b);
-            if (d != TM_NONE &&
-                cosine(m, a, b, n[(i + 2) % 3], d) < m->bends.least - rounding)
+            uint32_t a = n[i], b = n[(i + 1) % 3], d = node_beyond(m, k, a, b, &is_curve);
+            if (d == TM_NONE)
+                continue;
+            double now = cosine(m, a, b, n[(i + 2) % 3], d);
+            if (is_curve ? now > m->bends.most + rounding
+                         : now < m->bends.least - rounding)
                 return true;
         }
     return false;

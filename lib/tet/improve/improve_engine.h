@@ -29,7 +29,8 @@ typedef struct tm_improve_bend {
 
 /* How much a surface bends where it is to be changed. */
 typedef struct tm_improve_bends {
-    double least; /* cosine between normals side by side that is allowed */
+    double least; /* cosine between normals side by side that is allowed in a patch */
+    double most;  /* and at a feature edge */
     size_t count;
     tm_improve_bend edge[3 * TM_CHANGE_MOST];
 } tm_improve_bends;
