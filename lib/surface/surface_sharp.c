@@ -217,16 +217,19 @@ static tm_status list_corners(const finder *f, const uint32_t *number, tm_surfac
 
 static tm_status list_sharp(const finder *f, tm_surface_sharp *sharp, tm_error *error)
 {
-    const size_t many = 10; /* as in surface_features.c */
+    /* Of a scan one of so many curves ends freely, and more than a few do. */
+    const size_t many = 20, few = 30;
     const size_t nodes = f->surface->nodes;
-    size_t ends = 0;
+    size_t ends = 0, arms = 0;
     uint32_t *number = calloc(nodes + 1, sizeof *number);
     if (!number)
         return tm_fail_memory(error);
     const size_t count = count_sharp(f, number);
-    for (size_t v = 0; v < nodes; v++)
+    for (size_t v = 0; v < nodes; v++) {
         ends += number[v] == 1;
-    sharp->rough = ends > count / many;
+        arms += number[v] != 2 ? number[v] : 0;
+    }
+    sharp->rough = ends > few && 2 * many * ends > arms;
     tm_status status = list_curves(f, count, &sharp->curve, error);
     if (status == TM_OK)
         status = list_corners(f, number, &sharp->corner, error);

@@ -152,10 +152,12 @@ static double most_of(const tm_distance way[TM_WAYS])
     return fmax(way[TM_THERE].most, way[TM_BACK].most);
 }
 
+/* Of corners one way counts: those of the surface are there; a curve of the mesh may have
+ * more of them, where a short edge of it turns. */
 double against_most(const against *a)
 {
     return fmax(most_of(a->found.surface),
-                fmax(most_of(a->found.curve), most_of(a->found.corner)));
+                fmax(most_of(a->found.curve), a->found.corner[TM_BACK].most));
 }
 
 static void point_json(tm_json *json, const char *key, const double point[3])
