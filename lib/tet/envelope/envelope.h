@@ -107,6 +107,12 @@ bool tm_envelope_copy(tm_envelope *to, const tm_envelope *from);
 tm_status tm_envelope_check(tm_envelope *envelope, const tm_tet_mesh *mesh,
                             tm_error *error);
 
+/* The largest distance between the surface of the mesh and the reference, both ways, as
+ * tm_surface_compare() finds it. Where the reference is folded more finely than the
+ * distance, a point of it between its nodes may be left behind by more than that. */
+tm_status tm_envelope_measure(const tm_envelope *envelope, const tm_tet_mesh *mesh,
+                              double *most, tm_error *error);
+
 /* Room for so many faces and nodes of the mesh in all; false where memory is out. */
 bool tm_envelope_reserve(tm_envelope *envelope, size_t faces, size_t nodes);
 

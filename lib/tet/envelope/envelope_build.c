@@ -3,6 +3,7 @@
  */
 #include "../../base/array.h"
 #include "../../geom/vector.h"
+#include "../../surface/surface_distance.h"
 #include "../../surface/surface_parts.h"
 #include "../../surface/surface_tree.h"
 #include "envelope_parts.h"
@@ -300,6 +301,27 @@ static bool collect(builder *b)
             add_triangle(b, f);
     find_box(b->s);
     return find_across(b) && orient(b->s);
+}
+
+tm_status tm_envelope_measure(const tm_envelope *envelope, const tm_tet_mesh *mesh,
+                              double *most, tm_error *error)
+{
+    const double no_edge = 180;
+    tm_envelope now = {0};
+    builder b = {.e = &now, .mesh = mesh};
+    tm_surface_comparison found;
+    tm_status status = collect(&b) ? TM_OK : tm_fail_memory(error);
+    if (status == TM_OK)
+        status = tm_surface_tree_build(b.s, error);
+    if (status == TM_OK)
+        status = tm_surface_compare(&found, b.s, envelope->reference, no_edge, error);
+    *most = status != TM_OK
+                ? 0
+                : fmax(found.surface[TM_THERE].most, found.surface[TM_BACK].most);
+    free(b.number);
+    free(b.face);
+    tm_envelope_free(&now);
+    return status;
 }
 
 tm_status tm_envelope_build(tm_envelope *envelope, const tm_tet_mesh *mesh,

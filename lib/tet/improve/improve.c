@@ -377,9 +377,12 @@ static void run_all(tm_improver *m)
     tm_improve_worst(m, reach);
 }
 
-tm_status tm_improve(tm_tet_mesh *mesh, const tm_improve_options *options,
-                     tm_improve_report *report, tm_error *error)
+/* *distance is how far the surface has moved. */
+static tm_status improve_once(tm_tet_mesh *mesh, const tm_improve_options *options,
+                              tm_improve_report *report, double *distance,
+                              tm_error *error)
 {
+    *distance = 0;
     tm_improver *m = malloc(sizeof *m);
     if (!m)
         return tm_fail_memory(error);
@@ -392,8 +395,33 @@ tm_status tm_improve(tm_tet_mesh *mesh, const tm_improve_options *options,
         status = m->status;
         report->bad_after = count_bad_angles(m);
         report->too_large = mesh->tets > m->most_tets;
+        if (status == TM_OK && m->features.may_move)
+            status = tm_envelope_measure(&m->features.envelope, mesh, distance, error);
     }
     tm_improve_finish(m);
     free(m);
+    return status;
+}
+
+tm_status tm_improve(tm_tet_mesh *mesh, const tm_improve_options *options,
+                     tm_improve_report *report, tm_error *error)
+{
+    enum { TRIES = 3 };
+    const double most = options->surface.tolerance, rounding = 1e-9, less = 0.5;
+    tm_improve_options now = *options;
+    tm_tet_mesh input = {0};
+    double distance;
+    tm_status status = TM_OK;
+    if (most > 0)
+        status = tm_tet_mesh_copy(&input, mesh, error);
+    /* Where the surface was left behind after all, again with less, at last none. */
+    for (int k = 0; status == TM_OK; k++) {
+        status = improve_once(mesh, &now, report, &distance, error);
+        if (status != TM_OK || distance <= most * (1 + rounding))
+            break;
+        now.surface.tolerance = k + 1 < TRIES ? less * now.surface.tolerance : 0;
+        status = tm_tet_mesh_copy(mesh, &input, error);
+    }
+    tm_tet_mesh_free(&input);
     return status;
 }
