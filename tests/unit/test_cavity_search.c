@@ -257,7 +257,7 @@ static void test_schoenhardt(void **state)
     memcpy(s->face, face, sizeof face);
     for (int i = 0; i < 6; i++) {
         double angle = turn * (i % 3) / 3 + (i < 3 ? 0 : twist);
-        s->xyz[i][0] = cos(angle), s->xyz[i][1] = sin(angle), s->xyz[i][2] = i / 3;
+        s->xyz[i][0] = cos(angle), s->xyz[i][1] = sin(angle), s->xyz[i][2] = i >= 3;
     }
     memcpy(s->xyz[6], (double[3]){0, 0, 0.5}, sizeof s->xyz[6]);
     tm_cost cost = {.measure = TM_MEASURE_DIHEDRAL,

@@ -23,7 +23,8 @@ static void make_box(tm_surface *s, double x, unsigned n)
                 double q[3];
                 q[w] = side % 2;
                 q[u] = (double)(c % n + (i == 1 || i == 2)) / n;
-                q[v] = (double)(c / n + (i >= 2)) / n;
+                const unsigned row = c / n;
+                q[v] = (double)(row + (i >= 2)) / n;
                 at[i] = add_node(&p, q[0] + x, q[1], q[2]);
             }
             add_triangle(&p, at[0], at[1], at[2]);

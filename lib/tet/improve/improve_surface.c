@@ -178,11 +178,8 @@ static bool surface_links_are_common(const tm_improver *m, uint32_t b)
         const uint32_t *n = m->mesh->face[of_a->constrained[k]].node;
         if (has_node(n, b))
             continue;
-        uint32_t link[2];
-        int links = 0;
-        for (int i = 0; i < 3; i++)
-            if (n[i] != a)
-                link[links++] = n[i];
+        const int at = n[0] == a ? 0 : n[1] == a ? 1 : 2;
+        const uint32_t link[2] = {n[(at + 1) % 3], n[(at + 2) % 3]};
         if (has_face(m, of_b, link[0], link[1]))
             return false;
         for (int i = 0; i < 2; i++)
