@@ -485,12 +485,10 @@ static void summarise(const settings *o, const result *r, size_t tets, char *tex
     size_t bad_after = is_improve ? r->improve.bad_after : r->lepp.bad_after;
     double before = tm_percent(bad_before, tets_before);
     if (r->changes == 0)
-        snprintf(text, size, "%s%s: %zu tetrahedra, %.2f%% bad",
-                 bad_before > 0 && !has_sizes(o) ? "nothing found that helps"
-                                                 : "nothing to ",
-                 has_sizes(o)     ? "refine"
-                 : bad_before > 0 ? ""
-                                  : "improve",
+        snprintf(text, size, "%s: %zu tetrahedra, %.2f%% bad",
+                 has_sizes(o)     ? "nothing to refine"
+                 : bad_before > 0 ? "nothing found that helps"
+                                  : "nothing to improve",
                  tets, before);
     else
         snprintf(text, size, "%zu -> %zu tetrahedra, %.2f%% -> %.2f%% bad; ", tets_before,

@@ -38,8 +38,7 @@ typedef struct feature_finder {
     uint32_t *parent; /* [triangles]: sets of those in one patch */
 } feature_finder;
 
-/* The unit normal of t; false where it has none of its own. */
-static bool own_normal(const tm_surface *surface, uint32_t t, double normal[3])
+bool tm_surface_own_normal(const tm_surface *surface, uint32_t t, double normal[3])
 {
     const double *p[3];
     double longest2 = 0;
@@ -81,7 +80,7 @@ static void find_normals(feature_finder *f)
         uint32_t from = (uint32_t)t;
         bool found = false;
         for (int i = 0; i < steps_most && from != TM_NONE && !found; i++) {
-            found = own_normal(f->surface, from, f->normal[t]);
+            found = tm_surface_own_normal(f->surface, from, f->normal[t]);
             if (!found)
                 from = beyond_longest(f->surface, from);
         }
@@ -130,8 +129,7 @@ static size_t list_edges(const feature_finder *f, sharp_edge *edge, uint32_t *pa
             if (n != TM_NONE && n < t)
                 continue;
             if (!is_sharp(f, t, n)) {
-                uint32_t a = tm_set_root(parent, t), b = tm_set_root(parent, n);
-                parent[a < b ? b : a] = a < b ? a : b;
+                tm_set_unite(parent, t, n);
                 continue;
             }
             uint32_t p = surface->triangle[t][i], q = surface->triangle[t][(i + 1) % 3];

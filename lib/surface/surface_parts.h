@@ -43,6 +43,9 @@ tm_status tm_surface_find_features(tm_surface *surface, double feature_angle,
                                    bool unless_rough, double least_length,
                                    tm_error *error);
 
+/* The unit normal of t; false where it is so thin that it has none of its own. */
+bool tm_surface_own_normal(const tm_surface *surface, uint32_t t, double normal[3]);
+
 /* The corner i of t for which across[t][i] is n; 3: none. */
 static inline unsigned tm_surface_side(const tm_surface *surface, uint32_t t, uint32_t n)
 {

@@ -4,16 +4,13 @@
 #include "../base/array.h"
 #include "../geom/vector.h"
 #include "../mesh/polygon_edges.h"
+#include "surface_parts.h"
 #include "surface_tree.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 static const double degree = 3.14159265358979323846 / 180;
-
-/* A triangle whose height is less than this part of the surface has no normal of its own,
- * as in surface_features.c. */
-static const double least_height = 1e-6;
 
 typedef struct finder {
     const tm_surface *surface;
@@ -52,25 +49,6 @@ static tm_status find_edges(finder *f, tm_error *error)
     return TM_OK;
 }
 
-static bool own_normal(const finder *f, uint32_t t, double normal[3])
-{
-    const tm_surface *s = f->surface;
-    const double *p[3];
-    double longest2 = 0;
-    for (int i = 0; i < 3; i++)
-        p[i] = s->xyz[s->triangle[t][i]];
-    for (int i = 0; i < 3; i++)
-        longest2 = fmax(longest2, tm_distance2(p[i], p[(i + 1) % 3]));
-    tm_triangle_normal(normal, p[0], p[1], p[2]);
-    const double length = tm_norm(normal);
-    const double size = sqrt(tm_distance2(s->low, s->high));
-    if (!(length > least_height * size * sqrt(longest2)))
-        return false;
-    for (int i = 0; i < 3; i++)
-        normal[i] /= length;
-    return true;
-}
-
 /* The triangle beyond the longest edge of t, or TM_NONE where there is not just one; and
  * whether it is seen from the other side. */
 static uint32_t beyond_longest(const finder *f, uint32_t t, bool *turned)
@@ -102,10 +80,10 @@ static void find_normals(finder *f)
         uint32_t from = (uint32_t)t;
         bool turned = false;
         double normal[3] = {0};
-        bool found = own_normal(f, from, normal);
+        bool found = tm_surface_own_normal(f->surface, from, normal);
         for (int i = 0; i < steps_most && !found && from != TM_NONE; i++) {
             from = beyond_longest(f, from, &turned);
-            found = from != TM_NONE && own_normal(f, from, normal);
+            found = from != TM_NONE && tm_surface_own_normal(f->surface, from, normal);
         }
         for (int i = 0; i < 3 && found; i++)
             f->normal[t][i] = turned ? -normal[i] : normal[i];

@@ -91,6 +91,20 @@ static inline bool tm_node_lives(const tm_tet_mesh *mesh, uint32_t v)
     return !isnan(mesh->xyz[v][0]);
 }
 
+static inline bool tm_face_has_node(const uint32_t face[3], uint32_t v)
+{
+    return face[0] == v || face[1] == v || face[2] == v;
+}
+
+/* The node of a face that is neither a nor b, which it has. */
+static inline uint32_t tm_face_third_node(const uint32_t face[3], uint32_t a, uint32_t b)
+{
+    for (int i = 0; i < 2; i++)
+        if (face[i] != a && face[i] != b)
+            return face[i];
+    return face[2];
+}
+
 /* The half face on the other side of face i of t; TM_NONE on the boundary. */
 static inline uint32_t tm_tet_across(const tm_tet_mesh *mesh, uint32_t t, uint32_t i)
 {

@@ -160,6 +160,13 @@ bool tm_star_around(const tm_tet_mesh *mesh, uint32_t t, unsigned e, tm_star *st
     return true;
 }
 
+bool tm_star_between(const tm_tet_mesh *mesh, uint32_t t, uint32_t a, uint32_t b,
+                     tm_star *star)
+{
+    uint32_t i = tm_tet_corner(mesh, t, a), j = tm_tet_corner(mesh, t, b);
+    return tm_star_around(mesh, t, edge_between[i][j], star);
+}
+
 bool tm_star_is_simple(const tm_tet_mesh *mesh, const tm_star *star)
 {
     if (mesh->flat == 0)

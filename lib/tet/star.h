@@ -31,6 +31,23 @@ void tm_star_free(tm_star *star);
  * star is closed. False where memory is out. O(size). */
 bool tm_star_around(const tm_tet_mesh *mesh, uint32_t t, unsigned e, tm_star *star);
 
+/* The same of the edge between two nodes of tetrahedron t. */
+bool tm_star_between(const tm_tet_mesh *mesh, uint32_t t, uint32_t a, uint32_t b,
+                     tm_star *star);
+
+/* The constrained face at the edge that has ring node i, 0 … size - 1, and size in an
+ * open star; TM_NONE where that face is none. */
+static inline uint32_t tm_star_face(const tm_tet_mesh *mesh, const tm_star *star,
+                                    size_t i)
+{
+    /* It is opposite ring[i + 1] in tetrahedron i; the last one of an open star opposite
+     * ring[size - 1]. */
+    bool last = i == star->size;
+    uint32_t t = star->tet[last ? i - 1 : i], opposite = star->ring[last ? i - 1 : i + 1];
+    uint32_t across = mesh->neighbour[t][tm_tet_corner(mesh, t, opposite)];
+    return across & TM_FACE_BIT ? across & ~TM_FACE_BIT : TM_NONE;
+}
+
 /* Whether the edge may go: the star is closed, no face at the edge has to stay and the
  * edge has no marker. */
 bool tm_star_is_free(const tm_tet_mesh *mesh, const tm_star *star);

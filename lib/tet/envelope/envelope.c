@@ -94,19 +94,13 @@ bool tm_envelope_copy(tm_envelope *to, const tm_envelope *from)
     made.place = copy(from->place, from->node_room, sizeof *made.place, &done);
     made.curve.slot =
         copy(from->curve.slot, from->curve.room, sizeof *made.curve.slot, &done);
-    made.seen = to->seen;
-    made.flood = to->flood;
-    made.flood_room = to->flood_room;
     made.recording = false;
     made.entry = NULL;
     made.entries = made.entry_room = 0;
-    to->seen = (tm_tet_marks){0};
-    to->flood = NULL;
+    made.seen = (tm_tet_marks){0};
+    made.flood = NULL;
+    made.flood_count = made.flood_room = 0;
     if (!done) {
-        to->seen = made.seen;
-        to->flood = made.flood;
-        made.seen = (tm_tet_marks){0};
-        made.flood = NULL;
         made.borrowed = true;
         tm_envelope_free(&made);
         return false;
@@ -187,11 +181,10 @@ void tm_envelope_undo(tm_envelope *envelope)
     }
 }
 
-static tm_covered covered(const tm_envelope *e, const tm_tet_mesh *mesh,
-                          const uint32_t node[3], uint32_t from)
+static tm_covered covered(const tm_tet_mesh *mesh, const uint32_t node[3], uint32_t below)
 {
     return (tm_covered){{mesh->xyz[node[0]], mesh->xyz[node[1]], mesh->xyz[node[2]]},
-                        e->below[from]};
+                        below};
 }
 
 /* The triangle of a change that is nearest to a point; its squared distance. */
@@ -233,7 +226,8 @@ bool tm_envelope_allows(tm_envelope *envelope, const tm_tet_mesh *mesh,
     if (!keeps_nodes(envelope, mesh, change))
         return false;
     for (size_t k = 0; k < change->count; k++) {
-        tm_covered triangle = covered(envelope, mesh, change->node[k], change->from[k]);
+        tm_covered triangle =
+            covered(mesh, change->node[k], envelope->below[change->from[k]]);
         if (!tm_envelope_covers(envelope, &triangle) ||
             tm_envelope_crosses(envelope, mesh, change, k))
             return false;
@@ -241,7 +235,7 @@ bool tm_envelope_allows(tm_envelope *envelope, const tm_tet_mesh *mesh,
     return true;
 }
 
-static bool is_linked(const tm_envelope *e, uint32_t t, uint32_t face)
+bool tm_envelope_is_linked(const tm_envelope *e, uint32_t t, uint32_t face)
 {
     for (uint32_t l = e->first_link[t]; l != TM_NONE; l = e->link[l].next)
         if (e->link[l].face == face)
@@ -273,7 +267,7 @@ static bool add_link(tm_envelope *e, const tm_tet_mesh *mesh, uint32_t t, uint32
                      const uint32_t n[3])
 {
     extend_reach(e, mesh, t, n);
-    if (is_linked(e, t, face))
+    if (tm_envelope_is_linked(e, t, face))
         return true;
     tm_envelope_link *link =
         tm_grow(e->link, &e->link_room, e->links + 1, sizeof *e->link);
@@ -297,7 +291,7 @@ bool tm_envelope_link_all(tm_envelope *e, const tm_tet_mesh *mesh)
         const tm_constrained_face *face = &mesh->face[f];
         if (face->side[0] == TM_NONE && face->side[1] == TM_NONE)
             continue;
-        tm_covered triangle = covered(e, mesh, face->node, f);
+        tm_covered triangle = covered(mesh, face->node, e->below[f]);
         bool done = tm_envelope_covers(e, &triangle) ||
                     add_link(e, mesh, e->below[f], f, face->node);
         for (size_t i = 0; i < e->flood_count && done; i++)
@@ -330,8 +324,7 @@ static bool gather_kept(tm_envelope *e, const tm_surface_change *change, uint32_
 static bool place_face(tm_envelope *e, const tm_tet_mesh *mesh, uint32_t face,
                        const uint32_t node[3], uint32_t below)
 {
-    tm_covered triangle = {{mesh->xyz[node[0]], mesh->xyz[node[1]], mesh->xyz[node[2]]},
-                           below};
+    tm_covered triangle = covered(mesh, node, below);
     if (!tm_envelope_covers(e, &triangle) || !put(e, TM_WAS_BELOW, face, e->flood[0]) ||
         !put(e, TM_WAS_FIRST, face, TM_NONE))
         return false;

@@ -88,6 +88,15 @@ typedef struct tm_surface_change {
     uint32_t from[TM_CHANGE_MOST];
 } tm_surface_change;
 
+/* Whether a face is one of the old ones. */
+static inline bool tm_surface_change_takes(const tm_surface_change *change, uint32_t face)
+{
+    for (size_t i = 0; i < change->olds; i++)
+        if (change->old[i] == face)
+            return true;
+    return false;
+}
+
 /* Takes the surface of the mesh for the reference. Its feature edges: between other
  * numbers of constrained faces than two, or such that differ in marker, and where the
  * normals of two differ by more than feature_angle; with unless_rough, none of the latter

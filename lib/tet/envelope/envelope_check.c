@@ -7,14 +7,6 @@
 
 #define FAIL(...) tm_fail(error, TM_ERROR_INTERNAL, __VA_ARGS__)
 
-static bool is_linked(const tm_envelope *e, uint32_t t, uint32_t f)
-{
-    uint32_t l = e->first_link[t];
-    while (l != TM_NONE && e->link[l].face != f)
-        l = e->link[l].next;
-    return l != TM_NONE;
-}
-
 /* A face is covered and linked, and near the nodes it keeps; these are counted. */
 static tm_status check_face(tm_envelope *e, const tm_tet_mesh *mesh, uint32_t f,
                             uint32_t *kept, tm_error *error)
@@ -26,7 +18,7 @@ static tm_status check_face(tm_envelope *e, const tm_tet_mesh *mesh, uint32_t f,
     if (!tm_envelope_covers(e, &triangle))
         return FAIL("face %u is not covered by the reference", f);
     for (size_t i = 0; i < e->flood_count; i++)
-        if (!is_linked(e, e->flood[i], f))
+        if (!tm_envelope_is_linked(e, e->flood[i], f))
             return FAIL("face %u is not known above triangle %u", f, e->flood[i]);
     for (uint32_t v = e->first_kept[f]; v != TM_NONE; v = e->next_kept[v]) {
         if (!(sqrt(tm_triangle_distance2(e->reference->xyz[v], p, q, r)) <=

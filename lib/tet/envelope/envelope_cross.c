@@ -44,14 +44,6 @@ static bool is_beyond(const tm_tet_mesh *mesh, const uint32_t node[3], const box
     return false;
 }
 
-static bool is_old(const tm_surface_change *change, uint32_t face)
-{
-    for (size_t i = 0; i < change->olds; i++)
-        if (change->old[i] == face)
-            return true;
-    return false;
-}
-
 /* Whether the face has a side without a tetrahedron, and is a face still. */
 static bool is_outside(const tm_constrained_face *face)
 {
@@ -69,7 +61,8 @@ static bool meets_above(tm_envelope *e, const tm_tet_mesh *mesh,
         if (f >= mesh->faces) /* made by what was undone */
             continue;
         const tm_constrained_face *face = &mesh->face[f];
-        if (!tm_tet_mark(&e->seen, f) || !is_outside(face) || is_old(change, f))
+        if (!tm_tet_mark(&e->seen, f) || !is_outside(face) ||
+            tm_surface_change_takes(change, f))
             continue;
         if (!is_beyond(mesh, face->node, around) &&
             tm_triangles_meet((const double(*)[3])mesh->xyz, change->node[k], face->node))

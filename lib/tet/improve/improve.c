@@ -138,7 +138,8 @@ static void run_pass(tm_improver *m, tm_improve_phase phase)
 {
     if (tm_improve_is_over(m) || !tm_improve_find_targets(m, false))
         return;
-    m->mean = mean_cost(m);
+    if (m->thrifty)
+        m->mean = mean_cost(m);
     tm_improve_tell_pass(m);
     for (size_t k = 0; k < m->targets && m->status == TM_OK; k++) {
         uint32_t t = m->target[k];
@@ -181,8 +182,8 @@ static bool is_emptied(const tm_improver *m, size_t tets, double mean)
 static void run_thrifty_pass(tm_improver *m, tm_improve_phase phase)
 {
     size_t tets = m->mesh->tets;
-    double mean = mean_cost(m);
     bool watched = phase > TM_PHASE_MOVE && !m->thrifty;
+    double mean = watched ? mean_cost(m) : 0;
     if (watched)
         tm_improve_snapshot(m, &m->earlier, count_bad(m), 0);
     run_pass(m, phase);

@@ -6,16 +6,6 @@
 #include "../../geom/vector.h"
 #include "improve_engine.h"
 
-static uint32_t third_node(const uint32_t n[3], uint32_t a, uint32_t b)
-{
-    return n[0] != a && n[0] != b ? n[0] : n[1] != a && n[1] != b ? n[1] : n[2];
-}
-
-static bool has_edge(const uint32_t n[3], uint32_t a, uint32_t b)
-{
-    return (n[0] == a || n[1] == a || n[2] == a) && (n[0] == b || n[1] == b || n[2] == b);
-}
-
 /* The cosine of the angle between the normals of triangles abc and bad. */
 static double cosine(const tm_improver *m, uint32_t a, uint32_t b, uint32_t c, uint32_t d)
 {
@@ -27,32 +17,18 @@ static double cosine(const tm_improver *m, uint32_t a, uint32_t b, uint32_t c, u
     return size > 0 ? tm_dot(of_c, of_d) / size : 1;
 }
 
-/* The constrained face at the edge of a star with ring node i; TM_NONE. */
-static uint32_t face_at(const tm_tet_mesh *mesh, const tm_star *star, size_t i)
-{
-    bool last = i == star->size; /* of an open star */
-    uint32_t t = star->tet[last ? i - 1 : i], opposite = star->ring[last ? i - 1 : i + 1];
-    uint32_t across = mesh->neighbour[t][tm_tet_corner(mesh, t, opposite)];
-    return across & TM_FACE_BIT ? across & ~TM_FACE_BIT : TM_NONE;
-}
-
 /* The face beyond edge ab of a face, where there is one more and that is alike; TM_NONE.
  */
 static uint32_t face_beyond(tm_improver *m, uint32_t f, uint32_t a, uint32_t b)
 {
     const tm_constrained_face *face = &m->mesh->face[f];
     uint32_t t = face->side[face->side[0] == TM_NONE] / 4, beyond = TM_NONE;
-    uint32_t i = tm_tet_corner(m->mesh, t, a), j = tm_tet_corner(m->mesh, t, b);
-    unsigned e = 0;
-    while (!(tm_edge_corner[e][0] == i && tm_edge_corner[e][1] == j) &&
-           !(tm_edge_corner[e][0] == j && tm_edge_corner[e][1] == i))
-        e++;
-    if (!tm_star_around(m->mesh, t, e, &m->around)) {
+    if (!tm_star_between(m->mesh, t, a, b, &m->around)) {
         tm_improve_no_memory(m);
         return TM_NONE;
     }
     for (size_t k = 0; k < m->around.size + !m->around.closed; k++) {
-        uint32_t other = face_at(m->mesh, &m->around, k);
+        uint32_t other = tm_star_face(m->mesh, &m->around, k);
         if (other == TM_NONE || other == f)
             continue;
         if (beyond != TM_NONE || m->mesh->face[other].marker != face->marker)
@@ -65,14 +41,6 @@ static uint32_t face_beyond(tm_improver *m, uint32_t f, uint32_t a, uint32_t b)
 static bool is_on_curve(const tm_improver *m, uint32_t a, uint32_t b)
 {
     return tm_edge_map_get(&m->features.envelope.curve, a, b) != NULL;
-}
-
-static bool is_old(const tm_surface_change *c, uint32_t face)
-{
-    for (size_t i = 0; i < c->olds; i++)
-        if (c->old[i] == face)
-            return true;
-    return false;
 }
 
 void tm_improve_look_at_bends(tm_improver *m)
@@ -88,13 +56,13 @@ void tm_improve_look_at_bends(tm_improver *m)
                      beyond = face_beyond(m, c->old[i], a, b);
             if (beyond == TM_NONE)
                 continue;
-            uint32_t d = third_node(m->mesh->face[beyond].node, a, b);
+            uint32_t d = tm_face_third_node(m->mesh->face[beyond].node, a, b);
             double old = cosine(m, a, b, n[(k + 2) % 3], d);
             if (is_on_curve(m, a, b))
                 bends->most = old > bends->most ? old : bends->most;
             else
                 bends->least = old < bends->least ? old : bends->least;
-            if (!is_old(c, beyond) && bends->count < 3 * TM_CHANGE_MOST)
+            if (!tm_surface_change_takes(c, beyond) && bends->count < 3 * TM_CHANGE_MOST)
                 bends->edge[bends->count++] = (tm_improve_bend){{a, b}, d, c->old[i]};
         }
     }
@@ -108,20 +76,21 @@ static uint32_t node_beyond(const tm_improver *m, size_t k, uint32_t a, uint32_t
     const tm_surface_change *c = &m->change_of_surface;
     const tm_envelope *e = &m->features.envelope;
     const uint32_t *patch = e->reference->patch, own = patch[e->below[c->from[k]]];
+    *is_curve = is_on_curve(m, a, b);
     for (size_t i = 0; i < m->bends.count; i++) {
         const tm_improve_bend *bend = &m->bends.edge[i];
-        *is_curve = is_on_curve(m, a, b);
-        if (has_edge((uint32_t[3]){bend->node[0], bend->node[1], bend->node[1]}, a, b) &&
+        if (tm_edge_key(bend->node[0], bend->node[1]) == tm_edge_key(a, b) &&
             patch[e->below[bend->face]] == own)
             return bend->beyond;
     }
     uint32_t found = TM_NONE;
     for (size_t i = 0; i < c->count; i++) {
-        if (i == k || !has_edge(c->node[i], a, b))
+        if (i == k || !tm_face_has_node(c->node[i], a) ||
+            !tm_face_has_node(c->node[i], b))
             continue;
         if (found != TM_NONE)
             return TM_NONE;
-        found = third_node(c->node[i], a, b);
+        found = tm_face_third_node(c->node[i], a, b);
         *is_curve = patch[e->below[c->from[i]]] != own;
         if (m->mesh->face[c->from[i]].marker != m->mesh->face[c->from[k]].marker)
             return TM_NONE;

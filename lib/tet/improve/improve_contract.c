@@ -7,8 +7,7 @@
 static bool is_in_facet(const tm_tet_mesh *mesh, const tm_ball *ball, uint32_t b)
 {
     for (size_t k = 0; k < ball->constrained_count; k++) {
-        const uint32_t *n = mesh->face[ball->constrained[k]].node;
-        if (n[0] == b || n[1] == b || n[2] == b)
+        if (tm_face_has_node(mesh->face[ball->constrained[k]].node, b))
             return true;
     }
     return false;

@@ -74,9 +74,7 @@ static double plan_cavity(tm_improver *m, uint32_t t, unsigned e, double needed,
 static bool boundary_has_edge(const tm_cavity *cavity, uint32_t a, uint32_t b)
 {
     for (size_t f = 0; f < cavity->faces; f++) {
-        const uint32_t *n = cavity->face[f];
-        if ((n[0] == a || n[1] == a || n[2] == a) &&
-            (n[0] == b || n[1] == b || n[2] == b))
+        if (tm_face_has_node(cavity->face[f], a) && tm_face_has_node(cavity->face[f], b))
             return true;
     }
     return false;

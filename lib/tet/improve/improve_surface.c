@@ -32,15 +32,28 @@ static bool add_old(tm_surface_change *c, uint32_t face)
 }
 
 /* Whether the change, with all nodes where they will be, keeps within the envelope. */
-static bool is_allowed(tm_improver *m)
+static bool is_within(tm_improver *m)
 {
     return !tm_improve_bends_more(m) &&
            tm_envelope_allows(&m->features.envelope, m->mesh, &m->change_of_surface);
 }
 
-static bool has_node(const uint32_t face[3], uint32_t v)
+static bool is_allowed(tm_improver *m)
 {
-    return face[0] == v || face[1] == v || face[2] == v;
+    tm_improve_look_at_bends(m);
+    return is_within(m);
+}
+
+/* The same with node v, which may be one to be made, at p. */
+static bool is_allowed_at(tm_improver *m, uint32_t v, const double p[3])
+{
+    double old[3];
+    tm_improve_look_at_bends(m);
+    memcpy(old, m->mesh->xyz[v], sizeof old);
+    memcpy(m->mesh->xyz[v], p, sizeof old);
+    bool allowed = is_within(m);
+    memcpy(m->mesh->xyz[v], old, sizeof old);
+    return allowed;
 }
 
 /* The constrained faces of a ball become old ones, each once. */
@@ -62,7 +75,7 @@ static bool are_neighbours(tm_improver *m, uint32_t t, uint32_t r, uint32_t s)
     if (!tm_ball_around(m->mesh, t, r, &m->marks, &m->other_ball))
         return !tm_improve_no_memory(m);
     for (size_t k = 0; k < m->other_ball.size; k++)
-        if (has_node(m->other_ball.face[k], s))
+        if (tm_face_has_node(m->other_ball.face[k], s))
             return true;
     return false;
 }
@@ -86,7 +99,6 @@ bool tm_improve_allows_swap(tm_improver *m, const tm_star *part, int parts)
             return false;
     }
     uint32_t r = part[0].ring[0], s = part[0].ring[part[0].size];
-    tm_improve_look_at_bends(m);
     return (peeled || !are_neighbours(m, part[0].tet[0], r, s)) && is_allowed(m);
 }
 
@@ -107,7 +119,7 @@ static size_t find_ring(const tm_ball *ball, uint32_t b, uint32_t ring[RING_MOST
 {
     size_t count = 0;
     for (size_t k = 0; k < ball->size; k++)
-        for (int i = 0; i < 3 && has_node(ball->face[k], b); i++) {
+        for (int i = 0; i < 3 && tm_face_has_node(ball->face[k], b); i++) {
             uint32_t v = ball->face[k][i];
             if (v == b || is_listed(ring, count, v))
                 continue;
@@ -122,8 +134,8 @@ static size_t find_ring(const tm_ball *ball, uint32_t b, uint32_t ring[RING_MOST
 static bool has_link(const tm_ball *ball, uint32_t v, uint32_t w, uint32_t third)
 {
     for (size_t k = 0; k < ball->size; k++)
-        if (has_node(ball->face[k], v) && has_node(ball->face[k], w) &&
-            (third == TM_NONE || has_node(ball->face[k], third)))
+        if (tm_face_has_node(ball->face[k], v) && tm_face_has_node(ball->face[k], w) &&
+            (third == TM_NONE || tm_face_has_node(ball->face[k], third)))
             return true;
     return false;
 }
@@ -163,7 +175,7 @@ static bool has_face(const tm_improver *m, const tm_ball *ball, uint32_t v, uint
 {
     for (size_t k = 0; k < ball->constrained_count; k++) {
         const uint32_t *n = m->mesh->face[ball->constrained[k]].node;
-        if (has_node(n, v) && has_node(n, w))
+        if (tm_face_has_node(n, v) && tm_face_has_node(n, w))
             return true;
     }
     return false;
@@ -176,7 +188,7 @@ static bool surface_links_are_common(const tm_improver *m, uint32_t b)
     uint32_t a = of_a->node;
     for (size_t k = 0; k < of_a->constrained_count; k++) {
         const uint32_t *n = m->mesh->face[of_a->constrained[k]].node;
-        if (has_node(n, b))
+        if (tm_face_has_node(n, b))
             continue;
         const int at = n[0] == a ? 0 : n[1] == a ? 1 : 2;
         const uint32_t link[2] = {n[(at + 1) % 3], n[(at + 2) % 3]};
@@ -216,7 +228,7 @@ static bool plan_contraction(tm_improver *m, uint32_t b)
         return false;
     for (size_t i = 0; i < c->olds; i++) {
         const uint32_t *n = m->mesh->face[c->old[i]].node;
-        if (!has_node(n, b) &&
+        if (!tm_face_has_node(n, b) &&
             !add_triangle(c, n[0] == a ? b : n[0], n[1] == a ? b : n[1],
                           n[2] == a ? b : n[2], c->old[i], c->old[i]))
             return false;
@@ -230,50 +242,54 @@ bool tm_improve_allows_contraction(tm_improver *m, uint32_t b)
     if (m->features.dimension[a] == 1 && !allows_join(m, a, b))
         return false;
     for (size_t k = 0; k < m->ball.size; k++)
-        if (has_node(m->ball.face[k], b))
+        if (tm_face_has_node(m->ball.face[k], b))
             t = m->ball.tet[k];
     if (!plan_contraction(m, b))
         return false;
     if (!tm_ball_around(m->mesh, t, b, &m->marks, &m->other_ball))
         return tm_improve_no_memory(m);
-    tm_improve_look_at_bends(m);
     return surface_links_are_common(m, b) && links_are_common(m, b) && is_allowed(m);
 }
 
-/* Whether the node of a ball that is on a curve may be at p, which is that place. */
-static bool allows_on_curve(const tm_improver *m, uint32_t v, const double p[3],
-                            double place)
+/* What is of a curve between the neighbours on it of node v. */
+static bool find_span(const tm_features *features, uint32_t v, tm_curve_part *span)
 {
-    const tm_features *features = &m->features;
     const uint32_t *line = features->line[v];
-    const double(*x)[3] = (const double(*)[3])m->mesh->xyz;
-    tm_curve_part before, after;
-    if (!tm_features_part(features, line[0], v, &before) ||
+    tm_curve_part after;
+    if (!tm_features_part(features, line[0], v, span) ||
         !tm_features_part(features, v, line[1], &after))
         return false;
-    double end = before.place[1] + (after.place[1] - after.place[0]);
-    return before.place[0] < place && place < end &&
-           tm_envelope_allows_edge(&features->envelope, before.curve, before.place[0],
-                                   place, x[line[0]], p) &&
-           tm_envelope_allows_edge(&features->envelope, before.curve, place, end, p,
-                                   x[line[1]]);
+    span->place[1] += after.place[1] - after.place[0];
+    span->node[1] = line[1];
+    return true;
+}
+
+/* Whether a node between the ends of a part of a curve may be at p, which is that place
+ * of the curve. */
+static bool allows_on_curve(const tm_improver *m, const tm_curve_part *part,
+                            const double p[3], double place)
+{
+    const tm_envelope *e = &m->features.envelope;
+    const double(*x)[3] = (const double(*)[3])m->mesh->xyz;
+    const double from = part->place[0], to = part->place[1];
+    return from < place && place < to &&
+           tm_envelope_allows_edge(e, part->curve, from, place, x[part->node[0]], p) &&
+           tm_envelope_allows_edge(e, part->curve, place, to, p, x[part->node[1]]);
 }
 
 bool tm_improve_onto_surface(tm_improver *m, double p[3], double *place)
 {
     const tm_features *features = &m->features;
     uint32_t v = m->ball.node;
-    tm_curve_part before, after;
+    tm_curve_part span;
     if (features->dimension[v] == 2) {
         tm_envelope_onto_patch(&features->envelope, m->ball.constrained[0], p);
         return true;
     }
-    if (!tm_features_part(features, features->line[v][0], v, &before) ||
-        !tm_features_part(features, v, features->line[v][1], &after))
+    if (!find_span(features, v, &span))
         return false;
-    double end = before.place[1] + (after.place[1] - after.place[0]);
-    *place = tm_envelope_onto_curve(&features->envelope, before.curve, before.place[0],
-                                    end, p);
+    *place = tm_envelope_onto_curve(&features->envelope, span.curve, span.place[0],
+                                    span.place[1], p);
     return true;
 }
 
@@ -281,8 +297,9 @@ bool tm_improve_allows_move(tm_improver *m, const double p[3], double place)
 {
     uint32_t v = m->ball.node;
     tm_surface_change *c = start_change(m);
-    double old[3];
-    if (m->features.dimension[v] == 1 && !allows_on_curve(m, v, p, place))
+    tm_curve_part span;
+    if (m->features.dimension[v] == 1 &&
+        (!find_span(&m->features, v, &span) || !allows_on_curve(m, &span, p, place)))
         return false;
     if (!add_old_of(c, &m->ball))
         return false;
@@ -290,21 +307,7 @@ bool tm_improve_allows_move(tm_improver *m, const double p[3], double place)
         const uint32_t *n = m->mesh->face[c->old[i]].node;
         add_triangle(c, n[0], n[1], n[2], c->old[i], c->old[i]);
     }
-    tm_improve_look_at_bends(m);
-    memcpy(old, m->mesh->xyz[v], sizeof old);
-    memcpy(m->mesh->xyz[v], p, sizeof old);
-    bool allowed = is_allowed(m);
-    memcpy(m->mesh->xyz[v], old, sizeof old);
-    return allowed;
-}
-
-/* The constrained face with ring node i of a star; TM_NONE. */
-static uint32_t face_at(const tm_tet_mesh *mesh, const tm_star *star, size_t i)
-{
-    bool last = i == star->size; /* of an open star */
-    uint32_t t = star->tet[last ? i - 1 : i], opposite = star->ring[last ? i - 1 : i + 1];
-    uint32_t across = mesh->neighbour[t][tm_tet_corner(mesh, t, opposite)];
-    return across & TM_FACE_BIT ? across & ~TM_FACE_BIT : TM_NONE;
+    return is_allowed_at(m, v, p);
 }
 
 void tm_improve_split_onto_surface(tm_improver *m, double p[3], double *place)
@@ -317,7 +320,7 @@ void tm_improve_split_onto_surface(tm_improver *m, double p[3], double *place)
         return;
     }
     for (size_t i = 0; i < star->size + !star->closed; i++) {
-        uint32_t face = face_at(m->mesh, star, i);
+        uint32_t face = tm_star_face(m->mesh, star, i);
         if (face == TM_NONE)
             continue;
         tm_envelope_onto_patch(&m->features.envelope, face, p);
@@ -337,7 +340,7 @@ static bool plan_split_faces(tm_improver *m, uint32_t v)
     tm_surface_change *c = start_change(m);
     uint32_t new_face = (uint32_t)m->mesh->faces;
     for (size_t i = 0; i < star->size + !star->closed; i++) {
-        uint32_t face = face_at(m->mesh, star, i), upper[3], lower[3];
+        uint32_t face = tm_star_face(m->mesh, star, i), upper[3], lower[3];
         if (face == TM_NONE)
             continue;
         for (int k = 0; k < 3; k++) {
@@ -357,26 +360,13 @@ bool tm_improve_allows_split(tm_improver *m, const double p[3], double place)
 {
     const tm_star *star = &m->star;
     uint32_t v = next_node(m->mesh);
-    double old[3];
     tm_curve_part part;
-    if (tm_features_part(&m->features, star->a, star->b, &part)) {
-        const double(*x)[3] = (const double(*)[3])m->mesh->xyz;
-        const tm_envelope *e = &m->features.envelope;
-        if (!(part.place[0] < place && place < part.place[1]) ||
-            !tm_envelope_allows_edge(e, part.curve, part.place[0], place, x[part.node[0]],
-                                     p) ||
-            !tm_envelope_allows_edge(e, part.curve, place, part.place[1], p,
-                                     x[part.node[1]]))
-            return false;
-    }
+    if (tm_features_part(&m->features, star->a, star->b, &part) &&
+        !allows_on_curve(m, &part, p, place))
+        return false;
     if (!tm_improve_reserve(m, 2 * star->size, 1) || !plan_split_faces(m, v))
         return false;
-    tm_improve_look_at_bends(m);
-    memcpy(old, m->mesh->xyz[v], sizeof old);
-    memcpy(m->mesh->xyz[v], p, sizeof old);
-    bool allowed = is_allowed(m);
-    memcpy(m->mesh->xyz[v], old, sizeof old);
-    return allowed;
+    return is_allowed_at(m, v, p);
 }
 
 bool tm_improve_allows_peel(tm_improver *m, uint32_t t, uint32_t i)
@@ -396,7 +386,6 @@ bool tm_improve_allows_peel(tm_improver *m, uint32_t t, uint32_t i)
             p[s] = corner[s] == n[k] ? n[i] : corner[s];
         add_triangle(c, p[0], p[1], p[2], c->count == 0 ? face : new_face++, face);
     }
-    tm_improve_look_at_bends(m);
     return is_allowed(m);
 }
 

@@ -3,11 +3,6 @@
 
 #include "../../geom/predicates.h"
 
-static bool has_node(const uint32_t face[3], uint32_t v)
-{
-    return face[0] == v || face[1] == v || face[2] == v;
-}
-
 /* Whether tetrahedron t, which has both nodes, may go: the constrained face opposite b,
  * if there is one, takes the place of the face opposite a. */
 static bool may_go(const tm_tet_mesh *mesh, uint32_t t, uint32_t a, uint32_t b,
@@ -29,7 +24,7 @@ double tm_contraction_cost(const tm_tet_mesh *mesh, const tm_ball *ball, uint32_
     *gone = 0;
     for (size_t i = 0; i < ball->size; i++) {
         const uint32_t *f = ball->face[i];
-        if (has_node(f, b)) {
+        if (tm_face_has_node(f, b)) {
             if (!may_go(mesh, ball->tet[i], ball->node, b, surface_moves))
                 return HUGE_VAL;
             ++*gone;
@@ -44,7 +39,7 @@ double tm_contraction_cost(const tm_tet_mesh *mesh, const tm_ball *ball, uint32_
     }
     for (size_t i = 0; i < ball->size; i++) {
         const uint32_t *f = ball->face[i];
-        if (!has_node(f, b) && tm_orient3d(x[f[0]], x[f[1]], x[f[2]], x[b]) <= 0)
+        if (!tm_face_has_node(f, b) && tm_orient3d(x[f[0]], x[f[1]], x[f[2]], x[b]) <= 0)
             return HUGE_VAL;
     }
     return sum;
@@ -54,7 +49,7 @@ double tm_contraction_cost(const tm_tet_mesh *mesh, const tm_ball *ball, uint32_
 static void move_face(tm_tet_mesh *mesh, uint32_t f, uint32_t a, uint32_t b)
 {
     tm_constrained_face *face = &mesh->face[f];
-    if (has_node(face->node, a) && has_node(face->node, b)) {
+    if (tm_face_has_node(face->node, a) && tm_face_has_node(face->node, b)) {
         face->side[0] = face->side[1] = TM_NONE;
         face->listed = false;
         return;
@@ -106,7 +101,7 @@ size_t tm_contract(tm_tet_mesh *mesh, const tm_ball *ball, uint32_t b, uint32_t 
         move_face(mesh, ball->constrained[k], a, b);
     for (size_t i = 0; i < ball->size; i++) {
         uint32_t t = ball->tet[i];
-        if (has_node(ball->face[i], b)) {
+        if (tm_face_has_node(ball->face[i], b)) {
             bool peeled = mesh->neighbour[t][tm_tet_corner(mesh, t, b)] & TM_FACE_BIT;
             uint32_t beyond = collapse(mesh, t, a, b);
             if (peeled)

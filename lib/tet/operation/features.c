@@ -54,20 +54,13 @@ void tm_features_copy_node(tm_features *to, const tm_features *from, uint32_t no
     memcpy(to->line[node], from->line[node], sizeof to->line[node]);
 }
 
-static uint32_t third_node(const tm_constrained_face *face, uint32_t a, uint32_t b)
-{
-    for (int i = 0; i < 2; i++)
-        if (face->node[i] != a && face->node[i] != b)
-            return face->node[i];
-    return face->node[2];
-}
-
 /* Whether two faces at the edge ab are in one facet. */
 static bool is_same_facet(const tm_tet_mesh *mesh, uint32_t f, uint32_t g, uint32_t a,
                           uint32_t b, double flatness)
 {
-    return tm_facet_continues(mesh, f, g, a, b, third_node(&mesh->face[f], a, b),
-                              third_node(&mesh->face[g], a, b), flatness);
+    return tm_facet_continues(mesh, f, g, a, b,
+                              tm_face_third_node(mesh->face[f].node, a, b),
+                              tm_face_third_node(mesh->face[g].node, a, b), flatness);
 }
 
 /* In the map of the surface's edges: the first face at the edge, or one of these. */
@@ -366,18 +359,14 @@ tm_edge_class tm_features_classify(const tm_features *features, const tm_tet_mes
     size_t count = 0;
     if (!star->constrained_face)
         return tm_star_is_free(mesh, star) ? TM_EDGE_INSIDE : TM_EDGE_OF_FEATURE;
-    /* The face with ring[i] is opposite ring[i + 1] in tetrahedron i; the last one of an
-     * open star opposite ring[size - 1]. */
     for (size_t i = 0; i < star->size + !star->closed; i++) {
-        size_t k = i < star->size ? i : i - 1;
-        uint32_t t = star->tet[k], opposite = star->ring[i < star->size ? i + 1 : i - 1];
-        uint32_t across = mesh->neighbour[t][tm_tet_corner(mesh, t, opposite)];
-        if (!(across & TM_FACE_BIT))
+        uint32_t f = tm_star_face(mesh, star, i);
+        if (f == TM_NONE)
             continue;
         if (count == 2)
             return TM_EDGE_OF_FEATURE;
         constrained[count] = i;
-        face[count++] = across & ~TM_FACE_BIT;
+        face[count++] = f;
     }
     if (count < 2 || has_line_to(features, a, b) || has_line_to(features, b, a))
         return TM_EDGE_OF_FEATURE;

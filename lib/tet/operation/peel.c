@@ -3,25 +3,14 @@
 
 #include <string.h>
 
-/* The edge of a tetrahedron between two nodes, 0 … 5. */
-static unsigned edge_of(const tm_tet_mesh *mesh, uint32_t t, uint32_t p, uint32_t q)
-{
-    uint32_t i = tm_tet_corner(mesh, t, p), j = tm_tet_corner(mesh, t, q);
-    unsigned e = 0;
-    while (!(tm_edge_corner[e][0] == i && tm_edge_corner[e][1] == j) &&
-           !(tm_edge_corner[e][0] == j && tm_edge_corner[e][1] == i))
-        e++;
-    return e;
-}
-
 bool tm_peel_is_possible(const tm_tet_mesh *mesh, const tm_star *star, tm_star *around)
 {
     uint32_t t = star->tet[0];
     if (mesh->neighbour[t][tm_tet_corner(mesh, t, star->a)] & TM_FACE_BIT ||
         mesh->neighbour[t][tm_tet_corner(mesh, t, star->b)] & TM_FACE_BIT)
         return false;
-    unsigned e = edge_of(mesh, t, star->ring[0], star->ring[1]);
-    return tm_star_around(mesh, t, e, around) && tm_star_is_free(mesh, around) &&
+    return tm_star_between(mesh, t, star->ring[0], star->ring[1], around) &&
+           tm_star_is_free(mesh, around) &&
            !tm_edge_map_get(&mesh->locked, around->a, around->b);
 }
 

@@ -139,18 +139,14 @@ static int32_t marker_on_edge(const tm_tet_mesh *mesh, const tm_star *star)
         return edge->marker;
     int32_t marker = 0;
     bool found = false;
-    for (size_t i = 0; i < star->size && star->constrained_face; i++)
-        for (size_t end = 0; end < 2; end++) {
-            /* The face with ring[i + 1 - end] is opposite ring[i + end]. */
-            uint32_t t = star->tet[i];
-            uint32_t n = mesh->neighbour[t][tm_tet_corner(mesh, t, star->ring[i + end])];
-            if (!(n & TM_FACE_BIT))
-                continue;
-            int32_t of_face = mesh->face[n & ~TM_FACE_BIT].marker;
-            if (!found || of_face > marker)
-                marker = of_face;
-            found = true;
-        }
+    for (size_t i = 0; i < star->size + !star->closed && star->constrained_face; i++) {
+        uint32_t f = tm_star_face(mesh, star, i);
+        if (f == TM_NONE)
+            continue;
+        if (!found || mesh->face[f].marker > marker)
+            marker = mesh->face[f].marker;
+        found = true;
+    }
     return marker;
 }
 
