@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sharp edges, the curves and corners that they make, and the patches between them. */
+#include "surface_loose.h"
 #include "surface_parts.h"
 
 #include "../base/array.h"
@@ -20,17 +21,12 @@ static const double sharp_corner_angle = 120;
  * coordinates of six digits, or of 32 bits, do not say which it is. */
 static const double least_height = 1e-6;
 
-typedef struct sharp_edge {
-    uint32_t node[2]; /* ascending */
-    uint32_t triangle[2];
-} sharp_edge;
-
 typedef struct feature_finder {
     tm_surface *surface;
     double (*normal)[3];
     double most_cosine; /* of the feature angle */
     size_t edges;
-    sharp_edge *edge;
+    tm_sharp_edge *edge;
     size_t *start; /* [nodes + 1]: sharp edges at v are at[start[v] … start[v + 1]) */
     uint32_t *at;
     bool *corner;     /* [nodes] */
@@ -109,7 +105,7 @@ static bool is_sharp(const feature_finder *f, uint32_t t, uint32_t n)
 
 static int compare_edges(const void *a, const void *b)
 {
-    const sharp_edge *p = a, *q = b;
+    const tm_sharp_edge *p = a, *q = b;
     for (int i = 0; i < 2; i++)
         if (p->node[i] != q->node[i])
             return p->node[i] < q->node[i] ? -1 : 1;
@@ -119,7 +115,7 @@ static int compare_edges(const void *a, const void *b)
 /* Lists sharp edges (each from its triangle with the smaller number) and joins the
  * triangles beside the others in `parent`. Returns how many; counts only for edge NULL.
  */
-static size_t list_edges(const feature_finder *f, sharp_edge *edge, uint32_t *parent)
+static size_t list_edges(const feature_finder *f, tm_sharp_edge *edge, uint32_t *parent)
 {
     const tm_surface *surface = f->surface;
     size_t count = 0;
@@ -134,7 +130,7 @@ static size_t list_edges(const feature_finder *f, sharp_edge *edge, uint32_t *pa
             }
             uint32_t p = surface->triangle[t][i], q = surface->triangle[t][(i + 1) % 3];
             if (edge)
-                edge[count] = (sharp_edge){{p < q ? p : q, p < q ? q : p}, {t, n}};
+                edge[count] = (tm_sharp_edge){{p < q ? p : q, p < q ? q : p}, {t, n}};
             count++;
         }
     return count;
@@ -201,124 +197,6 @@ static tm_status attach_edges(feature_finder *f, tm_error *error)
     return TM_OK;
 }
 
-/* How many of the sharp edges that are left are at each node. */
-static void count_degrees(const feature_finder *f, uint32_t *degree)
-{
-    for (size_t e = 0; e < f->edges; e++)
-        for (int i = 0; i < 2; i++)
-            degree[f->edge[e].node[i]]++;
-}
-
-/* Follows sharp edges from a node with one, over nodes with two. Returns the length; the
- * edges are chain[0 … *count). */
-static double follow_end(const feature_finder *f, uint32_t v, const uint32_t *degree,
-                         const bool *dropped, uint32_t *chain, size_t *count)
-{
-    const tm_surface *surface = f->surface;
-    double length = 0;
-    *count = 0;
-    for (;;) {
-        size_t i = f->start[v];
-        while (i < f->start[v + 1] &&
-               (dropped[f->at[i]] || (*count > 0 && f->at[i] == chain[*count - 1])))
-            i++;
-        if (i == f->start[v + 1] || (*count > 0 && degree[v] != 2))
-            return length;
-        uint32_t e = chain[(*count)++] = f->at[i];
-        const uint32_t *n = f->edge[e].node;
-        length += sqrt(tm_distance2(surface->xyz[n[0]], surface->xyz[n[1]]));
-        if (f->edge[e].triangle[1] == TM_NONE)
-            length = HUGE_VAL; /* it is not sharp by its angle */
-        v = n[n[0] == v];
-    }
-}
-
-/* Drops chains of sharp edges that end freely and are shorter than `least`, until there
- * is none. */
-static void prune(feature_finder *f, double least, uint32_t *degree, bool *dropped,
-                  uint32_t *chain)
-{
-    for (bool again = true; again;) {
-        again = false;
-        for (uint32_t v = 0; v < f->surface->nodes; v++) {
-            size_t count;
-            if (degree[v] != 1 ||
-                !(follow_end(f, v, degree, dropped, chain, &count) < least))
-                continue;
-            again = true;
-            for (size_t k = 0; k < count; k++) {
-                dropped[chain[k]] = true;
-                for (int i = 0; i < 2; i++)
-                    degree[f->edge[chain[k]].node[i]]--;
-            }
-        }
-    }
-}
-
-/* Networks of sharp edges: what is connected, by the node that stands for it. */
-typedef struct network {
-    uint32_t *root;  /* [nodes]: disjoint sets */
-    uint32_t *loose; /* [nodes], at roots: chains that end freely and are short */
-    uint32_t *arms;  /* curves at nodes that are not just passed: twice their number */
-} network;
-
-static void count_network(const feature_finder *f, double least, const uint32_t *degree,
-                          const bool *dropped, uint32_t *chain, network *n)
-{
-    const size_t nodes = f->surface->nodes;
-    for (uint32_t v = 0; v < nodes; v++)
-        n->root[v] = v;
-    for (size_t e = 0; e < f->edges; e++)
-        tm_set_unite(n->root, f->edge[e].node[0], f->edge[e].node[1]);
-    for (uint32_t v = 0; v < nodes; v++) {
-        size_t count;
-        uint32_t root = tm_set_root(n->root, v);
-        if (degree[v] != 2)
-            n->arms[root] += degree[v];
-        n->loose[root] +=
-            degree[v] == 1 && follow_end(f, v, degree, dropped, chain, &count) < least;
-    }
-}
-
-/* Drops the networks of which many curves end freely, and all where many of all do: they
- * are no features of a shape, but roughness. */
-static bool drop_rough(const feature_finder *f, double least, uint32_t *degree,
-                       bool *dropped, uint32_t *chain)
-{
-    const uint32_t many = 20; /* one of so many */
-    const size_t nodes = f->surface->nodes;
-    size_t loose = 0, arms = 0;
-    network n = {tm_new(nodes, sizeof *n.root), calloc(nodes + 1, sizeof *n.loose),
-                 calloc(nodes + 1, sizeof *n.arms)};
-    bool done = n.root && n.loose && n.arms;
-    if (done)
-        count_network(f, least, degree, dropped, chain, &n);
-    for (size_t v = 0; v < nodes && done; v++) {
-        loose += n.loose[v];
-        arms += n.arms[v];
-    }
-    /* A network without a node that is not just passed is one closed curve. */
-    for (size_t e = 0; e < f->edges && done; e++) {
-        const uint32_t root = tm_set_root(n.root, f->edge[e].node[0]);
-        if (n.arms[root] == 0)
-            arms += n.arms[root] = 2;
-    }
-    f->surface->rough |= 2 * many * loose > arms;
-    for (size_t e = 0; e < f->edges && done; e++) {
-        const uint32_t root = tm_set_root(n.root, f->edge[e].node[0]);
-        if (f->edge[e].triangle[1] == TM_NONE ||
-            (2 * many * n.loose[root] <= n.arms[root] && 2 * many * loose <= arms))
-            continue;
-        dropped[e] = true;
-        for (int i = 0; i < 2; i++)
-            degree[f->edge[e].node[i]]--;
-    }
-    free(n.root);
-    free(n.loose);
-    free(n.arms);
-    return done;
-}
-
 /* Takes the dropped ones out: the patches beside them are one. */
 static void take_out(feature_finder *f, const bool *dropped)
 {
@@ -334,17 +212,13 @@ static void take_out(feature_finder *f, const bool *dropped)
 
 static tm_status drop_short(feature_finder *f, double least, tm_error *error)
 {
-    uint32_t *degree = calloc(f->surface->nodes + 1, sizeof *degree);
+    const tm_sharp_network network = {f->surface, f->edges, f->edge, f->start, f->at};
     bool *dropped = calloc(f->edges + 1, sizeof *dropped);
-    uint32_t *chain = tm_new(f->edges, sizeof *chain);
-    tm_status status = degree && dropped && chain ? TM_OK : tm_fail_memory(error);
+    if (!dropped)
+        return tm_fail_memory(error);
+    tm_status status =
+        tm_surface_find_loose(&network, least, dropped, &f->surface->rough, error);
     if (status == TM_OK) {
-        count_degrees(f, degree);
-        if (!drop_rough(f, least, degree, dropped, chain))
-            status = tm_fail_memory(error);
-    }
-    if (status == TM_OK) {
-        prune(f, least, degree, dropped, chain);
         take_out(f, dropped);
         free(f->start);
         free(f->at);
@@ -352,9 +226,7 @@ static tm_status drop_short(feature_finder *f, double least, tm_error *error)
         f->at = NULL;
         status = attach_edges(f, error);
     }
-    free(degree);
     free(dropped);
-    free(chain);
     return status;
 }
 
