@@ -262,7 +262,7 @@ static void extend_reach(tm_envelope *e, const tm_tet_mesh *mesh, uint32_t t,
     }
 }
 
-/* Face `face`, which has or will have the nodes n, is above triangle t. */
+/* Face `face`, which has or will have the nodes n, is above triangle t, mostly. */
 static bool add_link(tm_envelope *e, const tm_tet_mesh *mesh, uint32_t t, uint32_t face,
                      const uint32_t n[3])
 {
@@ -279,7 +279,7 @@ static bool add_link(tm_envelope *e, const tm_tet_mesh *mesh, uint32_t t, uint32
     return true;
 }
 
-/* Links all faces anew: those that were above a triangle once go. */
+/* Links all faces anew: those that were above another triangle once go. */
 bool tm_envelope_link_all(tm_envelope *e, const tm_tet_mesh *mesh)
 {
     e->links = 0;
@@ -291,12 +291,7 @@ bool tm_envelope_link_all(tm_envelope *e, const tm_tet_mesh *mesh)
         const tm_constrained_face *face = &mesh->face[f];
         if (face->side[0] == TM_NONE && face->side[1] == TM_NONE)
             continue;
-        tm_covered triangle = covered(mesh, face->node, e->below[f]);
-        bool done = tm_envelope_covers(e, &triangle) ||
-                    add_link(e, mesh, e->below[f], f, face->node);
-        for (size_t i = 0; i < e->flood_count && done; i++)
-            done = add_link(e, mesh, e->flood[i], f, face->node);
-        if (!done)
+        if (!add_link(e, mesh, e->below[f], f, face->node))
             return false;
     }
     e->links_at_first = e->links;
@@ -325,13 +320,9 @@ static bool place_face(tm_envelope *e, const tm_tet_mesh *mesh, uint32_t face,
                        const uint32_t node[3], uint32_t below)
 {
     tm_covered triangle = covered(mesh, node, below);
-    if (!tm_envelope_covers(e, &triangle) || !put(e, TM_WAS_BELOW, face, e->flood[0]) ||
-        !put(e, TM_WAS_FIRST, face, TM_NONE))
-        return false;
-    for (size_t i = 0; i < e->flood_count; i++)
-        if (!add_link(e, mesh, e->flood[i], face, node))
-            return false;
-    return true;
+    return tm_envelope_covers(e, &triangle) && put(e, TM_WAS_BELOW, face, e->flood[0]) &&
+           put(e, TM_WAS_FIRST, face, TM_NONE) &&
+           add_link(e, mesh, e->flood[0], face, node);
 }
 
 bool tm_envelope_follow(tm_envelope *envelope, const tm_tet_mesh *mesh,

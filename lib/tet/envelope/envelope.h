@@ -53,7 +53,8 @@ typedef struct tm_envelope {
     uint32_t *below, *first_kept;
     uint32_t *next_kept; /* [nodes of the reference] */
 
-    /* By triangle of the reference: the faces above it, and some that were. */
+    /* By triangle of the reference: the faces that are above it, with the largest part of
+     * them, and some that were. So each face is found by its own box. */
     uint32_t *first_link; /* [triangles of the reference] */
     tm_envelope_link *link;
     size_t links, link_room, links_at_first;

@@ -17,9 +17,8 @@ static tm_status check_face(tm_envelope *e, const tm_tet_mesh *mesh, uint32_t f,
     tm_covered triangle = {{p, q, r}, e->below[f]};
     if (!tm_envelope_covers(e, &triangle))
         return FAIL("face %u is not covered by the reference", f);
-    for (size_t i = 0; i < e->flood_count; i++)
-        if (!tm_envelope_is_linked(e, e->flood[i], f))
-            return FAIL("face %u is not known above triangle %u", f, e->flood[i]);
+    if (!tm_envelope_is_linked(e, e->below[f], f))
+        return FAIL("face %u is not known above triangle %u", f, e->below[f]);
     for (uint32_t v = e->first_kept[f]; v != TM_NONE; v = e->next_kept[v]) {
         if (!(sqrt(tm_triangle_distance2(e->reference->xyz[v], p, q, r)) <=
               e->tolerance * rounding))

@@ -24,8 +24,7 @@ bool tm_envelope_crosses(tm_envelope *e, const tm_tet_mesh *mesh,
 /* Whether it is known that a face is above triangle t of the reference. */
 bool tm_envelope_is_linked(const tm_envelope *e, uint32_t t, uint32_t face);
 
-/* Notes above which triangles of the reference each face is; false where memory is out.
- */
+/* Notes above which triangle of the reference each face is; false where memory is out. */
 bool tm_envelope_link_all(tm_envelope *e, const tm_tet_mesh *mesh);
 
 /* The squared distances from a point to a segment, and to a triangle. */
