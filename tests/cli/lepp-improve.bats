@@ -270,20 +270,40 @@ END
 --ops insertion,face-removal
 END
     done
-    # Contraction does not take away what is good.
+    # Contraction does not take away what is good, nor does moving nodes close ways.
     for mesh in slab thin; do
         lepp-improve -q --json "$out/all" "$out/$mesh.tm" >"$out/1.tm"
-        lepp-improve -q --json "$out/some" "$out/$mesh.tm" \
-            --ops edge-removal,boundary-swap,face-removal,smoothing,insertion >"$out/1.tm"
-        python3 - "$out/all" "$out/some" <<'END'
+        for options in edge-removal,boundary-swap,face-removal,smoothing,insertion \
+            edge-removal,boundary-swap,face-removal,contraction,insertion; do
+            lepp-improve -q --json "$out/some" "$out/$mesh.tm" --ops "$options" >"$out/1.tm"
+            python3 - "$out/all" "$out/some" <<'END'
 import json, sys
 full, part = (json.load(open(name)) for name in sys.argv[1:])
 assert full["after"]["tets"] > 0.5 * full["before"]["tets"]
 assert full["after"]["bad_percent"] <= part["after"]["bad_percent"] + 1
 END
+        done
     done
     lepp-improve -q --json "$out/json" "$out/bricks.tm" >"$out/1.tm"
     [ "$(json "$out/json" after bad_percent | cut -d . -f 1)" -lt 5 ]
+}
+
+@test "improve: of a grid that is too fine in one direction whole layers go" {
+    local height
+    for height in 0.05 8 20; do
+        bricks "$height" >"$out/bricks.tm"
+        lepp-improve -q --json "$out/json" "$out/bricks.tm" >"$out/better.tm"
+        mesh-check -q --against "$out/bricks.tm" --within 0 "$out/better.tm"
+        tet-stats --json "$out/stats" "$out/better.tm" >"$out/table"
+        python3 - "$out/json" "$out/stats" "$height" <<'END'
+import json, sys
+run, stats = (json.load(open(name)) for name in sys.argv[1:3])
+assert run["after"]["bad_percent"] <= 10
+assert run["after"]["min_dihedral"] > run["before"]["min_dihedral"]
+assert run["after"]["max_dihedral"] <= 150
+assert abs(stats["volume"] / (125 * float(sys.argv[3])) - 1) < 1e-12
+END
+    done
 }
 
 @test "what is bad and stays so is told from what is not bad" {

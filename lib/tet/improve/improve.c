@@ -55,7 +55,7 @@ bool tm_improve_is_bad(const tm_improver *m, uint32_t t)
            tm_tet_is_in_set(m->mesh, t);
 }
 
-static size_t count_bad(const tm_improver *m)
+size_t tm_improve_count_bad(const tm_improver *m)
 {
     size_t bad = 0;
     for (uint32_t t = 0; t < m->mesh->slots; t++)
@@ -84,7 +84,7 @@ bool tm_improve_is_due(const tm_improver *m, uint32_t t)
 bool tm_improve_find_targets(tm_improver *m, bool all)
 {
     const tm_tet_mesh *mesh = m->mesh;
-    size_t bad = count_bad(m), count = 0;
+    size_t bad = tm_improve_count_bad(m), count = 0;
     tm_curve_point *placed = tm_new(bad, sizeof *placed);
     uint32_t *target = tm_grow(m->target, &m->target_room, bad + 1, sizeof *target);
     m->target = target ? target : m->target;
@@ -168,6 +168,11 @@ static double badness_of(const tm_improver *m, size_t bad)
     return tm_improve_badness(m, m->mesh->tets, bad);
 }
 
+double tm_improve_mesh_badness(const tm_improver *m)
+{
+    return badness_of(m, tm_improve_count_bad(m));
+}
+
 /* Whether a pass took away the good: it left fewer tetrahedra than there were, and these
  * cost more on the average, or are few. */
 static bool is_emptied(const tm_improver *m, size_t tets, double mean)
@@ -185,7 +190,7 @@ static void run_thrifty_pass(tm_improver *m, tm_improve_phase phase)
     bool watched = phase > TM_PHASE_MOVE && !m->thrifty;
     double mean = watched ? mean_cost(m) : 0;
     if (watched)
-        tm_improve_snapshot(m, &m->earlier, count_bad(m), 0);
+        tm_improve_snapshot(m, &m->earlier, tm_improve_count_bad(m), 0);
     run_pass(m, phase);
     if (!watched || !is_emptied(m, tets, mean))
         return;
@@ -197,19 +202,18 @@ static void run_thrifty_pass(tm_improver *m, tm_improve_phase phase)
 /* Passes until one gains too little. */
 static void settle(tm_improver *m, tm_improve_phase phase, double price)
 {
-    double before, after = badness_of(m, count_bad(m));
+    double before, after = tm_improve_mesh_badness(m);
     tm_improve_set_price(m, price);
     for (int k = 0; k < PASSES_MAX && after > 0 && !tm_improve_is_over(m); k++) {
         before = after;
         run_thrifty_pass(m, phase);
-        after = badness_of(m, count_bad(m));
+        after = tm_improve_mesh_badness(m);
         if (!is_gain(before, after, enough_gain))
             break;
     }
 }
 
-/* Contracts at all nodes, once. */
-static void coarsen_once(tm_improver *m)
+void tm_improve_contract_all(tm_improver *m)
 {
     for (uint32_t v = 0; v < m->mesh->nodes; v++) {
         if (m->mesh->tets <= m->most_tets || m->status != TM_OK)
@@ -228,7 +232,7 @@ static void coarsen(tm_improver *m)
         if (m->mesh->tets <= m->most_tets || !tm_improve_has(m, TM_OP_CONTRACTION))
             break;
         tm_improve_set_price(m, price);
-        coarsen_once(m);
+        tm_improve_contract_all(m);
         run_pass(m, TM_PHASE_SHRINK);
     }
     settle(m, TM_PHASE_SHRINK, 0);
@@ -249,8 +253,7 @@ static size_t count_bad_angles(const tm_improver *m)
     return bad;
 }
 
-/* Whether the mesh is no worse than the input by its angles, whatever the measure is. */
-static bool keeps_angles(const tm_improver *m)
+bool tm_improve_keeps_angles(const tm_improver *m)
 {
     return m->cost.measure == TM_MEASURE_DIHEDRAL ||
            badness_of(m, count_bad_angles(m)) <= m->angle_badness;
@@ -261,11 +264,11 @@ static bool keeps_angles(const tm_improver *m)
 static double snapshot_best(tm_improver *m)
 {
     bool is_first = m->best.bad == SIZE_MAX;
-    size_t bad = count_bad(m);
+    size_t bad = tm_improve_count_bad(m);
     double badness = badness_of(m, bad);
-    if (is_first || (badness < m->best.badness && keeps_angles(m)))
+    if (is_first || (badness < m->best.badness && tm_improve_keeps_angles(m)))
         tm_improve_snapshot(m, &m->best, bad, badness);
-    else if (badness > m->best.badness || !keeps_angles(m))
+    else if (badness > m->best.badness || !tm_improve_keeps_angles(m))
         tm_improve_restore(m, &m->best);
     return m->best.badness;
 }
@@ -325,12 +328,12 @@ static void climb(tm_improver *m, double first, double last)
 {
     const double step = 1;
     double reached = first;
-    while (reached < last && count_bad(m) == 0 && !tm_improve_is_over(m)) {
+    while (reached < last && tm_improve_count_bad(m) == 0 && !tm_improve_is_over(m)) {
         double degrees = fmin(reached + step, last);
         tm_improve_snapshot(m, &m->reached, 0, 0);
         tm_improve_set_target(m, degrees);
         reach(m);
-        if (count_bad(m) > 0) {
+        if (tm_improve_count_bad(m) > 0) {
             tm_improve_restore(m, &m->reached);
             tm_improve_forbid(m, reached);
             break;
@@ -348,15 +351,15 @@ static void run(tm_improver *m)
 {
     const double first = 30, last = m->options->angle;
     m->input.bad = SIZE_MAX;
-    if (first < last && m->mesh->tets <= m->most_tets)
-        tm_improve_snapshot(m, &m->input, count_bad(m), badness_of(m, count_bad(m)));
+    if (m->mesh->tets <= m->most_tets && (first < last || tm_improve_is_mostly_bad(m)))
+        tm_improve_keep(m, &m->input);
     tm_improve_set_target(m, fmin(first, last));
     reach(m);
     if (first >= last)
         return;
     climb(m, first, last);
     tm_improve_set_target(m, last);
-    if (m->input.bad != SIZE_MAX && badness_of(m, count_bad(m)) > m->input.badness)
+    if (m->input.bad != SIZE_MAX && tm_improve_mesh_badness(m) > m->input.badness)
         tm_improve_restore(m, &m->input);
 }
 
@@ -369,6 +372,7 @@ static void run_all(tm_improver *m)
     first.converge = false;
     m->options = &first;
     run(m);
+    tm_improve_stuck(m, run, reach);
     tm_improve_worst(m, reach);
     m->options = options;
     if (!options->converge || tm_improve_is_over(m))

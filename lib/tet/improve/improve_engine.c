@@ -187,6 +187,12 @@ void tm_improve_snapshot(tm_improver *m, tm_improve_state *state, size_t bad,
         tm_improve_no_memory(m);
 }
 
+void tm_improve_keep(tm_improver *m, tm_improve_state *state)
+{
+    size_t bad = tm_improve_count_bad(m);
+    tm_improve_snapshot(m, state, bad, tm_improve_badness(m, m->mesh->tets, bad));
+}
+
 void tm_improve_restore(tm_improver *m, const tm_improve_state *state)
 {
     if (m->status != TM_OK)
@@ -205,15 +211,22 @@ void tm_improve_forbid(tm_improver *m, double degrees)
     tm_angle_limits_narrow(&m->cost.limits, degrees);
 }
 
+tm_angle_limits tm_improve_angles(const tm_improver *m)
+{
+    const double(*x)[3] = (const double(*)[3])m->mesh->xyz;
+    tm_angle_limits angles = tm_angle_limits_none();
+    for (uint32_t t = 0; t < m->mesh->slots; t++) {
+        const uint32_t *n = m->mesh->tet[t];
+        if (tm_tet_lives(m->mesh, t))
+            tm_angle_limits_include(&angles, x[n[0]], x[n[1]], x[n[2]], x[n[3]]);
+    }
+    return angles;
+}
+
 /* No angle may be bad and more extreme than those of the mesh. */
 static void find_limits(tm_improver *m)
 {
-    const double(*x)[3] = (const double(*)[3])m->mesh->xyz;
-    m->cost.limits = tm_angle_limits_none();
-    for (uint32_t t = 0; t < m->mesh->slots; t++) {
-        const uint32_t *n = m->mesh->tet[t];
-        tm_angle_limits_include(&m->cost.limits, x[n[0]], x[n[1]], x[n[2]], x[n[3]]);
-    }
+    m->cost.limits = tm_improve_angles(m);
     tm_angle_limits_widen(&m->cost.limits, m->options->angle);
 }
 

@@ -86,8 +86,8 @@ typedef struct tm_improver {
     tm_mesh_part changes;     /* since that kick began */
     bool recording;           /* of what changes */
     tm_improve_state reached; /* the last target that left nothing bad */
-    tm_improve_state input;   /* where there are several targets */
-    tm_improve_state kept;    /* before the worst ones were worked on */
+    tm_improve_state input;   /* where there are several targets, or most is bad */
+    tm_improve_state kept;    /* before other ways, or the worst ones, were tried */
 
     tm_space space; /* around the mesh */
     tm_features features;
@@ -131,6 +131,9 @@ void tm_improve_set_target(tm_improver *m, double degrees);
 void tm_improve_snapshot(tm_improver *m, tm_improve_state *state, size_t bad,
                          double badness);
 
+/* The same of the mesh as it is. */
+void tm_improve_keep(tm_improver *m, tm_improve_state *state);
+
 /* Goes back to the mesh that was kept. */
 void tm_improve_restore(tm_improver *m, const tm_improve_state *state);
 
@@ -167,8 +170,21 @@ bool tm_improve_find_targets(tm_improver *m, bool all);
 /* Tries the operations of a phase on t until something is done. */
 bool tm_improve_try(tm_improver *m, uint32_t t, tm_improve_phase phase);
 
-/* How bad a mesh of so many tetrahedra is with so many bad ones: see full_size. */
+/* How bad a mesh of so many tetrahedra is with so many bad ones: see full_size; and the
+ * mesh as it is. */
 double tm_improve_badness(const tm_improver *m, size_t tets, size_t bad);
+double tm_improve_mesh_badness(const tm_improver *m);
+
+size_t tm_improve_count_bad(const tm_improver *m);
+
+/* Whether the mesh is no worse than the input by its angles, whatever the measure is. */
+bool tm_improve_keeps_angles(const tm_improver *m);
+
+/* The least and the largest angle of the mesh. */
+tm_angle_limits tm_improve_angles(const tm_improver *m);
+
+/* Contracts at all nodes, once, until there are m->most_tets. */
+void tm_improve_contract_all(tm_improver *m);
 
 /* From here on no operation makes an angle below so many degrees, or above 180 less
  * that. */
@@ -179,6 +195,12 @@ void tm_improve_set_price(tm_improver *m, double price);
 
 /* All that is done for one target. */
 typedef void tm_improve_reach(tm_improver *m);
+
+/* Tries other ways where much stays bad; `run` is all that is done with the input. */
+void tm_improve_stuck(tm_improver *m, tm_improve_reach *run, tm_improve_reach *reach);
+
+/* Whether so much of the input is bad that it is kept for that. */
+bool tm_improve_is_mostly_bad(const tm_improver *m);
 
 /* Works on the worst tetrahedra: raises the least angle, with no more bad ones then than
  * before; `reach` is for one target after the other. Then one by one, with the whole
