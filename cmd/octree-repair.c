@@ -153,12 +153,12 @@ static tm_status write_histogram(const writer *w, tm_error *error)
     return put(w, "histo", &text, error);
 }
 
-static tm_status write_octants(const writer *w, const uint32_t *octant, size_t count,
-                               tm_error *error)
+static tm_status write_octants(const writer *w, const uint32_t *id,
+                               const uint32_t *octant, size_t count, tm_error *error)
 {
     tm_text text = {0};
     for (size_t i = 0; i < count; i++)
-        tm_text_format(&text, "%u\n", octant[i]);
+        tm_text_format(&text, "%u\n", id ? id[octant[i]] : octant[i]);
     return put(w, "ref", &text, error);
 }
 
@@ -173,6 +173,13 @@ static tm_status write_mesh(const writer *w, const char *suffix, mesh_writer *wr
     return status;
 }
 
+/* With the ids by which .ref names octants. */
+static tm_status write_oct(tm_text *text, const tm_stream *stream, unsigned threads,
+                           tm_error *error)
+{
+    return tm_oct_write(text, stream, true, threads, error);
+}
+
 /* Of the elements nothing but their shape. */
 static tm_status write_vtk(tm_text *text, const tm_stream *stream, unsigned threads,
                            tm_error *error)
@@ -182,7 +189,7 @@ static tm_status write_vtk(tm_text *text, const tm_stream *stream, unsigned thre
 }
 
 /* Writes BASE_i.histo, .m3d, .vtk, and, where there are octants, .oct; BASE_i.ref, with
- * the numbers of `count` octants from 0, a line each, where there are some. Each is whole
+ * the ids of `count` octants, a line each, where there are some. Each is whole
  * or not there. */
 static tm_status write_trace(const program *p, unsigned iteration,
                              const tm_repair_state *state, const uint32_t *octant,
@@ -196,13 +203,13 @@ static tm_status write_trace(const program *p, unsigned iteration,
     if (status == TM_OK)
         status = write_histogram(&w, error);
     if (status == TM_OK && count > 0)
-        status = write_octants(&w, octant, count, error);
+        status = write_octants(&w, state->id, octant, count, error);
     if (status == TM_OK)
         status = write_mesh(&w, "m3d", tm_m3d_write, error);
     if (status == TM_OK)
         status = write_mesh(&w, "vtk", write_vtk, error);
     if (status == TM_OK && state->octree.leaves > 0)
-        status = write_mesh(&w, "oct", tm_oct_write, error);
+        status = write_mesh(&w, "oct", write_oct, error);
     tm_stream_free(&stream);
     return status;
 }
