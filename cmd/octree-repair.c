@@ -2,6 +2,7 @@
 /* octree-repair: a mesh with its octants and its surface in, the same with valid elements
  * out. */
 #include "common/input/mesh_input.h"
+#include "common/input/octant_list.h"
 #include "common/input/surface_input.h"
 #include "common/process/mpi_environment.h"
 
@@ -16,20 +17,21 @@
 #include <stdlib.h>
 #include <time.h>
 
-enum { METHOD = FILTER_OWN, MAX_GROWTH, TRACE, FEATURE_ANGLE };
+enum { METHOD = FILTER_OWN, MAX_GROWTH, OCTANTS, TRACE, FEATURE_ANGLE };
 
 static const struct option long_options[] = {
     {"threshold", required_argument, NULL, 't'},
     {"iterations", required_argument, NULL, 'i'},
     {"method", required_argument, NULL, METHOD},
     {"max-growth", required_argument, NULL, MAX_GROWTH},
+    {"octants", required_argument, NULL, OCTANTS},
     {"trace", required_argument, NULL, TRACE},
     {"feature-angle", required_argument, NULL, FEATURE_ANGLE},
     FILTER_OPTIONS};
 
 static const char synopsis[] = "[-t THRESHOLD] [-i MAX] [--method refine|full] "
-                               "[--max-growth R] [--trace BASE] [--feature-angle DEG] "
-                               "[FILE]";
+                               "[--max-growth R] [--octants FILE.ref] [--trace BASE] "
+                               "[--feature-angle DEG] [FILE]";
 
 static const char own_help[] =
     "  -t, --threshold T   elements whose J_ENS is below T are bad, as are those that\n"
@@ -40,6 +42,9 @@ static const char own_help[] =
     "                      that hold a bad element are split, and all is meshed again,\n"
     "                      until there is none\n"
     "      --max-growth R  full: at most R times as many elements (default 1.1)\n"
+    "      --octants FILE.ref\n"
+    "                      first split the octants with these ids once and mesh again:\n"
+    "                      one of the N iterations\n"
     "      --trace BASE    write BASE_i.histo, .ref, .oct, .m3d and .vtk of each\n"
     "                      iteration\n"
     "      --feature-angle DEG\n"
@@ -54,6 +59,8 @@ typedef struct {
     tm_repair_options repair;
     tm_surface_options surface;
     const char *trace;
+    const char *octants; /* the file, and the rows that it lists */
+    uint32_t *listed;
     bool has_surface;
     tm_surface boundary;
 } program;
@@ -76,6 +83,9 @@ static void read_option(program *p, int c)
         break;
     case MAX_GROWTH:
         p->repair.growth = filter_number(&p->f, "--max-growth", optarg, 1, most_growth);
+        break;
+    case OCTANTS:
+        p->octants = optarg;
         break;
     case TRACE:
         p->trace = optarg;
@@ -296,6 +306,9 @@ static void prepare(program *p, const tm_stream *stream, tm_repair_state *state,
 {
     tm_error error;
     filter_stage(&p->f, "preparing");
+    if (p->octants)
+        p->listed = octant_list_read(&p->f, p->octants, stream, &p->repair.octants);
+    p->repair.octant = p->listed;
     build_surface(p, stream);
     mpi_environment_set(&p->f);
     if (tm_repair_prepare(state, stream, p->has_surface ? &p->boundary : NULL, notes,
@@ -303,7 +316,7 @@ static void prepare(program *p, const tm_stream *stream, tm_repair_state *state,
         fail(p, &error);
     if (!notes->no_octree.what[0])
         return;
-    if (p->repair.method == TM_REPAIR_REFINE)
+    if (p->repair.method == TM_REPAIR_REFINE || p->repair.octants > 0)
         fail(p, &notes->no_octree);
     filter_note(&p->f, "%s: no octant is split: %s", filter_input_name(&p->f),
                 notes->no_octree.what);
@@ -320,7 +333,8 @@ static bool run(program *p, tm_stream *stream)
     filter_stage(&p->f, "examining");
     if (tm_repair_from_stream(&state, stream, &error) != TM_OK)
         fail(p, &error);
-    if (tm_repair_is_needed(&state, stream, p->repair.threshold) || p->trace)
+    if (tm_repair_is_needed(&state, stream, p->repair.threshold) || p->trace ||
+        p->octants)
         prepare(p, stream, &state, &notes);
     tm_surface *surface = p->has_surface ? &p->boundary : NULL;
     mesh_state before = state_of(&state, stream);
@@ -345,6 +359,7 @@ static bool run(program *p, tm_stream *stream)
     filter_write(&p->f, stream, "%zu elements of %zu, bad %zu of %zu", after.elements,
                  before.elements, report.after.bad, report.before.bad);
     tm_repair_state_free(&state);
+    free(p->listed);
     return done;
 }
 
@@ -370,6 +385,8 @@ int main(int argc, char **argv)
     filter_start(&p.f, argc, argv);
     while ((c = filter_option(&p.f)) != -1)
         read_option(&p, c);
+    if (p.octants && p.repair.iterations == 0)
+        filter_usage_error(&p.f, "--octants is an iteration, but -i allows none");
     filter_operands(&p.f);
     filter_read(&p.f, &stream);
     const bool done = run(&p, &stream);

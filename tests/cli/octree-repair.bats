@@ -153,6 +153,52 @@ drop_octants() {
         diff - <(rows .octant less.tm | awk '{ print $2, $6 - 1, $7 - 1, $8 }')
 }
 
+@test "--octants: a list is split, and the loop goes on as if it had found it" {
+    make_corner
+    octree-mesh --no-history -s 4 corner.off >all.tm
+    drop_octants all.tm >less.tm
+    step() { octree-repair -q --no-history -t 0.4 --method refine "$@"; }
+    run -1 step -i 2 --trace loop -o loop.tm all.tm
+    [ -s loop_0.ref ] && [ -s loop_1.ref ]
+    # step by step, from ids too, in any order and twice
+    awk '{ print 7 * ($1 + 1) + 100 }' loop_0.ref | sort -r >ids.ref
+    cat ids.ref ids.ref >twice.ref
+    run -1 step -i 1 --octants twice.ref --trace one -o one.tm less.tm
+    cmp one_0.ref <(sort -n ids.ref)
+    cmp one_1.ref loop_1.ref
+    cmp one_1.oct loop_1.oct
+    run -1 step -i 1 --octants loop_1.ref --trace two -o two.tm one.tm
+    cmp two.tm loop.tm
+    run -1 step -i 2 --octants loop_0.ref -o two.tm all.tm
+    cmp two.tm loop.tm
+    # of a good mesh, too, and by the other method
+    echo 0 >first.ref
+    run -0 octree-repair -q --json report.json --octants first.ref -o split.tm good.tm
+    [ "$(report iterations)" -eq 1 ]
+    [ "$(header .octant split.tm)" = "$(($(header .octant good.tm | cut -d ' ' -f 1) + 7)) 0" ]
+    run -0 mesh-check split.tm
+}
+
+@test "--octants: wrong lists and octants that are not there" {
+    echo 512 >beyond.ref
+    run -3 --separate-stderr octree-repair --octants beyond.ref -o out.tm good.tm
+    [ "$stderr" = 'octree-repair: beyond.ref: octant 512 is not in the mesh (no octant has '\
+'that id)' ]
+    echo 0 1 >beyond.ref
+    run -3 --separate-stderr octree-repair --octants beyond.ref -o out.tm good.tm
+    [[ "$stderr" == *"beyond.ref:1: '1' follows the octant"* ]]
+    echo 0 >first.ref
+    run -4 octree-repair --octants nowhere.ref -o out.tm good.tm
+    run -2 octree-repair --octants first.ref -i 0 -o out.tm good.tm
+    { sed '/^surface.node/,$d' good.tm; echo .end; } >alone.tm
+    run -3 --separate-stderr octree-repair -q --octants first.ref -o out.tm alone.tm
+    [[ "$stderr" == *"there are no octants to refine"* ]]
+    awk '/^[a-z]*\./ { skip = $1 == ".octant" } !skip' good.tm >without.tm
+    run -3 --separate-stderr octree-repair -q --octants first.ref -o out.tm without.tm
+    [[ "$stderr" == *"without.tm: has no octants to split"* ]]
+    [ ! -e out.tm ]
+}
+
 @test "what cannot be is left: exit 1, the best state, a line for each octant" {
     run -1 --separate-stderr octree-repair -t 1 -i 0 -o left.tm good.tm
     [[ "$stderr" == *": octant "*" is left to improve"* ]]
