@@ -313,6 +313,45 @@ END
     mesh-check -q round.tm
 }
 
+@test "a rough body beside it leaves a smooth one its edges, and a note says so" {
+    # a sphere of many triangles whose nodes go in and out
+    python3 - >noisy.off <<'END'
+import math, random
+random.seed(5)
+around, rings = 60, 30
+nodes = [(0, 0, 1), (0, 0, -1)]
+for r in range(1, rings):
+    for a in range(around):
+        u, w = math.pi * r / rings, 2 * math.pi * a / around
+        d = 1 + 0.05 * random.uniform(-1, 1)
+        nodes.append((d * math.sin(u) * math.cos(w), d * math.sin(u) * math.sin(w),
+                      d * math.cos(u)))
+at = lambda r, a: 0 if r == 0 else 1 if r == rings else 2 + (r - 1) * around + a % around
+faces = []
+for r in range(rings):
+    for a in range(around):
+        p, q, s, t = at(r, a), at(r + 1, a), at(r + 1, a + 1), at(r, a + 1)
+        faces += [f for f in ((p, q, s), (p, s, t)) if len(set(f)) == 3]
+print('OFF')
+print(len(nodes), len(faces), 0)
+for p in nodes:
+    print(*p)
+for f in faces:
+    print(3, *f)
+END
+    run -0 --separate-stderr octree-mesh -s 3 -o rough.tm noisy.off
+    [ "$stderr" = 'octree-mesh: noisy.off: the surface is rough all over: no edge of it is kept as sharp' ]
+    awk 'NR > 2 && NR <= 10 { print $1 * 2 + 2, $2 * 2 - 1, $3 * 2 - 1; next } { print }' \
+        box.off >right.off
+    octree-mesh -s 4 right.off >alone.tm
+    read -r _ _ alone corner _ <<<"$(judge alone.tm)"
+    together noisy.off right.off >both.off
+    run -0 --separate-stderr octree-mesh -s 4 -o mesh.tm both.off
+    [[ "$stderr" == 'octree-mesh: both.off: '*' sharp edges are in rough parts of the surface and not kept (--feature-angle takes all)' ]]
+    read -r _ _ curve corner _ <<<"$(judge mesh.tm)"
+    [ "$corner" = 8 ] && [ "$curve" -gt $((alone * 3 / 4)) ]
+}
+
 @test "--resolve: smaller octants where a part would be lost, or a note that names it" {
     # a wall of 0.1 around a hollow
     awk 'NR > 2 && NR <= 10 { print $1 * 3.8 + 0.1, $2 * 3.8 + 0.1, $3 * 3.8 + 0.1; next }
