@@ -247,6 +247,83 @@ assert abs(c["volume"] - 1) < 1e-12 and abs(c["area"] - 6) < 1e-12, c'
     [ "$(levels -a 3 -a 2 -s 3)" = 3:512 ]
 }
 
+# sides FILE: the sides of its octants, as multiples of SIDE, ascending.
+sides() {
+    { rows .root "$1"; echo; rows .octant "$1" | cut -d ' ' -f 2 | sort -rnu; } | awk -v unit="$2" '
+        NF == 0 { octants = 1; next }
+        !octants { side = $5; next }
+        { printf "%.6g ", side / 2 ^ $1 / unit }'
+}
+
+@test "--size, --inner-size: octants of a given size, whatever the shape is" {
+    # the thin side of a plate says nothing of them
+    awk 'NR > 2 && NR <= 10 { print $1 * 10, $2 * 10, $3; next } { print }' box.off >slab.off
+    octree-mesh --size 0.2 -o mesh.tm slab.off
+    [ "$(sides mesh.tm 0.2)" = "1 2 " ]
+    mesh-check -q mesh.tm
+    octree-mesh --size 0.2 --inner-size 0.25 -o fine.tm slab.off
+    [ "$(rows .octant fine.tm | awk '$6 < $7' | cut -d ' ' -f 2 | sort -u | wc -l)" = 1 ]
+    octree-mesh --inner-size 0.5 --resolve 0 -o inner.tm slab.off
+    [[ "$(sides inner.tm 0.5)" == "1 "* ]]
+    # thinner than one octant, where it is that the plate lies
+    for z in 0 0.13 0.3 7; do
+        awk -v z=$z 'NR > 2 && NR <= 10 { print $1 * 10, $2 * 10, $3 / 8 + z; next } { print }' \
+            box.off >sheet.off
+        octree-mesh --size 0.4 --resolve 0 -o mesh.tm sheet.off
+        [[ "$(sides mesh.tm 0.4)" == "1 "* ]]
+        mesh-check --json check.json mesh.tm >/dev/null
+        python3 -c '
+import json
+assert abs(json.load(open("check.json"))["volume"] - 12.5) < 1e-9'
+    done
+}
+
+@test "--most: what would be too much is refused, with what fits" {
+    surface sphere off >sphere.off
+    octree-mesh -q --json count.json -s 5 sphere.off >mesh.tm
+    elements=$(header .mix mesh.tm | cut -d ' ' -f 1)
+    octree-mesh -q -s 5 --most $((2 * elements)) -o again.tm sphere.off
+    cmp again.tm mesh.tm || [ "$(rows .mix again.tm)" = "$(rows .mix mesh.tm)" ]
+    echo old >out.tm
+    run -3 --separate-stderr octree-mesh -o out.tm -s 5 --most $((elements / 2)) sphere.off
+    [[ "$stderr" == 'octree-mesh: sphere.off: about '*' elements would be made, with octants down to '*' (--most); levels that are lower by 1 would fit, or octants of '*' (--size)' ]]
+    [ "${#stderr_lines[@]}" -eq 1 ]
+    [ "$(cat out.tm)" = old ]
+    # what it says would fit does
+    size=${stderr##*octants of }
+    octree-mesh -q -s 4 --most $((elements / 2)) -o out.tm sphere.off
+    octree-mesh -q --size "${size% *}" --most $((elements / 2)) -o out.tm sphere.off
+    [ "$(header .mix out.tm | cut -d ' ' -f 1)" -lt "$elements" ]
+    # a wedge of 1 degree: levels count from its thin side; a level that would take hours
+    cat >wedge.off <<'END'
+OFF
+6 5 0
+0 0 0
+0 1 0
+1 0 0
+1 1 0
+1 0 0.0174524
+1 1 0.0174524
+4 0 2 3 1
+4 0 1 5 4
+3 0 4 2
+3 1 3 5
+4 2 4 5 3
+END
+    run -3 --separate-stderr octree-mesh -s 9 wedge.off
+    [[ "$stderr" == *'more than 5e+07 (--most); '* ]]
+    octree-mesh -q --size 0.05 -o mesh.tm wedge.off
+    [ "$(header .mix mesh.tm | cut -d ' ' -f 1)" -lt 200000 ]
+    mesh-check -q mesh.tm
+    # boxes, regions and everything count, too, where the solid is
+    box_file -1 1 9 >all.reg
+    run -3 octree-mesh -s 3 -b all.reg box.off
+    box_file 3 4 17 >outside.reg
+    octree-mesh -q -s 3 -b outside.reg -o mesh.tm box.off
+    run -3 octree-mesh -s 3 -r sphere.off 9 box.off
+    run -3 octree-mesh -a 9 box.off
+}
+
 @test "-b: boxes from a file with comments; -u: levels of the elements" {
     box_file 0 0.2 5 >fine.reg
     octree-mesh -u -s 3 -b fine.reg --resolve 0 box.off >mesh.tm
@@ -457,6 +534,7 @@ assert abs(json.load(open("check.json"))["volume"] - 1.79) < 0.1'
     fails box.off 'short.reg*' -b short.reg
     box_file 0 1 18 >deep.reg
     fails box.off 'deep.reg:*' -b deep.reg
+    fails box.off 'leaves of 1e-09 are too small for the surface (* is the least for it)' --size 1e-9
     echo one >word.ref
     fails box.off 'word.ref:1: *' -l word.ref
 }
@@ -478,6 +556,9 @@ assert abs(json.load(open("check.json"))["volume"] - 1.79) < 0.1'
     done
     refuses "-r: '18' is not a whole number in 0 … 17" -r box.off 18 box.off
     refuses '-r box.off lacks its level: -r SURFACE L' -r box.off
+    refuses "--size: '0' *" --size 0 box.off
+    refuses "--inner-size: 'x' *" --inner-size x box.off
+    refuses "--most: '0' *" --most 0 box.off
     refuses "--feature-angle: '181' *" --feature-angle 181 box.off
     refuses "--feature-angle: 'x' *" --feature-angle x box.off
     refuses '*' box.off box.off
