@@ -168,6 +168,24 @@ static void refuse_many(const filter *f, const settings *o, const tm_surface *s)
     filter_fail(f, &error);
 }
 
+/* Boxes and regions that ask for nothing. */
+static void note_outside(const filter *f, const octree_rules *rules, const tm_surface *s)
+{
+    for (size_t r = 0; r < rules->rules.count; r++) {
+        const tm_octree_rule *rule = &rules->rules.rule[r];
+        if (tm_octree_rule_reaches(rule, s))
+            continue;
+        const bool box = rule->kind == TM_RULE_BOX;
+        const double *low = box ? rule->low : rule->region->low;
+        const double *high = box ? rule->high : rule->region->high;
+        filter_note(f,
+                    "the %s from (%g, %g, %g) to (%g, %g, %g) is wholly outside of the "
+                    "surface: no octant is split for it",
+                    box ? "box" : "region", low[0], low[1], low[2], high[0], high[1],
+                    high[2]);
+    }
+}
+
 /* The boundary is not what the surface is: a handle or a piece is lost, or one too much.
  */
 static void note_topology(const filter *f, const tm_surface *s,
@@ -195,6 +213,19 @@ static void note_losses(const filter *f, const tm_surface *s,
                     "is lost near (%g, %g, %g); a finer level there, or --resolve, may "
                     "keep it",
                     r->lost, r->lost_at[0], r->lost_at[1], r->lost_at[2]);
+    if (r->rounded)
+        filter_note(
+            f,
+            "%zu tips or thin parts of the surface are rounded off, or missed, by up "
+            "to %.3g, near (%g, %g, %g)",
+            r->rounded, r->rounded_by, r->rounded_at[0], r->rounded_at[1],
+            r->rounded_at[2]);
+    if (r->dropped)
+        filter_note(
+            f,
+            "%zu pieces of the surface bound nothing and have no part in the mesh, "
+            "as near (%g, %g, %g)",
+            r->dropped, r->dropped_at[0], r->dropped_at[1], r->dropped_at[2]);
     if (!s->by_winding && (r->components != s->components || r->euler != s->euler))
         note_topology(f, s, r, leaf_side);
     if (r->corners_lost + r->curves_lost)
@@ -242,6 +273,8 @@ static void write_json(filter *f, const tm_octree *octree, const tm_octree_mesh 
                                          ROW("held_back", mesh.off_surface),
                                          ROW("inverted", mesh.invalid),
                                          ROW("lost_octants", mesh.lost),
+                                         ROW("rounded_tips", mesh.rounded),
+                                         ROW("dropped_pieces", mesh.dropped),
                                          ROW("lost_corners", mesh.corners_lost),
                                          ROW("lost_edges", mesh.curves_lost),
                                          ROW("components", mesh.components),
@@ -274,6 +307,7 @@ int main(int argc, char **argv)
     tm_error error;
     surface_input_build(&f, &o.surface, &surface, &stream);
     refuse_many(&f, &o, &surface);
+    note_outside(&f, &o.rules, &surface);
     mpi_environment_set(&f);
     filter_stage(&f, "splitting octants");
     if (tm_octree_build(&octree, &surface, o.rules.rules.rule, o.rules.rules.count,

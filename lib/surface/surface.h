@@ -44,6 +44,7 @@ typedef struct tm_surface {
     size_t welded;     /* nodes that had another where they are */
     size_t flat;       /* triangles without area that were dropped, or went by a flip */
     size_t duplicates; /* triangles that were there twice, dropped */
+    size_t touching;   /* where nodes have more than one fan of triangles: fans more */
     bool turned;       /* some or all triangles turned the other way */
     size_t components; /* connected pieces of surface: shells */
     int64_t euler;     /* nodes - edges + triangles, of all shells; a node counts once for

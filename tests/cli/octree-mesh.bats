@@ -424,7 +424,7 @@ END
     read -r _ _ alone corner _ <<<"$(judge alone.tm)"
     together noisy.off right.off >both.off
     run -0 --separate-stderr octree-mesh -s 4 -o mesh.tm both.off
-    [[ "$stderr" == 'octree-mesh: both.off: '*' sharp edges are in rough parts of the surface and not kept (--feature-angle takes all)' ]]
+    [[ "${stderr_lines[0]}" == 'octree-mesh: both.off: '*' sharp edges are in rough parts of the surface and not kept (--feature-angle takes all)' ]]
     read -r _ _ curve corner _ <<<"$(judge mesh.tm)"
     [ "$corner" = 8 ] && [ "$curve" -gt $((alone * 3 / 4)) ]
 }
@@ -454,6 +454,113 @@ END
     [ "$stderr" = "" ]
     octree-mesh -s 3 --resolve 4 --json count.json gap.off >mesh.tm
     [ "$(json count.json components) $(json count.json euler)" = "2 4" ]
+}
+
+@test "what is noted as lost is missing in the mesh, and what is missing is noted" {
+    # six pyramids on a cube: octants at their tips have no boundary of octants near, but
+    # the mesh is exact
+    cat >star.off <<'END'
+OFF
+14 24 0
+-0.125 -0.125 -0.125
+0.125 -0.125 -0.125
+-0.125 0.125 -0.125
+0.125 0.125 -0.125
+-0.125 -0.125 0.125
+0.125 -0.125 0.125
+-0.125 0.125 0.125
+0.125 0.125 0.125
+0 0 -0.5
+0 0 0.5
+0 -0.5 0
+0.5 0 0
+0 0.5 0
+-0.5 0 0
+END
+    side=8
+    for nodes in "0 2 3 1" "4 5 7 6" "0 1 5 4" "1 3 7 5" "3 2 6 7" "2 0 4 6"; do
+        read -r a b c d <<<"$nodes"
+        printf "3 %d %d %d\n" "$a" "$b" $side "$b" "$c" $side "$c" "$d" $side "$d" "$a" $side
+        side=$((side + 1))
+    done >>star.off
+    run -0 --separate-stderr octree-mesh -s 4 --json count.json -o mesh.tm star.off
+    [ "$stderr" = "" ]
+    [ "$(json count.json lost_octants) $(json count.json rounded_tips)" = "0 0" ]
+    mesh-check --json check.json mesh.tm >/dev/null
+    # 8 octants of 1/4³ and six pyramids of height 3/8
+    python3 -c '
+import json
+assert abs(json.load(open("check.json"))["volume"] - (1 / 64 + 6 * 3 / 8 / 3 / 16)) < 1e-12'
+    # a needle that ends round is a tip without a corner, thinner than octants
+    python3 - >needle.off <<'END'
+import math
+rings, around = 60, 12
+nodes, faces = [(0, 0, 2), (0, 0, -1)], []
+def radius(z):
+    if z > 0.8:
+        return 0.02 * math.sqrt(1 - ((z - 0.8) / 1.2) ** 8)
+    return math.sqrt(max(1 - z * z, 0)) * 0.98 / 0.6 * 0.6 if z < 0.75 else \
+        0.02 + (math.sqrt(1 - 0.75 ** 2) * 0.98 - 0.02) * (0.8 - z) / 0.05
+for r in range(1, rings):
+    z = 2 - 3 * r / rings
+    for a in range(around):
+        w = 2 * math.pi * a / around
+        nodes.append((radius(z) * math.cos(w), radius(z) * math.sin(w), z))
+at = lambda r, a: 0 if r == 0 else 1 if r == rings else 2 + (r - 1) * around + a % around
+for r in range(rings):
+    for a in range(around):
+        p, q, s, t = at(r, a), at(r + 1, a), at(r + 1, a + 1), at(r, a + 1)
+        faces += [f for f in ((p, q, s), (p, s, t)) if len(set(f)) == 3]
+print('OFF')
+print(len(nodes), len(faces), 0)
+for p in nodes:
+    print(*p)
+for f in faces:
+    print(3, *f)
+END
+    for levels in 0 1; do
+        run -0 --separate-stderr octree-mesh -s 3 --feature-angle 180 --resolve $levels \
+            --json $levels.json -o mesh.tm needle.off
+        [[ "$stderr" == *'octree-mesh: 1 tips or thin parts of the surface are rounded off, or missed, by up to '*', near ('*', 2)'* ]]
+        [ "$(json $levels.json rounded_tips)" = 1 ]
+    done
+    # smaller octants lose no more
+    [ "$(json 1.json lost_octants)" -le "$(json 0.json lost_octants)" ]
+}
+
+@test "what touches, bounds nothing, or is outside is said" {
+    # two cubes with an edge in common
+    awk 'NR > 2 && NR <= 10 { print $1 + 1, $2 + 1, $3; next } { print }' box.off >beside.off
+    together box.off beside.off >edge.off
+    run -0 --separate-stderr octree-mesh -s 3 --json count.json -o mesh.tm edge.off
+    [[ "${stderr_lines[0]}" == 'octree-mesh: edge.off: parts of the surface touch at 2 nodes, and along edges between these: they are apart there, each with nodes of its own' ]]
+    [ "$(json count.json components)" = 2 ]
+    # a sheet in a cube
+    printf 'OFF\n4 1 0\n0.3 0.3 0.5\n0.7 0.3 0.5\n0.7 0.7 0.5\n0.3 0.7 0.5\n4 0 1 2 3\n' \
+        >sheet.off
+    together box.off sheet.off >both.off
+    run -0 --separate-stderr octree-mesh -s 4 --lenient --json count.json -o mesh.tm both.off
+    [[ "$stderr" == *'octree-mesh: 1 pieces of the surface bound nothing and have no part in the mesh, as near (0.'*', 0.'*', 0.5)' ]]
+    [ "$(json count.json dropped_pieces)" = 1 ]
+    octree-mesh -s 4 --json count.json -o mesh.tm box.off
+    [ "$(json count.json dropped_pieces)" = 0 ]
+    # boxes and regions
+    box_file 2 3 6 >far.reg
+    run -0 --separate-stderr octree-mesh -s 3 -b far.reg -o mesh.tm box.off
+    [ "$stderr" = 'octree-mesh: the box from (2, 2, 2) to (3, 3, 3) is wholly outside of the surface: no octant is split for it' ]
+    awk 'NR > 2 && NR <= 10 { print $1 + 4, $2, $3; next } { print }' box.off >far.off
+    run -0 --separate-stderr octree-mesh -s 3 -r far.off 6 -o mesh.tm box.off
+    [ "$stderr" = 'octree-mesh: the region from (4, 0, 0) to (5, 1, 1) is wholly outside of the surface: no octant is split for it' ]
+    # inside of it, around it, across it
+    for box in "0.4 0.6" "-1 2" "0.5 2"; do
+        # shellcheck disable=SC2086 # two numbers
+        box_file $box 4 >near.reg
+        awk -v box="$box" 'BEGIN { split(box, at) }
+            NR > 2 && NR <= 10 { for (i = 1; i <= 3; i++) $i = at[$i + 1] } { print }' \
+            box.off >near.off
+        run -0 --separate-stderr octree-mesh -s 3 -b near.reg -r near.off 4 -o mesh.tm box.off
+        [ "$stderr" = "" ]
+    done
 }
 
 @test "a surface that is inverted is turned, and duplicates are dropped: both are said" {

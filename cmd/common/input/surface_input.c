@@ -208,6 +208,12 @@ static void note_mending(const filter *f, const tm_surface *s)
         filter_note(f, "%s: %zu triangles without area are dropped", name, s->flat);
     if (s->open_edges)
         filter_note(f, "%s: the surface is open at %zu edges", name, s->open_edges);
+    if (s->touching)
+        filter_note(
+            f,
+            "%s: parts of the surface touch at %zu nodes, and along edges between "
+            "these: they are apart there, each with nodes of its own",
+            name, s->touching);
     note_rough(f, s, name);
     if (s->crossings)
         filter_note(f, "%s: the surface crosses itself at %zu pairs of triangles", name,

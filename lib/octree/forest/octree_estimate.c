@@ -200,3 +200,46 @@ tm_status tm_octree_estimate(const tm_surface *surface, const tm_octree_rule *ru
     free(levels);
     return status;
 }
+
+/* Whether a box around one of the triangles of the first surface meets the second. */
+static bool come_close(const tm_surface *first, const tm_surface *second)
+{
+    for (size_t t = 0; t < first->triangles; t++) {
+        double low[3], high[3];
+        const uint32_t *v = first->triangle[t];
+        for (int i = 0; i < 3; i++) {
+            const double a = first->xyz[v[0]][i], b = first->xyz[v[1]][i],
+                         c = first->xyz[v[2]][i];
+            low[i] = fmin(a, fmin(b, c));
+            high[i] = fmax(a, fmax(b, c));
+        }
+        if (tm_surface_meets_box(second, low, high))
+            return true;
+    }
+    return false;
+}
+
+/* Whether a shell of the first surface, which does not meet the second, is in that. */
+static bool has_shell_in(const tm_surface *first, const tm_surface *second)
+{
+    uint32_t shells = 0; /* their first triangles come in order */
+    for (size_t t = 0; t < first->triangles; t++) {
+        if (first->shell[t] < shells)
+            continue;
+        shells = first->shell[t] + 1;
+        if (tm_surface_has_inside(second, first->xyz[first->triangle[t][0]]))
+            return true;
+    }
+    return false;
+}
+
+bool tm_octree_rule_reaches(const tm_octree_rule *rule, const tm_surface *surface)
+{
+    if (rule->kind == TM_RULE_BOX)
+        return tm_surface_meets_box(surface, rule->low, rule->high) ||
+               tm_surface_has_inside(surface, rule->low);
+    if (rule->kind == TM_RULE_REGION)
+        return come_close(rule->region, surface) || has_shell_in(rule->region, surface) ||
+               has_shell_in(surface, rule->region);
+    return true;
+}

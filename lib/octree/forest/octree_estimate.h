@@ -18,6 +18,11 @@ tm_status tm_octree_estimate(const tm_surface *surface, const tm_octree_rule *ru
                              size_t rules, double coarser, double *elements, double *side,
                              tm_error *error);
 
+/* Whether a rule for a box or a region can hold for any octant that is not outside of the
+ * surface. Says so, too, where the surfaces only come close to each other. Expected
+ * O(triangles of the region). */
+bool tm_octree_rule_reaches(const tm_octree_rule *rule, const tm_surface *surface);
+
 TM_EXTERN_C_END
 
 #endif
