@@ -3,7 +3,9 @@
 
 #include "../../base/array.h"
 #include "../../base/disjoint_sets.h"
+#include "../../geom/vector.h"
 #include "../../surface/surface_distance.h"
+#include "../../surface/surface_tree.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -17,37 +19,42 @@ typedef struct {
     const tm_octree *octree;
     const tm_surface *surface;
     unsigned level;      /* smaller leaves are taken for leaves of this one */
-    tm_surface boundary; /* of the mesh, as triangles */
-    uint32_t *face;      /* [triangles]: of the interior boundary */
-    size_t triangles;
-    uint32_t (*triangle)[3];
+    tm_surface boundary; /* of the mesh, when it is needed: two triangles for each face */
+    uint32_t *hint;      /* [nodes of the surface]: a boundary node close by */
     double *distance; /* [nodes of the surface]: to the mesh, of those that are missed */
 } finder;
 
-static void add_triangle(finder *f, size_t face, const uint8_t corner[3])
+/* Where boundary node s is. */
+static const double *place_of(const finder *f, uint32_t s)
 {
+    return f->mesh->assembly.mesh.xyz[f->mesh->assembly.outer + s];
+}
+
+/* The corners of half k of a face; both of a triangle are all of it. */
+static void half_of(const tm_interior_boundary *boundary, size_t face, int k,
+                    uint32_t corner[3])
+{
+    const unsigned cut =
+        boundary->cut[face] == TM_UNCUT ? TM_CUT_02 : boundary->cut[face];
+    const int half = tm_boundary_face_corners(boundary, face) == 4 ? k : 0;
     for (int i = 0; i < 3; i++)
-        f->triangle[f->triangles][i] = f->mesh->boundary.face[face][corner[i]];
-    f->face[f->triangles++] = (uint32_t)face;
+        corner[i] = boundary->face[face][tm_cut_triangles[cut][half][i]];
 }
 
 static tm_status make_boundary(finder *f, tm_error *error)
 {
     const tm_interior_boundary *boundary = &f->mesh->boundary;
-    f->triangle = tm_new(2 * boundary->faces, sizeof *f->triangle);
-    f->face = tm_new(2 * boundary->faces, sizeof *f->face);
-    if (!f->triangle || !f->face)
-        return tm_fail_memory(error);
-    for (size_t i = 0; i < boundary->faces; i++) {
-        const unsigned cut = boundary->cut[i] == TM_UNCUT ? TM_CUT_02 : boundary->cut[i];
-        add_triangle(f, i, tm_cut_triangles[cut][0]);
-        if (tm_boundary_face_corners(boundary, i) == 4)
-            add_triangle(f, i, tm_cut_triangles[cut][1]);
-    }
     const tm_assembly *a = &f->mesh->assembly;
-    return tm_surface_of_triangles(
+    uint32_t(*triangle)[3] = tm_new(2 * boundary->faces, sizeof *triangle);
+    if (!triangle)
+        return tm_fail_memory(error);
+    for (size_t i = 0; i < 2 * boundary->faces; i++)
+        half_of(boundary, i / 2, (int)(i % 2), triangle[i]);
+    const tm_status status = tm_surface_of_triangles(
         &f->boundary, (const double(*)[3])a->mesh.xyz + a->outer, boundary->nodes,
-        (const uint32_t(*)[3])f->triangle, NULL, f->triangles, error);
+        (const uint32_t(*)[3])triangle, NULL, 2 * boundary->faces, error);
+    free(triangle);
+    return status;
 }
 
 /* The side of a leaf, or of the one of f->level that it is in. */
@@ -56,27 +63,105 @@ static double side_of(const finder *f, unsigned level)
     return ldexp(f->octree->side, -(int)(level < f->level ? level : f->level));
 }
 
-/* How far a point of the surface is from the mesh. */
-static double distance_from(const finder *f, const double point[3], uint32_t *guess)
+/* How far a point of the surface may be from a face. */
+static double reach_of(const finder *f, size_t face)
 {
+    const tm_interior_boundary *boundary = &f->mesh->boundary;
+    return missed * fmax(boundary->size[boundary->face[face][0]], side_of(f, f->level));
+}
+
+/* How far a point of the surface is from the mesh; *guess becomes the triangle there. */
+static tm_status distance_from(finder *f, const double point[3], uint32_t *guess,
+                               double *distance, tm_error *error)
+{
+    if (!f->boundary.tree) {
+        const tm_status status = make_boundary(f, error);
+        if (status != TM_OK)
+            return status;
+    }
     tm_surface_point at = {.triangle = *guess};
     tm_surface_closest(&f->boundary, point, TM_NONE, &at);
     *guess = at.triangle;
-    return sqrt(at.distance2);
+    *distance = sqrt(at.distance2);
+    return TM_OK;
+}
+
+/* Gives node v of the surface boundary node s, if that is closer than what it has. */
+static bool offer(finder *f, uint32_t v, uint32_t s)
+{
+    const double *xyz = f->surface->xyz[v];
+    if (s == f->hint[v] || s == TM_NONE ||
+        (f->hint[v] != TM_NONE &&
+         tm_distance2(xyz, place_of(f, s)) >= tm_distance2(xyz, place_of(f, f->hint[v]))))
+        return false;
+    f->hint[v] = s;
+    return true;
+}
+
+/* Boundary nodes know the triangle that they are on; from there they go from node to node
+ * of the surface, which mostly is cheaper than to search. */
+static void spread_hints(finder *f)
+{
+    const tm_surface *s = f->surface;
+    const int sweeps = 32;
+    for (size_t v = 0; v < s->nodes; v++)
+        f->hint[v] = TM_NONE;
+    for (uint32_t n = 0; n < f->mesh->boundary.nodes; n++)
+        for (int i = 0; i < 3; i++)
+            offer(f, s->triangle[f->mesh->at[n].triangle][i], n);
+    bool more = true;
+    for (int sweep = 0; sweep < sweeps && more; sweep++) {
+        more = false;
+        for (size_t k = 0; k < s->triangles; k++) {
+            const size_t t = sweep % 2 ? s->triangles - 1 - k : k;
+            const uint32_t *v = s->triangle[t];
+            for (int i = 0; i < 3; i++) {
+                more |= offer(f, v[i], f->hint[v[(i + 1) % 3]]);
+                more |= offer(f, v[i], f->hint[v[(i + 2) % 3]]);
+            }
+        }
+    }
+}
+
+/* Whether a face around its boundary node is close enough to node v of the surface. */
+static bool is_near(const finder *f, uint32_t v)
+{
+    const tm_interior_boundary *boundary = &f->mesh->boundary;
+    const uint32_t s = f->hint[v];
+    if (s == TM_NONE)
+        return false;
+    for (size_t i = boundary->around_start[s]; i < boundary->around_start[s + 1]; i++) {
+        const double reach = reach_of(f, boundary->around[i]);
+        for (int k = 0; k < 2; k++) {
+            uint32_t corner[3];
+            double xyz[3][3];
+            half_of(boundary, boundary->around[i], k, corner);
+            for (int c = 0; c < 3; c++)
+                memcpy(xyz[c], place_of(f, corner[c]), sizeof xyz[c]);
+            if (tm_corners_distance2((const double(*)[3])xyz, f->surface->xyz[v]) <=
+                reach * reach)
+                return true;
+        }
+    }
+    return false;
 }
 
 /* Measures from each node of the surface: a tip has one at its end. */
-static void measure_nodes(finder *f)
+static tm_status measure_nodes(finder *f, tm_error *error)
 {
-    const tm_interior_boundary *boundary = &f->mesh->boundary;
-    const double least = side_of(f, f->level);
     uint32_t guess = TM_NONE;
-    for (size_t v = 0; v < f->surface->nodes; v++) {
-        const double d = distance_from(f, f->surface->xyz[v], &guess);
-        const double side = boundary->size[boundary->face[f->face[guess]][0]];
-        if (d > missed * fmax(side, least))
+    spread_hints(f);
+    for (uint32_t v = 0; v < f->surface->nodes; v++) {
+        double d;
+        if (is_near(f, v))
+            continue;
+        const tm_status status = distance_from(f, f->surface->xyz[v], &guess, &d, error);
+        if (status != TM_OK)
+            return status;
+        if (d > reach_of(f, guess / 2))
             f->distance[v] = d;
     }
+    return TM_OK;
 }
 
 /* Counts what hangs together of the nodes that are missed. */
@@ -117,7 +202,7 @@ static bool is_same(const finder *f, const tm_leaf *a, const tm_leaf *b)
 }
 
 /* Of the leaves without boundary close by, those whose surface is missed. */
-static void count_leaves(finder *f, const uint8_t *lost)
+static tm_status count_leaves(finder *f, const uint8_t *lost, tm_error *error)
 {
     tm_octree_mesh_report *r = &f->mesh->report;
     const tm_leaf *last = NULL;
@@ -127,15 +212,19 @@ static void count_leaves(finder *f, const uint8_t *lost)
         const tm_leaf *leaf = &f->octree->leaf[l];
         if (!lost[l] || (last && is_same(f, last, leaf)))
             continue;
-        double centre[3];
+        double centre[3], distance;
         tm_leaf_centre(f->octree, leaf, centre);
         tm_surface_closest(f->surface, centre, TM_NONE, &at);
-        if (distance_from(f, at.xyz, &guess) <= missed * side_of(f, leaf->level))
+        const tm_status status = distance_from(f, at.xyz, &guess, &distance, error);
+        if (status != TM_OK)
+            return status;
+        if (distance <= missed * side_of(f, leaf->level))
             continue;
         if (r->lost++ == 0)
             memcpy(r->lost_at, at.xyz, sizeof at.xyz);
         last = leaf;
     }
+    return TM_OK;
 }
 
 static tm_status find_lost(finder *f, tm_error *error)
@@ -143,10 +232,10 @@ static tm_status find_lost(finder *f, tm_error *error)
     uint8_t *lost = tm_new(f->octree->leaves, sizeof *lost);
     if (!lost)
         return tm_fail_memory(error);
-    if (tm_interior_find_lost(&f->mesh->interior, f->octree, f->surface, lost) > 0)
-        count_leaves(f, lost);
+    tm_interior_find_lost(&f->mesh->interior, f->octree, f->surface, lost);
+    const tm_status status = count_leaves(f, lost, error);
     free(lost);
-    return TM_OK;
+    return status;
 }
 
 /* Counts the shells that no boundary node is closest to. */
@@ -178,20 +267,20 @@ tm_status tm_octree_mesh_find_losses(tm_octree_mesh *mesh, const tm_octree *octr
                 .octree = octree,
                 .surface = surface,
                 .level = level,
+                .hint = tm_new(surface->nodes, sizeof *f.hint),
                 .distance = calloc(surface->nodes + 1, sizeof *f.distance)};
-    tm_status status = f.distance ? find_dropped(&f, error) : tm_fail_memory(error);
+    tm_status status = f.hint && f.distance ? TM_OK : tm_fail_memory(error);
+    if (status == TM_OK)
+        status = find_dropped(&f, error);
     if (status == TM_OK && !surface->by_winding) {
-        status = make_boundary(&f, error);
-        if (status == TM_OK) {
-            measure_nodes(&f);
+        status = measure_nodes(&f, error);
+        if (status == TM_OK)
             status = count_rounded(&f, error);
-        }
         if (status == TM_OK)
             status = find_lost(&f, error);
     }
     tm_surface_free(&f.boundary);
-    free(f.triangle);
-    free(f.face);
+    free(f.hint);
     free(f.distance);
     return status;
 }
