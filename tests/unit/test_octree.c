@@ -281,12 +281,12 @@ static void test_places(void **state)
         assert_int_equal(tm_leaf_point[TM_LEAF_CENTRE][k], 1);
 }
 
-static void assert_brick(const double low[3], const double high[3],
+static void assert_brick(const double low[3], const double high[3], double size,
                          const uint32_t roots[3], double side)
 {
     tm_error error = {0};
     tm_brick brick;
-    assert_ok(tm_brick_over(&brick, low, high, &error), &error);
+    assert_ok(tm_brick_over(&brick, low, high, size, &error), &error);
     assert_true(fabs(brick.side - side) <= 1e-12 * side);
     for (int i = 0; i < 3; i++) {
         assert_int_equal(brick.roots[i], roots[i]);
@@ -300,19 +300,23 @@ static void test_brick(void **state)
 {
     (void)state;
     const double zero[3] = {0, 0, 0};
-    assert_brick(zero, (double[3]){1, 1, 1}, (uint32_t[3]){1, 1, 1}, 1.01);
-    assert_brick(zero, (double[3]){2, 1, 5}, (uint32_t[3]){2, 1, 5}, 1.01);
+    assert_brick(zero, (double[3]){1, 1, 1}, 0, (uint32_t[3]){1, 1, 1}, 1.01);
+    assert_brick(zero, (double[3]){2, 1, 5}, 0, (uint32_t[3]){2, 1, 5}, 1.01);
     /* Twice 1.01: two cubes would touch the box. */
-    assert_brick(zero, (double[3]){1, 2.02, 1}, (uint32_t[3]){1, 3, 1}, 1.01);
+    assert_brick(zero, (double[3]){1, 2.02, 1}, 0, (uint32_t[3]){1, 3, 1}, 1.01);
     /* A plate: as many cubes as there may be. */
-    assert_brick(zero, (double[3]){100, 100, 0.01}, (uint32_t[3]){32, 32, 1},
+    assert_brick(zero, (double[3]){100, 100, 0.01}, 0, (uint32_t[3]){32, 32, 1},
                  1.0002 * 100 / 32);
+    /* Of a given size, doubled. */
+    assert_brick(zero, (double[3]){1, 1, 1}, 0.3, (uint32_t[3]){1, 1, 1}, 1.2);
+    assert_brick(zero, (double[3]){1, 1, 1}, 3, (uint32_t[3]){1, 1, 1}, 3);
+    assert_brick(zero, (double[3]){100, 100, 0.01}, 1, (uint32_t[3]){26, 26, 1}, 4);
     tm_error error = {0};
     tm_brick brick;
-    assert_refused(tm_brick_over(&brick, zero, zero, &error), &error, "no extent");
+    assert_refused(tm_brick_over(&brick, zero, zero, 0, &error), &error, "no extent");
     tm_brick_free(&brick);
     assert_refused(tm_brick_over(&brick, (double[3]){1e16, 0, 0},
-                                 (double[3]){1e16 + 2, 1, 1}, &error),
+                                 (double[3]){1e16 + 2, 1, 1}, 0, &error),
                    &error, "too far");
     tm_brick_free(&brick);
 }

@@ -9,7 +9,8 @@
 
 TM_EXTERN_C_BEGIN
 
-/* The octree over a surface: root cubes as brick.h says; a leaf is split while its level
+/* The octree over a surface: root cubes as brick.h says, for the least size of a rule; a
+ * leaf is split while its level
  * is below that of a rule that holds for it and some of it is inside the surface or meets
  * it (what is outside all over is never needed); then leaves are split until two that
  * share a face or some of an edge differ by one level at most. *octree is overwritten.
