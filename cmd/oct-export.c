@@ -4,11 +4,34 @@
 
 #include "../lib/format/oct.h"
 
+enum { OPTION_IDS = FILTER_OWN };
+
+static const struct option long_options[] = {{"ids", no_argument, NULL, OPTION_IDS},
+                                             FILTER_OPTIONS};
+
+static bool ids;
+
+static tm_status write_oct(tm_text *text, const tm_stream *stream, unsigned threads,
+                           tm_error *error)
+{
+    return tm_oct_write(text, stream, ids, threads, error);
+}
+
 int main(int argc, char **argv)
 {
-    return mesh_export(
-        argc, argv, "oct-export",
-        "Writes the octants of a stream as an .oct restart file of the mixed-element\n"
-        "octree mesher.",
-        tm_oct_write);
+    filter f = {
+        .name = "oct-export",
+        .synopsis = "[--ids] [FILE]",
+        .purpose = "Writes the octants of a stream as an .oct restart file of the "
+                   "mixed-element\n"
+                   "octree mesher.",
+        .help = "      --ids           an id at the end of each octant's row\n",
+        .options = long_options,
+        .letters = FILTER_LETTERS,
+    };
+    filter_start(&f, argc, argv);
+    while (filter_option(&f) != -1)
+        ids = true;
+    filter_operands(&f);
+    return mesh_write(&f, write_oct);
 }

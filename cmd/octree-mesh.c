@@ -6,15 +6,17 @@
 #include "common/process/mpi_environment.h"
 
 #include "../lib/octree/forest/octree_build.h"
+#include "../lib/octree/forest/octree_estimate.h"
 #include "../lib/octree/layer/octree_mesh_stream.h"
 #include "../lib/octree/layer/adaptive_refinement.h"
 #include "../lib/element/jens.h"
 #include "../lib/surface/surface.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { FEATURE_ANGLE = FILTER_OWN, RESOLVE, LENIENT };
+enum { FEATURE_ANGLE = FILTER_OWN, RESOLVE, LENIENT, SIZE, INNER_SIZE, MOST };
 
 static const struct option options[] = {
     {"all", required_argument, NULL, 'a'},
@@ -23,28 +25,35 @@ static const struct option options[] = {
     {"region", required_argument, NULL, 'r'},
     {"leaves", required_argument, NULL, 'l'},
     {"levels", no_argument, NULL, 'u'},
+    {"size", required_argument, NULL, SIZE},
+    {"inner-size", required_argument, NULL, INNER_SIZE},
+    {"most", required_argument, NULL, MOST},
     {"feature-angle", required_argument, NULL, FEATURE_ANGLE},
     {"resolve", required_argument, NULL, RESOLVE},
     {"lenient", no_argument, NULL, LENIENT},
     FILTER_OPTIONS};
 
 static const char synopsis[] =
-    "[-a L] [-s L] [-b FILE.reg] [-r SURFACE L] [-l FILE] [-u] [--feature-angle DEG] "
-    "[--resolve N] [--lenient] [SURFACE]";
+    "[-a L] [-s L] [--size H] [--inner-size H] [-b FILE.reg] [-r SURFACE L] [-l FILE] "
+    "[-u] [--most N] [--feature-angle DEG] [--resolve N] [--lenient] [SURFACE]";
 
 static const char own_help[] =
     "  -a, --all L         octants of level L everywhere\n"
     "  -s, --surface L     of level L where the surface is (default 5, if no other "
     "rule\n"
     "                      is given)\n"
+    "      --size H        of side H where the surface is, in its unit of length\n"
+    "      --inner-size H  of side H or less everywhere\n"
     "  -b, --boxes FILE    of the levels of the boxes in FILE (.reg)\n"
     "  -r, --region S L    of level L on and in the closed surface in file S\n"
     "  -l, --leaves FILE   split the octants whose numbers are in FILE once more\n"
     "  -u, --levels        elements have the level of their octant as attribute\n"
     "      --feature-angle DEG\n"
     "                      an edge is kept where it is sharper (default 40, and none "
-    "if\n"
-    "                      the surface is rough all over)\n"
+    "of\n"
+    "                      a body that is rough all over)\n"
+    "      --most N        refuse what would be more than about N elements (default\n"
+    "                      50000000)\n"
     "      --resolve N     up to N levels more where a thin part or a gap of the "
     "surface\n"
     "                      would be lost (default 1)\n"
@@ -56,13 +65,28 @@ typedef struct {
     octree_rules rules;
     tm_surface_options surface;
     unsigned resolve;
+    double most; /* elements */
     bool levels;
 } settings;
 
+/* A rule with a size: of the surface, or of everything. */
+static void add_size(const filter *f, settings *o, const char *option,
+                     tm_octree_rule_kind kind)
+{
+    const double least = 1e-45, most = 1e45;
+    tm_error error;
+    const tm_octree_rule rule = {.kind = kind,
+                                 .size = filter_number(f, option, optarg, least, most)};
+    if (tm_octree_rules_add(&o->rules.rules, &rule, &error) != TM_OK)
+        filter_fail(f, &error);
+}
+
 static settings read_options(filter *f)
 {
+    const double most_default = 5e7, most_ids = 4e9;
     settings o = {.surface = {.feature_angle = default_angle, .unless_rough = true},
-                  .resolve = 1};
+                  .resolve = 1,
+                  .most = most_default};
     const unsigned default_level = 5;
     int c;
     while ((c = filter_option(f)) != -1) {
@@ -78,12 +102,88 @@ static settings read_options(filter *f)
                 (unsigned)filter_integer(f, "--resolve", optarg, 0, TM_OCTREE_LEVEL_MAX);
         else if (c == LENIENT)
             o.surface.lenient = true;
+        else if (c == SIZE)
+            add_size(f, &o, "--size", TM_RULE_SURFACE);
+        else if (c == INNER_SIZE)
+            add_size(f, &o, "--inner-size", TM_RULE_EVERYTHING);
+        else if (c == MOST)
+            o.most = filter_number(f, "--most", optarg, 1, most_ids);
         else
             octree_rules_option(f, &o.rules, c);
     }
     if (o.rules.rules.count == 0)
         octree_rules_add_level(f, &o.rules, TM_RULE_SURFACE, default_level);
     return o;
+}
+
+/* How many elements would be made if all octants were `coarser` times as large, and the
+ * side of the smallest. */
+static double estimate(const filter *f, const settings *o, const tm_surface *s,
+                       double coarser, double *side)
+{
+    const tm_octree_rules *rules = &o->rules.rules;
+    double elements;
+    tm_error error;
+    if (tm_octree_estimate(s, rules->rule, rules->count, coarser, &elements, side,
+                           &error) != TM_OK)
+        filter_fail(f, &error);
+    return elements;
+}
+
+/* How many levels less would fit, and which side of the smallest octants. */
+static unsigned find_fit(const filter *f, const settings *o, const tm_surface *s,
+                         double *side)
+{
+    const int halves = 6;
+    unsigned levels = 1;
+    while (estimate(f, o, s, ldexp(1, (int)levels), side) > o->most)
+        levels++;
+    double none = ldexp(1, (int)levels - 1), fits = 2 * none;
+    for (int i = 0; i < halves; i++) {
+        const double between = (none + fits) / 2;
+        if (estimate(f, o, s, between, side) > o->most)
+            none = between;
+        else
+            fits = between;
+    }
+    estimate(f, o, s, fits, side);
+    return levels;
+}
+
+/* Refuses what would take too much time and memory, with what would not. */
+static void refuse_many(const filter *f, const settings *o, const tm_surface *s)
+{
+    double finest, side;
+    const double elements = estimate(f, o, s, 1, &finest);
+    filter_verbose(f, "about %.2g elements are to be expected", elements);
+    if (elements <= o->most)
+        return;
+    tm_error error;
+    const unsigned levels = find_fit(f, o, s, &side);
+    tm_fail_at(&error, TM_ERROR_INPUT, filter_input_name(f), 0, NULL,
+               "about %.2g elements would be made, with octants down to %.3g, more than "
+               "%.3g (--most); levels that are lower by %u would fit, or octants of %.3g "
+               "(--size)",
+               elements, finest, o->most, levels, side);
+    filter_fail(f, &error);
+}
+
+/* Boxes and regions that ask for nothing. */
+static void note_outside(const filter *f, const octree_rules *rules, const tm_surface *s)
+{
+    for (size_t r = 0; r < rules->rules.count; r++) {
+        const tm_octree_rule *rule = &rules->rules.rule[r];
+        if (tm_octree_rule_reaches(rule, s))
+            continue;
+        const bool box = rule->kind == TM_RULE_BOX;
+        const double *low = box ? rule->low : rule->region->low;
+        const double *high = box ? rule->high : rule->region->high;
+        filter_note(f,
+                    "the %s from (%g, %g, %g) to (%g, %g, %g) is wholly outside of the "
+                    "surface: no octant is split for it",
+                    box ? "box" : "region", low[0], low[1], low[2], high[0], high[1],
+                    high[2]);
+    }
 }
 
 /* The boundary is not what the surface is: a handle or a piece is lost, or one too much.
@@ -113,6 +213,19 @@ static void note_losses(const filter *f, const tm_surface *s,
                     "is lost near (%g, %g, %g); a finer level there, or --resolve, may "
                     "keep it",
                     r->lost, r->lost_at[0], r->lost_at[1], r->lost_at[2]);
+    if (r->rounded)
+        filter_note(
+            f,
+            "%zu tips or thin parts of the surface are rounded off, or missed, by up "
+            "to %.3g, near (%g, %g, %g)",
+            r->rounded, r->rounded_by, r->rounded_at[0], r->rounded_at[1],
+            r->rounded_at[2]);
+    if (r->dropped)
+        filter_note(
+            f,
+            "%zu pieces of the surface bound nothing and have no part in the mesh, "
+            "as near (%g, %g, %g)",
+            r->dropped, r->dropped_at[0], r->dropped_at[1], r->dropped_at[2]);
     if (!s->by_winding && (r->components != s->components || r->euler != s->euler))
         note_topology(f, s, r, leaf_side);
     if (r->corners_lost + r->curves_lost)
@@ -160,6 +273,8 @@ static void write_json(filter *f, const tm_octree *octree, const tm_octree_mesh 
                                          ROW("held_back", mesh.off_surface),
                                          ROW("inverted", mesh.invalid),
                                          ROW("lost_octants", mesh.lost),
+                                         ROW("rounded_tips", mesh.rounded),
+                                         ROW("dropped_pieces", mesh.dropped),
                                          ROW("lost_corners", mesh.corners_lost),
                                          ROW("lost_edges", mesh.curves_lost),
                                          ROW("components", mesh.components),
@@ -191,6 +306,8 @@ int main(int argc, char **argv)
     tm_octree_mesh mesh;
     tm_error error;
     surface_input_build(&f, &o.surface, &surface, &stream);
+    refuse_many(&f, &o, &surface);
+    note_outside(&f, &o.rules, &surface);
     mpi_environment_set(&f);
     filter_stage(&f, "splitting octants");
     if (tm_octree_build(&octree, &surface, o.rules.rules.rule, o.rules.rules.count,

@@ -2,6 +2,7 @@
 /* octree-repair: a mesh with its octants and its surface in, the same with valid elements
  * out. */
 #include "common/input/mesh_input.h"
+#include "common/input/octant_list.h"
 #include "common/input/surface_input.h"
 #include "common/process/mpi_environment.h"
 
@@ -16,20 +17,21 @@
 #include <stdlib.h>
 #include <time.h>
 
-enum { METHOD = FILTER_OWN, MAX_GROWTH, TRACE, FEATURE_ANGLE };
+enum { METHOD = FILTER_OWN, MAX_GROWTH, OCTANTS, TRACE, FEATURE_ANGLE };
 
 static const struct option long_options[] = {
     {"threshold", required_argument, NULL, 't'},
     {"iterations", required_argument, NULL, 'i'},
     {"method", required_argument, NULL, METHOD},
     {"max-growth", required_argument, NULL, MAX_GROWTH},
+    {"octants", required_argument, NULL, OCTANTS},
     {"trace", required_argument, NULL, TRACE},
     {"feature-angle", required_argument, NULL, FEATURE_ANGLE},
     FILTER_OPTIONS};
 
 static const char synopsis[] = "[-t THRESHOLD] [-i MAX] [--method refine|full] "
-                               "[--max-growth R] [--trace BASE] [--feature-angle DEG] "
-                               "[FILE]";
+                               "[--max-growth R] [--octants FILE.ref] [--trace BASE] "
+                               "[--feature-angle DEG] [FILE]";
 
 static const char own_help[] =
     "  -t, --threshold T   elements whose J_ENS is below T are bad, as are those that\n"
@@ -40,6 +42,9 @@ static const char own_help[] =
     "                      that hold a bad element are split, and all is meshed again,\n"
     "                      until there is none\n"
     "      --max-growth R  full: at most R times as many elements (default 1.1)\n"
+    "      --octants FILE.ref\n"
+    "                      first split the octants with these ids once and mesh again:\n"
+    "                      one of the N iterations\n"
     "      --trace BASE    write BASE_i.histo, .ref, .oct, .m3d and .vtk of each\n"
     "                      iteration\n"
     "      --feature-angle DEG\n"
@@ -54,6 +59,8 @@ typedef struct {
     tm_repair_options repair;
     tm_surface_options surface;
     const char *trace;
+    const char *octants; /* the file, and the rows that it lists */
+    uint32_t *listed;
     bool has_surface;
     tm_surface boundary;
 } program;
@@ -76,6 +83,9 @@ static void read_option(program *p, int c)
         break;
     case MAX_GROWTH:
         p->repair.growth = filter_number(&p->f, "--max-growth", optarg, 1, most_growth);
+        break;
+    case OCTANTS:
+        p->octants = optarg;
         break;
     case TRACE:
         p->trace = optarg;
@@ -153,12 +163,12 @@ static tm_status write_histogram(const writer *w, tm_error *error)
     return put(w, "histo", &text, error);
 }
 
-static tm_status write_octants(const writer *w, const uint32_t *octant, size_t count,
-                               tm_error *error)
+static tm_status write_octants(const writer *w, const uint32_t *id,
+                               const uint32_t *octant, size_t count, tm_error *error)
 {
     tm_text text = {0};
     for (size_t i = 0; i < count; i++)
-        tm_text_format(&text, "%u\n", octant[i]);
+        tm_text_format(&text, "%u\n", id ? id[octant[i]] : octant[i]);
     return put(w, "ref", &text, error);
 }
 
@@ -173,6 +183,13 @@ static tm_status write_mesh(const writer *w, const char *suffix, mesh_writer *wr
     return status;
 }
 
+/* With the ids by which .ref names octants. */
+static tm_status write_oct(tm_text *text, const tm_stream *stream, unsigned threads,
+                           tm_error *error)
+{
+    return tm_oct_write(text, stream, true, threads, error);
+}
+
 /* Of the elements nothing but their shape. */
 static tm_status write_vtk(tm_text *text, const tm_stream *stream, unsigned threads,
                            tm_error *error)
@@ -182,7 +199,7 @@ static tm_status write_vtk(tm_text *text, const tm_stream *stream, unsigned thre
 }
 
 /* Writes BASE_i.histo, .m3d, .vtk, and, where there are octants, .oct; BASE_i.ref, with
- * the numbers of `count` octants from 0, a line each, where there are some. Each is whole
+ * the ids of `count` octants, a line each, where there are some. Each is whole
  * or not there. */
 static tm_status write_trace(const program *p, unsigned iteration,
                              const tm_repair_state *state, const uint32_t *octant,
@@ -196,13 +213,13 @@ static tm_status write_trace(const program *p, unsigned iteration,
     if (status == TM_OK)
         status = write_histogram(&w, error);
     if (status == TM_OK && count > 0)
-        status = write_octants(&w, octant, count, error);
+        status = write_octants(&w, state->id, octant, count, error);
     if (status == TM_OK)
         status = write_mesh(&w, "m3d", tm_m3d_write, error);
     if (status == TM_OK)
         status = write_mesh(&w, "vtk", write_vtk, error);
     if (status == TM_OK && state->octree.leaves > 0)
-        status = write_mesh(&w, "oct", tm_oct_write, error);
+        status = write_mesh(&w, "oct", write_oct, error);
     tm_stream_free(&stream);
     return status;
 }
@@ -289,6 +306,9 @@ static void prepare(program *p, const tm_stream *stream, tm_repair_state *state,
 {
     tm_error error;
     filter_stage(&p->f, "preparing");
+    if (p->octants)
+        p->listed = octant_list_read(&p->f, p->octants, stream, &p->repair.octants);
+    p->repair.octant = p->listed;
     build_surface(p, stream);
     mpi_environment_set(&p->f);
     if (tm_repair_prepare(state, stream, p->has_surface ? &p->boundary : NULL, notes,
@@ -296,7 +316,7 @@ static void prepare(program *p, const tm_stream *stream, tm_repair_state *state,
         fail(p, &error);
     if (!notes->no_octree.what[0])
         return;
-    if (p->repair.method == TM_REPAIR_REFINE)
+    if (p->repair.method == TM_REPAIR_REFINE || p->repair.octants > 0)
         fail(p, &notes->no_octree);
     filter_note(&p->f, "%s: no octant is split: %s", filter_input_name(&p->f),
                 notes->no_octree.what);
@@ -313,7 +333,8 @@ static bool run(program *p, tm_stream *stream)
     filter_stage(&p->f, "examining");
     if (tm_repair_from_stream(&state, stream, &error) != TM_OK)
         fail(p, &error);
-    if (tm_repair_is_needed(&state, stream, p->repair.threshold) || p->trace)
+    if (tm_repair_is_needed(&state, stream, p->repair.threshold) || p->trace ||
+        p->octants)
         prepare(p, stream, &state, &notes);
     tm_surface *surface = p->has_surface ? &p->boundary : NULL;
     mesh_state before = state_of(&state, stream);
@@ -338,6 +359,7 @@ static bool run(program *p, tm_stream *stream)
     filter_write(&p->f, stream, "%zu elements of %zu, bad %zu of %zu", after.elements,
                  before.elements, report.after.bad, report.before.bad);
     tm_repair_state_free(&state);
+    free(p->listed);
     return done;
 }
 
@@ -363,6 +385,8 @@ int main(int argc, char **argv)
     filter_start(&p.f, argc, argv);
     while ((c = filter_option(&p.f)) != -1)
         read_option(&p, c);
+    if (p.octants && p.repair.iterations == 0)
+        filter_usage_error(&p.f, "--octants is an iteration, but -i allows none");
     filter_operands(&p.f);
     filter_read(&p.f, &stream);
     const bool done = run(&p, &stream);

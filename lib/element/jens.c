@@ -2,7 +2,9 @@
 /* Each edge is measured once, for the corners at both of its ends. Two edges and two
  * corners are computed at a time, in both halves of a 16-byte vector (an extension
  * that GCC and Clang have on every machine). Both halves do what scalar code would, so
- * results do not depend on the machine. */
+ * results do not depend on the machine. They are, to the last bit, (a × b)·c over |a| |b|
+ * |c|, where c is an edge to the third neighbour: signs of edges, and a for b, change no
+ * rounding. */
 #include "jens.h"
 
 #include "../geom/vector.h"
@@ -17,19 +19,19 @@ typedef struct vector_pair {
 } vector_pair;
 
 /* The edges of an element, and where their number is odd one more that is not used: their
- * vectors and squared lengths, in pairs. */
+ * vectors and lengths, in pairs. */
 typedef union edge_numbers {
     pair two[TM_ELEMENT_EDGES / 2];
     double one[TM_ELEMENT_EDGES];
 } edge_numbers;
 
 typedef struct edge_vectors {
-    edge_numbers x, y, z, length2;
+    edge_numbers x, y, z, length;
 } edge_vectors;
 
-/* Products of three squared lengths outside of these are not trusted. */
-static const double low = 1e-250;
-static const double high = 1e250;
+/* Products of three lengths outside of these are not trusted. */
+static const double low = 1e-125;
+static const double high = 1e125;
 
 static inline void measure_edges(const tm_element_shape *shape, const double (*xyz)[3],
                                  const uint32_t *item, edge_vectors *edge)
@@ -44,7 +46,8 @@ static inline void measure_edges(const tm_element_shape *shape, const double (*x
         edge->x.two[e / 2] = x;
         edge->y.two[e / 2] = y;
         edge->z.two[e / 2] = z;
-        edge->length2.two[e / 2] = x * x + y * y + z * z;
+        const pair length2 = x * x + y * y + z * z;
+        edge->length.two[e / 2] = (pair){sqrt(length2[0]), sqrt(length2[1])};
     }
 }
 
@@ -91,7 +94,7 @@ double tm_scaled_jacobian(const double p[3], const double a[3], const double b[3
         return 0;
     tm_cross(normal, edge[0], edge[1]);
     return tm_dot(normal, edge[2]) /
-           sqrt(tm_norm2(edge[0]) * tm_norm2(edge[1]) * tm_norm2(edge[2]));
+           (tm_norm(edge[0]) * tm_norm(edge[1]) * tm_norm(edge[2]));
 }
 
 void tm_scaled_jacobians(const tm_element_shape *shape, const double (*xyz)[3],
@@ -105,15 +108,15 @@ void tm_scaled_jacobians(const tm_element_shape *shape, const double (*xyz)[3],
         value[i / 2] =
             determinant(two_edges(&edge, m[0], n[0]), two_edges(&edge, m[1], n[1]),
                         two_edges(&edge, m[2], n[2]));
-        product[i / 2] = two_of(&edge.length2, m[0], n[0]) *
-                         two_of(&edge.length2, m[1], n[1]) *
-                         two_of(&edge.length2, m[2], n[2]);
+        product[i / 2] = two_of(&edge.length, m[0], n[0]) *
+                         two_of(&edge.length, m[1], n[1]) *
+                         two_of(&edge.length, m[2], n[2]);
     }
     for (size_t i = 0; i < shape->corners; i++) {
         const uint8_t *n = shape->corner[i];
-        const double length6 = product[i / 2][i % 2];
-        jacobian[i] = low < length6 && length6 < high
-                          ? value[i / 2][i % 2] / sqrt(length6)
+        const double lengths = product[i / 2][i % 2];
+        jacobian[i] = low < lengths && lengths < high
+                          ? value[i / 2][i % 2] / lengths
                           : tm_scaled_jacobian(xyz[item[n[0]]], xyz[item[n[1]]],
                                                xyz[item[n[2]]], xyz[item[n[3]]]);
     }

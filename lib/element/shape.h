@@ -86,8 +86,9 @@ typedef struct tm_element_shape {
     uint8_t edge[TM_ELEMENT_EDGES][2];      /* the lower number first */
     uint8_t edge_face[TM_ELEMENT_EDGES][2]; /* the two faces at an edge */
     /* Corner i is at corner[i][0], and its three neighbours, in positive order, are
-     * corner[i][1 … 3]. A pyramid has eight: those of its base, and at its apex each
-     * three lateral edges that follow each other. */
+     * corner[i][1 … 3], the last of which decides how J_S is rounded (jens.h). A pyramid
+     * has eight: those of its base, and at its apex each three lateral edges that follow
+     * each other. */
     uint8_t corner[TM_ELEMENT_CORNERS][4];
     /* The three edges of a corner, in such an order that their determinant, each taken in
      * its own direction, is positive where that of the edges that leave the corner is. */

@@ -15,7 +15,7 @@ typedef struct reader {
     tm_oct *oct;
     int64_t count[COUNTS_MAX];
     size_t counts; /* 3, or 4: the other version */
-    size_t room[3];
+    size_t room[4];
     tm_error *error;
 } reader;
 
@@ -69,6 +69,38 @@ static tm_status skip_edges(reader *r)
     return status;
 }
 
+/* What may follow the level: all octants have an id, or none. */
+static tm_status read_octant_id(reader *r, size_t o)
+{
+    const bool has_id = tm_scan_more(&r->scan);
+    if (o > 0 && has_id != (r->oct->id != NULL))
+        return tm_scan_fail(&r->scan, r->error,
+                            "octant %zu has %s, but those before it have %s", o,
+                            has_id ? "an id" : "no id", has_id ? "none" : "one");
+    if (!has_id)
+        return TM_OK;
+    uint32_t *grown = tm_grow(r->oct->id, &r->room[3], o + 1, sizeof *grown);
+    if (!grown)
+        return tm_fail_memory(r->error);
+    r->oct->id = grown;
+    int64_t number = 0;
+    const tm_status status = tm_scan_integer(&r->scan, "the id of an octant", 0,
+                                             UINT32_MAX - 1, &number, r->error);
+    grown[o] = (uint32_t)number;
+    return status == TM_OK ? tm_scan_no_more(&r->scan, "the id of the octant", r->error)
+                           : status;
+}
+
+static tm_status skip_triangles(reader *r)
+{
+    int64_t triangles = 0, number;
+    tm_status status =
+        read_id(r, "the number of triangles in an octant", UINT32_MAX, &triangles);
+    for (int64_t t = 0; t < triangles && status == TM_OK; t++)
+        status = read_id(r, "a triangle in an octant", UINT32_MAX, &number);
+    return status;
+}
+
 static tm_status read_octant(reader *r)
 {
     tm_oct *oct = r->oct;
@@ -90,14 +122,10 @@ static tm_status read_octant(reader *r)
     if (status == TM_OK)
         status = read_id(r, "the level of an octant", LEVEL_MAX + 1, &number);
     oct->level[o] = (unsigned char)number;
-    oct->octants++;
-    int64_t triangles = 0;
     if (status == TM_OK)
-        status =
-            read_id(r, "the number of triangles in an octant", UINT32_MAX, &triangles);
-    for (int64_t t = 0; t < triangles && status == TM_OK; t++)
-        status = read_id(r, "a triangle in an octant", UINT32_MAX, &number);
-    return status;
+        status = read_octant_id(r, o);
+    oct->octants++;
+    return status == TM_OK ? skip_triangles(r) : status;
 }
 
 static tm_status read_octants(reader *r)
@@ -177,5 +205,6 @@ void tm_oct_free(tm_oct *oct)
     free(oct->corner);
     free(oct->level);
     free(oct->elements);
+    free(oct->id);
     *oct = (tm_oct){0};
 }

@@ -191,10 +191,27 @@ static tm_status give_roots(giver *g, tm_stream *stream)
     return TM_OK;
 }
 
+/* Each id is there once. */
+static tm_status give_ids(giver *g, tm_block *octant)
+{
+    uint32_t *ids;
+    tm_error cause;
+    for (size_t o = 0; o < octant->count; o++)
+        octant->attribute[o] = g->oct->id[o];
+    const tm_status status = tm_octant_ids(&ids, octant, 0, &cause);
+    free(ids);
+    return status == TM_OK
+               ? TM_OK
+               : tm_fail_at(g->error, status, g->name, 0, NULL, "%s", cause.what);
+}
+
 static tm_status give_octants(giver *g, tm_stream *stream, bool one_each)
 {
-    tm_block *octant;
-    const tm_status status = add(g, stream, ".octant", g->oct->octants, 0, &octant);
+    tm_block *octant = tm_stream_add(stream, ".octant");
+    if (!octant)
+        return tm_fail_memory(g->error);
+    octant->attributes = g->oct->id ? 1 : 0;
+    const tm_status status = tm_block_allocate(octant, g->oct->octants, 0, g->error);
     if (status != TM_OK)
         return status;
     uint32_t *row = octant->integer, element = 0;
@@ -205,7 +222,7 @@ static tm_status give_octants(giver *g, tm_stream *stream, bool one_each)
         element += one_each ? 1 : g->oct->elements[o];
         row[OCTANT_NUMBERS - 1] = element;
     }
-    return TM_OK;
+    return g->oct->id ? give_ids(g, octant) : TM_OK;
 }
 
 /* The octants as hexahedra, whose corners are in the order of .mix. */

@@ -35,6 +35,7 @@ typedef struct writer {
     double (*middle)[3]; /* of each edge, in units */
     tm_point_table known;
     tm_octant_triangles meet;
+    uint32_t *id; /* [octants], NULL where they are not written */
     tm_text *text;
     tm_error *error;
 } writer;
@@ -281,7 +282,7 @@ static char *put_edge(const void *context, size_t row, char *to)
 
 static size_t octant_room(const void *context, size_t first, size_t past)
 {
-    enum { FIXED = TM_OCT_CORNERS + 4 };
+    enum { FIXED = TM_OCT_CORNERS + 5 };
     const writer *w = context;
     size_t numbers = FIXED * (past - first);
     for (size_t o = first; o < past; o++)
@@ -296,6 +297,8 @@ static char *put_octant(const void *context, size_t row, char *to)
     for (int c = 0; c < TM_OCT_CORNERS; c++)
         to = tm_put_number(to, w->corner[row][c]);
     to = tm_put_number(to, w->octant->integer[OCTANT_NUMBERS * row]);
+    if (w->id)
+        to = tm_put_number(to, w->id[row]);
     *to++ = '\n';
     to = tm_write_uint32(to, w->meet.count[row]);
     for (size_t i = 0; i < w->meet.count[row]; i++)
@@ -331,7 +334,7 @@ static tm_status append(writer *w, unsigned threads)
     return w->text->failed ? tm_fail_memory(w->error) : TM_OK;
 }
 
-tm_status tm_oct_write(tm_text *text, const tm_stream *stream, unsigned threads,
+tm_status tm_oct_write(tm_text *text, const tm_stream *stream, bool ids, unsigned threads,
                        tm_error *error)
 {
     writer w = {.stream = stream, .text = text, .error = error};
@@ -342,6 +345,8 @@ tm_status tm_oct_write(tm_text *text, const tm_stream *stream, unsigned threads,
         status = take_octants(&w);
     if (status == TM_OK)
         status = number_points(&w);
+    if (status == TM_OK && ids)
+        status = tm_octant_ids(&w.id, w.octant, stream->base, error);
     if (status == TM_OK)
         status = find_edges(&w);
     if (status == TM_OK)
@@ -349,6 +354,7 @@ tm_status tm_oct_write(tm_text *text, const tm_stream *stream, unsigned threads,
     if (status == TM_OK)
         status = append(&w, threads);
     free(w.box);
+    free(w.id);
     free(w.corner);
     free(w.grid);
     free(w.edge);

@@ -44,6 +44,7 @@ typedef struct tm_surface {
     size_t welded;     /* nodes that had another where they are */
     size_t flat;       /* triangles without area that were dropped, or went by a flip */
     size_t duplicates; /* triangles that were there twice, dropped */
+    size_t touching;   /* where nodes have more than one fan of triangles: fans more */
     bool turned;       /* some or all triangles turned the other way */
     size_t components; /* connected pieces of surface: shells */
     int64_t euler;     /* nodes - edges + triangles, of all shells; a node counts once for
@@ -51,8 +52,9 @@ typedef struct tm_surface {
     size_t open_edges; /* with one triangle; 0 unless lenient */
     size_t crossings;  /* pairs of triangles that meet elsewhere than in a common node or
                           edge; 0 unless lenient */
-    bool rough;        /* it has sharp edges all over: none is taken for one */
-    bool by_winding;   /* the inside is where the winding number is above 1/2 */
+    bool rough; /* some of it has sharp edges all over that are not taken for any */
+    size_t rough_edges; /* these */
+    bool by_winding;    /* the inside is where the winding number is above 1/2 */
 } tm_surface;
 
 /* The default of feature_angle: degrees. */
@@ -60,7 +62,8 @@ typedef struct tm_surface {
 
 typedef struct tm_surface_options {
     double feature_angle; /* an edge is sharp where its normals differ by more: degrees */
-    bool unless_rough;    /* no edge is, where many of those that are end freely */
+    bool unless_rough;    /* no edge of a body is, where many of those end freely; but
+                             what is long and smooth around: surface_loose.h */
     bool lenient;         /* open surfaces, and such that cross themselves, are taken */
 } tm_surface_options;
 

@@ -41,6 +41,7 @@ static tm_status count_euler(tm_surface *surface, tm_error *error)
     tm_status status = count_fans(surface, &fans, error);
     if (status == TM_OK) {
         size_t edges = (3 * surface->triangles + surface->open_edges) / 2;
+        surface->touching = fans - surface->nodes;
         surface->euler = (int64_t)fans - (int64_t)edges + (int64_t)surface->triangles;
     }
     return status;

@@ -122,6 +122,13 @@ double tm_surface_triangle_distance2(const tm_surface *surface, uint32_t t,
     return triangle_distance2(&tree->triangle[tree->slot[t]], point, q);
 }
 
+double tm_corners_distance2(const double corner[3][3], const double point[3])
+{
+    double q[3];
+    on_triangle(corner, point, q);
+    return tm_distance2(point, q);
+}
+
 static inline void measure(const tm_tree_triangle *triangle, const double p[3],
                            tm_surface_point *best)
 {

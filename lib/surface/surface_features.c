@@ -29,6 +29,7 @@ typedef struct feature_finder {
     tm_sharp_edge *edge;
     size_t *start; /* [nodes + 1]: sharp edges at v are at[start[v] … start[v + 1]) */
     uint32_t *at;
+    bool *rough;      /* [nodes], or NULL: no edge there is sharp by its angle */
     bool *corner;     /* [nodes] */
     bool *done;       /* [edges] */
     uint32_t *parent; /* [triangles]: sets of those in one patch */
@@ -96,11 +97,15 @@ static bool bends(const feature_finder *f, uint32_t t, uint32_t n)
     return tm_dot(a, b) < f->most_cosine;
 }
 
-/* Where two groups of the surface meet there is an edge, too, that has to stay. */
-static bool is_sharp(const feature_finder *f, uint32_t t, uint32_t n)
+/* Whether the edge from corner i of t is sharp: an open one is, and where two groups of
+ * the surface meet there is an edge, too, that has to stay. */
+static bool is_sharp(const feature_finder *f, uint32_t t, unsigned i)
 {
+    const uint32_t n = f->surface->across[t][i];
     const int32_t *marker = f->surface->marker;
-    return bends(f, t, n) || (marker && marker[t] != marker[n]);
+    if (n == TM_NONE || (marker && marker[t] != marker[n]))
+        return true;
+    return bends(f, t, n) && !(f->rough && f->rough[f->surface->triangle[t][i]]);
 }
 
 static int compare_edges(const void *a, const void *b)
@@ -124,7 +129,7 @@ static size_t list_edges(const feature_finder *f, tm_sharp_edge *edge, uint32_t 
             uint32_t n = surface->across[t][i];
             if (n != TM_NONE && n < t)
                 continue;
-            if (!is_sharp(f, t, n)) {
+            if (!is_sharp(f, t, i)) {
                 tm_set_unite(parent, t, n);
                 continue;
             }
@@ -260,6 +265,8 @@ static bool turns(const feature_finder *f, uint32_t v)
 {
     uint32_t ends[2];
     double in[3], out[3];
+    if (f->rough && f->rough[v])
+        return false;
     neighbours(f, v, ends);
     direction(f->surface, ends[0], v, in);
     direction(f->surface, v, ends[1], out);
@@ -389,36 +396,39 @@ static tm_status find_curves(feature_finder *f, tm_error *error)
     return TM_OK;
 }
 
-/* On what is made, sharp edges follow each other. A surface that has many which end
- * freely is rough all over, as a scanned bone is, and has no edges. */
-static tm_status smooth_if_rough(feature_finder *f, tm_error *error)
+/* The edges that are sharp by their angle, and open ones. Counts only for edge NULL. */
+static size_t list_bends(const feature_finder *f, tm_sharp_edge *edge)
 {
     const tm_surface *surface = f->surface;
-    const double below_all_cosines = -2;
-    const size_t many = 10; /* one for so many edges */
-    size_t sharp = 0, ends = 0;
-    uint8_t *at = calloc(surface->nodes + 1, sizeof *at); /* sharp edges; 2: or more */
-    if (!at)
-        return tm_fail_memory(error);
+    size_t count = 0;
     for (uint32_t t = 0; t < surface->triangles; t++)
         for (unsigned i = 0; i < 3; i++) {
             const uint32_t n = surface->across[t][i];
             if ((n != TM_NONE && n < t) || !bends(f, t, n))
                 continue;
-            uint8_t *p = &at[surface->triangle[t][i]];
-            uint8_t *q = &at[surface->triangle[t][(i + 1) % 3]];
-            *p = *p == 0 ? 1 : 2;
-            *q = *q == 0 ? 1 : 2;
-            sharp++;
+            const uint32_t *v = surface->triangle[t];
+            if (edge)
+                edge[count] = (tm_sharp_edge){{v[i], v[(i + 1) % 3]}, {t, n}};
+            count++;
         }
-    for (size_t v = 0; v < surface->nodes; v++)
-        ends += at[v] == 1;
-    free(at);
-    if (ends > sharp / many) {
-        f->most_cosine = below_all_cosines;
-        f->surface->rough = true;
+    return count;
+}
+
+static tm_status find_rough(feature_finder *f, tm_error *error)
+{
+    tm_surface *surface = f->surface;
+    const size_t count = list_bends(f, NULL);
+    tm_sharp_edge *edge = tm_new(count, sizeof *edge);
+    f->rough = calloc(surface->nodes + 1, sizeof *f->rough);
+    tm_status status = edge && f->rough ? TM_OK : tm_fail_memory(error);
+    if (status == TM_OK) {
+        list_bends(f, edge);
+        status = tm_surface_find_rough(surface, edge, count, f->rough,
+                                       &surface->rough_edges, error);
+        surface->rough = surface->rough_edges > 0;
     }
-    return TM_OK;
+    free(edge);
+    return status;
 }
 
 tm_status tm_surface_find_features(tm_surface *surface, double feature_angle,
@@ -432,7 +442,7 @@ tm_status tm_surface_find_features(tm_surface *surface, double feature_angle,
     if (status == TM_OK) {
         find_normals(&f);
         if (unless_rough)
-            status = smooth_if_rough(&f, error);
+            status = find_rough(&f, error);
     }
     if (status == TM_OK)
         status = find_edges(&f, error);
@@ -451,6 +461,7 @@ tm_status tm_surface_find_features(tm_surface *surface, double feature_angle,
     free(f.parent);
     free(f.start);
     free(f.at);
+    free(f.rough);
     free(f.corner);
     free(f.done);
     return status;

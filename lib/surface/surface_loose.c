@@ -142,3 +142,154 @@ tm_status tm_surface_find_loose(const tm_sharp_network *network, double least,
     free(chain);
     return done ? TM_OK : tm_fail_memory(error);
 }
+
+/* One free end for so many edges of a body makes it rough. */
+static const size_t many_of_body = 10;
+
+/* The same of edges that hang together: so many are a feature where they have no free end
+ * close by, twice as many where they have one, and so on. */
+static const size_t many_of_network = 30;
+
+/* What is close by: over so many edges of triangles. */
+enum { RINGS = 3 };
+
+/* What is connected, at the node that stands for it. */
+typedef struct tally {
+    size_t edges, ends; /* sharp edges; their free ends */
+} tally;
+
+typedef struct roughness {
+    const tm_surface *surface;
+    const tm_sharp_edge *edge;
+    size_t edges;
+    uint32_t *body;    /* [nodes]: disjoint sets, joined by triangles */
+    uint32_t *network; /* [nodes]: the same, by sharp edges */
+    uint8_t *degree;   /* [nodes]: sharp edges there; 2: or more */
+    tally *of_body;    /* [nodes], at roots */
+    tally *of_network; /* [nodes], at roots; ends are those close by */
+    size_t *start; /* [nodes + 1]: the triangles at v are at[start[v] … start[v + 1]) */
+    uint32_t *at;
+    uint32_t *met;     /* [nodes]: the free end plus 1 from which it was reached last */
+    uint32_t *counted; /* [nodes], at roots of networks: the same, where it was counted */
+    uint32_t *near;    /* [nodes]: those reached from a free end */
+} roughness;
+
+static void unite(roughness *f)
+{
+    const tm_surface *surface = f->surface;
+    for (uint32_t v = 0; v < surface->nodes; v++)
+        f->body[v] = f->network[v] = v;
+    for (size_t t = 0; t < surface->triangles; t++)
+        for (int i = 1; i < 3; i++)
+            tm_set_unite(f->body, surface->triangle[t][0], surface->triangle[t][i]);
+    for (size_t e = 0; e < f->edges; e++)
+        tm_set_unite(f->network, f->edge[e].node[0], f->edge[e].node[1]);
+}
+
+static void count_bodies(roughness *f)
+{
+    for (size_t e = 0; e < f->edges; e++) {
+        const uint32_t *node = f->edge[e].node;
+        f->of_body[tm_set_root(f->body, node[0])].edges++;
+        f->of_network[tm_set_root(f->network, node[0])].edges++;
+        for (int i = 0; i < 2; i++)
+            f->degree[node[i]] = f->degree[node[i]] == 0 ? 1 : 2;
+    }
+    for (uint32_t v = 0; v < f->surface->nodes; v++)
+        f->of_body[tm_set_root(f->body, v)].ends += f->degree[v] == 1;
+}
+
+/* Of a node that is on no sharp edge: whether its body has many that end freely. */
+static bool body_is_rough(roughness *f, uint32_t v)
+{
+    const tally *of = &f->of_body[tm_set_root(f->body, v)];
+    return of->ends > of->edges / many_of_body;
+}
+
+static void sort_triangles(roughness *f)
+{
+    const tm_surface *surface = f->surface;
+    for (size_t t = 0; t < surface->triangles; t++)
+        for (int i = 0; i < 3; i++)
+            f->start[surface->triangle[t][i] + 2]++;
+    for (size_t v = 1; v <= surface->nodes; v++)
+        f->start[v + 1] += f->start[v];
+    for (size_t t = 0; t < surface->triangles; t++)
+        for (int i = 0; i < 3; i++)
+            f->at[f->start[surface->triangle[t][i] + 1]++] = (uint32_t)t;
+}
+
+/* Counts a free end for the network of a node that is close to it, once. */
+static void reach(roughness *f, uint32_t end, uint32_t v, size_t *count)
+{
+    if (f->met[v] == end + 1)
+        return;
+    f->met[v] = end + 1;
+    f->near[(*count)++] = v;
+    const uint32_t network = tm_set_root(f->network, v);
+    if (f->degree[v] == 0 || f->counted[network] == end + 1)
+        return;
+    f->counted[network] = end + 1;
+    f->of_network[network].ends++;
+}
+
+static void count_end(roughness *f, uint32_t end)
+{
+    size_t first = 0, count = 0;
+    reach(f, end, end, &count);
+    for (int ring = 0; ring < RINGS; ring++)
+        for (const size_t last = count; first < last; first++) {
+            const uint32_t v = f->near[first];
+            for (size_t i = f->start[v]; i < f->start[v + 1]; i++)
+                for (int k = 0; k < 3; k++)
+                    reach(f, end, f->surface->triangle[f->at[i]][k], &count);
+        }
+}
+
+static void find(roughness *f, bool *rough, size_t *rough_edges)
+{
+    const size_t nodes = f->surface->nodes;
+    unite(f);
+    count_bodies(f);
+    sort_triangles(f);
+    for (uint32_t v = 0; v < nodes; v++)
+        if (f->degree[v] == 1 && body_is_rough(f, v))
+            count_end(f, v);
+    for (uint32_t v = 0; v < nodes; v++) {
+        const tally *network = &f->of_network[tm_set_root(f->network, v)];
+        rough[v] =
+            body_is_rough(f, v) && network->edges < many_of_network * (network->ends + 1);
+    }
+    for (size_t e = 0; e < f->edges; e++)
+        *rough_edges += rough[f->edge[e].node[0]];
+}
+
+tm_status tm_surface_find_rough(const tm_surface *surface, const tm_sharp_edge *edge,
+                                size_t edges, bool *rough, size_t *rough_edges,
+                                tm_error *error)
+{
+    const size_t nodes = surface->nodes;
+    roughness f = {.surface = surface,
+                   .edge = edge,
+                   .edges = edges,
+                   .body = tm_new(nodes, sizeof *f.body),
+                   .network = tm_new(nodes, sizeof *f.network),
+                   .degree = calloc(nodes + 1, sizeof *f.degree),
+                   .of_body = calloc(nodes + 1, sizeof *f.of_body),
+                   .of_network = calloc(nodes + 1, sizeof *f.of_network),
+                   .start = calloc(nodes + 2, sizeof *f.start),
+                   .at = tm_new(3 * surface->triangles, sizeof *f.at),
+                   .met = calloc(nodes + 1, sizeof *f.met),
+                   .counted = calloc(nodes + 1, sizeof *f.counted),
+                   .near = tm_new(nodes, sizeof *f.near)};
+    *rough_edges = 0;
+    const bool done = f.body && f.network && f.degree && f.of_body && f.of_network &&
+                      f.start && f.at && f.met && f.counted && f.near;
+    if (done)
+        find(&f, rough, rough_edges);
+    void *const arrays[] = {f.body,  f.network, f.degree, f.of_body, f.of_network,
+                            f.start, f.at,      f.met,    f.counted, f.near};
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
+        free(arrays[i]);
+    return done ? TM_OK : tm_fail_memory(error);
+}

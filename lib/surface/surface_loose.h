@@ -26,4 +26,16 @@ typedef struct tm_sharp_network {
 tm_status tm_surface_find_loose(const tm_sharp_network *network, double least,
                                 bool *dropped, bool *rough, tm_error *error);
 
+/* Sets rough[nodes], which is false before, where sharp edges are none. On what is made,
+ * sharp edges follow each other; a body (what is connected by triangles) of which more
+ * than one in ten ends freely is rough. So are its nodes, but those of connected sharp
+ * edges that are many and have few free ends among them and close by, own ones or others:
+ * less than one for each thirty. Needs of the surface nodes and triangles; edges are
+ * those that are sharp by their angle, and open ones. *rough_edges is how many are at
+ * rough nodes: both ends of an edge are alike. TM_ERROR_SYSTEM where memory is out. O(n).
+ */
+tm_status tm_surface_find_rough(const tm_surface *surface, const tm_sharp_edge *edge,
+                                size_t edges, bool *rough, size_t *rough_edges,
+                                tm_error *error);
+
 #endif

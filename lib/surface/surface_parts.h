@@ -37,8 +37,8 @@ tm_status tm_surface_find_crossings(tm_surface *surface, bool lenient, unsigned 
 /* Turns the shells that have to be, by the tree; turned. */
 tm_status tm_surface_turn(tm_surface *surface, tm_error *error);
 
-/* Curves, corners and patches. Sharp edges that end freely and are shorter than
- * least_length in all are none, nor are networks of which many do. */
+/* Curves, corners and patches; rough, rough_edges. Sharp edges that end freely and are
+ * shorter than least_length in all are none, nor are networks of which many do. */
 tm_status tm_surface_find_features(tm_surface *surface, double feature_angle,
                                    bool unless_rough, double least_length,
                                    tm_error *error);

@@ -57,6 +57,9 @@ tm_status tm_surface_tree_build(tm_surface *surface, tm_error *error);
 double tm_surface_triangle_distance2(const tm_surface *surface, uint32_t t,
                                      const double point[3]);
 
+/* The same to any triangle of three corners. */
+double tm_corners_distance2(const double corner[3][3], const double point[3]);
+
 /* Copies corners and patches to the tree again after they have changed. */
 void tm_surface_tree_refresh(tm_surface *surface);
 

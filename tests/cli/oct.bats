@@ -99,7 +99,7 @@ class Octree:
         return [i for i, t in enumerate(self.triangles)
                 if inside(t, self.xyz(q[0]), self.xyz(q[6]))]
 
-    def write(self, name, other_version, extra=''):
+    def write(self, name, other_version, extra='', ids=None):
         corners = [self.corners(leaf) for leaf in self.leaves]
         points = sorted({q for c in corners for q in c}, key=lambda q: (q[2], q[1], q[0]))
         number = {q: i for i, q in enumerate(points)}
@@ -123,8 +123,8 @@ class Octree:
             print(file=f)
             if other_version:
                 print(*self.elements, '\n', file=f)
-            for leaf, c in zip(self.leaves, corners):
-                print(8, *(number[q] for q in c), leaf[0], file=f)
+            for i, (leaf, c) in enumerate(zip(self.leaves, corners)):
+                print(8, *(number[q] for q in c), leaf[0], *(ids[i:i + 1] if ids else []), file=f)
                 meeting = self.meeting(leaf)
                 print(len(meeting), *meeting, file=f)
             print('\nGeometric Transform\n0.0 1.0 0.000000\n0.0 0 %s' % (extra or 0), file=f)
@@ -171,6 +171,58 @@ assert b[3] == []"
         sed 's/$/\r/' a.oct | oct-import --no-history -m a.m3d -s a.off |
             cmp - <(sed '/^# /d' a.tm)
     done
+}
+
+@test "ids: kept as the attribute of .octant, in a file with --ids" {
+    make_octree 9
+    python3 -c "from octree import *
+o = Octree(9)
+ids = random.sample(range(4294967295), len(o.leaves))
+o.write('a.ids', False, ids=ids)
+o.write('b.ids', True, ids=ids)
+print(*ids, sep='\n')" >ids
+    oct-import -m a.m3d -s a.off a.oct >plain.tm
+    for version in a b; do
+        oct-import --no-history -m a.m3d -s a.off $version.ids >$version.tm
+        [ "$(header .octant $version.tm)" = "$(wc -l <ids) 1" ]
+        rows .octant $version.tm | awk '{ print $8 }' | diff - ids
+        rows .octant $version.tm | sed 's/ [0-9]*$//' | diff - <(rows .octant plain.tm)
+    done
+    oct-export plain.tm >plain.oct
+    oct-export a.tm | cmp - plain.oct
+    oct-export --ids -j 3 a.tm >again.ids
+    awk '/^8 / && NF == 11 { print $11; sub(/ [0-9]*$/, "") } { print >"stripped" }' again.ids |
+        diff - ids
+    cmp stripped plain.oct
+    # where there are none an octant's id is its number from 0
+    oct-export --ids plain.tm | awk '/^8 / && NF == 11 { print $11 }' |
+        diff - <(seq 0 "$(($(wc -l <ids) - 1))")
+}
+
+@test "wrong ids: exit 3" {
+    make_octree 9
+    python3 -c "from octree import *
+o = Octree(9)
+o.write('a.ids', False, ids=list(range(10, len(o.leaves) + 10)))"
+    run -3 --separate-stderr oct-import -o out.tm <(sed '/^8 .* 14$/s/14$/12/' a.ids)
+    [[ "$stderr" == *": octants 2 and 4 both have the id 12" ]]
+    run -3 --separate-stderr oct-import -o out.tm <(sed '/^8 .* 14$/s/ 14$//' a.ids)
+    [[ "$stderr" == *": octant 4 has no id, but those before it have one" ]]
+    run -3 --separate-stderr oct-import -o out.tm <(sed '/^8 .* 14$/s/14$/4294967295/' a.ids)
+    [[ "$stderr" == *"the id of an octant: 4294967295 is out of range"* ]]
+    run -3 --separate-stderr oct-import -o out.tm <(sed '/^8 .* 14$/s/14$/& 0/' a.ids)
+    [[ "$stderr" == *"'0' follows the id of the octant"* ]]
+    oct-import -m a.m3d -s a.off a.ids >a.tm
+    for id in 0.5 -1 4294967295; do
+        sed "/^\.octant/,/^\.root/s/ 14\$/ $id/" a.tm >wrong.tm
+        run -3 --separate-stderr oct-export --ids -o out.oct wrong.tm
+        [[ "$stderr" == *": .octant: row 4: "*" is no id of an octant"* ]]
+        oct-export -o without.oct wrong.tm
+    done
+    sed '/^\.octant/,/^\.root/s/ 14$/ 12/' a.tm >wrong.tm
+    run -3 --separate-stderr oct-export --ids -o out.oct wrong.tm
+    [[ "$stderr" == *": .octant: octants 2 and 4 both have the id 12" ]]
+    [ ! -e out.tm ] && [ ! -e out.oct ]
 }
 
 @test "octants and roots are where the file has them" {

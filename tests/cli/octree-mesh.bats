@@ -247,6 +247,83 @@ assert abs(c["volume"] - 1) < 1e-12 and abs(c["area"] - 6) < 1e-12, c'
     [ "$(levels -a 3 -a 2 -s 3)" = 3:512 ]
 }
 
+# sides FILE: the sides of its octants, as multiples of SIDE, ascending.
+sides() {
+    { rows .root "$1"; echo; rows .octant "$1" | cut -d ' ' -f 2 | sort -rnu; } | awk -v unit="$2" '
+        NF == 0 { octants = 1; next }
+        !octants { side = $5; next }
+        { printf "%.6g ", side / 2 ^ $1 / unit }'
+}
+
+@test "--size, --inner-size: octants of a given size, whatever the shape is" {
+    # the thin side of a plate says nothing of them
+    awk 'NR > 2 && NR <= 10 { print $1 * 10, $2 * 10, $3; next } { print }' box.off >slab.off
+    octree-mesh --size 0.2 -o mesh.tm slab.off
+    [ "$(sides mesh.tm 0.2)" = "1 2 " ]
+    mesh-check -q mesh.tm
+    octree-mesh --size 0.2 --inner-size 0.25 -o fine.tm slab.off
+    [ "$(rows .octant fine.tm | awk '$6 < $7' | cut -d ' ' -f 2 | sort -u | wc -l)" = 1 ]
+    octree-mesh --inner-size 0.5 --resolve 0 -o inner.tm slab.off
+    [[ "$(sides inner.tm 0.5)" == "1 "* ]]
+    # thinner than one octant, where it is that the plate lies
+    for z in 0 0.13 0.3 7; do
+        awk -v z=$z 'NR > 2 && NR <= 10 { print $1 * 10, $2 * 10, $3 / 8 + z; next } { print }' \
+            box.off >sheet.off
+        octree-mesh --size 0.4 --resolve 0 -o mesh.tm sheet.off
+        [[ "$(sides mesh.tm 0.4)" == "1 "* ]]
+        mesh-check --json check.json mesh.tm >/dev/null
+        python3 -c '
+import json
+assert abs(json.load(open("check.json"))["volume"] - 12.5) < 1e-9'
+    done
+}
+
+@test "--most: what would be too much is refused, with what fits" {
+    surface sphere off >sphere.off
+    octree-mesh -q --json count.json -s 5 sphere.off >mesh.tm
+    elements=$(header .mix mesh.tm | cut -d ' ' -f 1)
+    octree-mesh -q -s 5 --most $((2 * elements)) -o again.tm sphere.off
+    cmp again.tm mesh.tm || [ "$(rows .mix again.tm)" = "$(rows .mix mesh.tm)" ]
+    echo old >out.tm
+    run -3 --separate-stderr octree-mesh -o out.tm -s 5 --most $((elements / 2)) sphere.off
+    [[ "$stderr" == 'octree-mesh: sphere.off: about '*' elements would be made, with octants down to '*' (--most); levels that are lower by 1 would fit, or octants of '*' (--size)' ]]
+    [ "${#stderr_lines[@]}" -eq 1 ]
+    [ "$(cat out.tm)" = old ]
+    # what it says would fit does
+    size=${stderr##*octants of }
+    octree-mesh -q -s 4 --most $((elements / 2)) -o out.tm sphere.off
+    octree-mesh -q --size "${size% *}" --most $((elements / 2)) -o out.tm sphere.off
+    [ "$(header .mix out.tm | cut -d ' ' -f 1)" -lt "$elements" ]
+    # a wedge of 1 degree: levels count from its thin side; a level that would take hours
+    cat >wedge.off <<'END'
+OFF
+6 5 0
+0 0 0
+0 1 0
+1 0 0
+1 1 0
+1 0 0.0174524
+1 1 0.0174524
+4 0 2 3 1
+4 0 1 5 4
+3 0 4 2
+3 1 3 5
+4 2 4 5 3
+END
+    run -3 --separate-stderr octree-mesh -s 9 wedge.off
+    [[ "$stderr" == *'more than 5e+07 (--most); '* ]]
+    octree-mesh -q --size 0.05 -o mesh.tm wedge.off
+    [ "$(header .mix mesh.tm | cut -d ' ' -f 1)" -lt 200000 ]
+    mesh-check -q mesh.tm
+    # boxes, regions and everything count, too, where the solid is
+    box_file -1 1 9 >all.reg
+    run -3 octree-mesh -s 3 -b all.reg box.off
+    box_file 3 4 17 >outside.reg
+    octree-mesh -q -s 3 -b outside.reg -o mesh.tm box.off
+    run -3 octree-mesh -s 3 -r sphere.off 9 box.off
+    run -3 octree-mesh -a 9 box.off
+}
+
 @test "-b: boxes from a file with comments; -u: levels of the elements" {
     box_file 0 0.2 5 >fine.reg
     octree-mesh -u -s 3 -b fine.reg --resolve 0 box.off >mesh.tm
@@ -313,6 +390,45 @@ END
     mesh-check -q round.tm
 }
 
+@test "a rough body beside it leaves a smooth one its edges, and a note says so" {
+    # a sphere of many triangles whose nodes go in and out
+    python3 - >noisy.off <<'END'
+import math, random
+random.seed(5)
+around, rings = 60, 30
+nodes = [(0, 0, 1), (0, 0, -1)]
+for r in range(1, rings):
+    for a in range(around):
+        u, w = math.pi * r / rings, 2 * math.pi * a / around
+        d = 1 + 0.05 * random.uniform(-1, 1)
+        nodes.append((d * math.sin(u) * math.cos(w), d * math.sin(u) * math.sin(w),
+                      d * math.cos(u)))
+at = lambda r, a: 0 if r == 0 else 1 if r == rings else 2 + (r - 1) * around + a % around
+faces = []
+for r in range(rings):
+    for a in range(around):
+        p, q, s, t = at(r, a), at(r + 1, a), at(r + 1, a + 1), at(r, a + 1)
+        faces += [f for f in ((p, q, s), (p, s, t)) if len(set(f)) == 3]
+print('OFF')
+print(len(nodes), len(faces), 0)
+for p in nodes:
+    print(*p)
+for f in faces:
+    print(3, *f)
+END
+    run -0 --separate-stderr octree-mesh -s 3 -o rough.tm noisy.off
+    [ "$stderr" = 'octree-mesh: noisy.off: the surface is rough all over: no edge of it is kept as sharp' ]
+    awk 'NR > 2 && NR <= 10 { print $1 * 2 + 2, $2 * 2 - 1, $3 * 2 - 1; next } { print }' \
+        box.off >right.off
+    octree-mesh -s 4 right.off >alone.tm
+    read -r _ _ alone corner _ <<<"$(judge alone.tm)"
+    together noisy.off right.off >both.off
+    run -0 --separate-stderr octree-mesh -s 4 -o mesh.tm both.off
+    [[ "${stderr_lines[0]}" == 'octree-mesh: both.off: '*' sharp edges are in rough parts of the surface and not kept (--feature-angle takes all)' ]]
+    read -r _ _ curve corner _ <<<"$(judge mesh.tm)"
+    [ "$corner" = 8 ] && [ "$curve" -gt $((alone * 3 / 4)) ]
+}
+
 @test "--resolve: smaller octants where a part would be lost, or a note that names it" {
     # a wall of 0.1 around a hollow
     awk 'NR > 2 && NR <= 10 { print $1 * 3.8 + 0.1, $2 * 3.8 + 0.1, $3 * 3.8 + 0.1; next }
@@ -338,6 +454,113 @@ END
     [ "$stderr" = "" ]
     octree-mesh -s 3 --resolve 4 --json count.json gap.off >mesh.tm
     [ "$(json count.json components) $(json count.json euler)" = "2 4" ]
+}
+
+@test "what is noted as lost is missing in the mesh, and what is missing is noted" {
+    # six pyramids on a cube: octants at their tips have no boundary of octants near, but
+    # the mesh is exact
+    cat >star.off <<'END'
+OFF
+14 24 0
+-0.125 -0.125 -0.125
+0.125 -0.125 -0.125
+-0.125 0.125 -0.125
+0.125 0.125 -0.125
+-0.125 -0.125 0.125
+0.125 -0.125 0.125
+-0.125 0.125 0.125
+0.125 0.125 0.125
+0 0 -0.5
+0 0 0.5
+0 -0.5 0
+0.5 0 0
+0 0.5 0
+-0.5 0 0
+END
+    side=8
+    for nodes in "0 2 3 1" "4 5 7 6" "0 1 5 4" "1 3 7 5" "3 2 6 7" "2 0 4 6"; do
+        read -r a b c d <<<"$nodes"
+        printf "3 %d %d %d\n" "$a" "$b" $side "$b" "$c" $side "$c" "$d" $side "$d" "$a" $side
+        side=$((side + 1))
+    done >>star.off
+    run -0 --separate-stderr octree-mesh -s 4 --json count.json -o mesh.tm star.off
+    [ "$stderr" = "" ]
+    [ "$(json count.json lost_octants) $(json count.json rounded_tips)" = "0 0" ]
+    mesh-check --json check.json mesh.tm >/dev/null
+    # 8 octants of 1/4³ and six pyramids of height 3/8
+    python3 -c '
+import json
+assert abs(json.load(open("check.json"))["volume"] - (1 / 64 + 6 * 3 / 8 / 3 / 16)) < 1e-12'
+    # a needle that ends round is a tip without a corner, thinner than octants
+    python3 - >needle.off <<'END'
+import math
+rings, around = 60, 12
+nodes, faces = [(0, 0, 2), (0, 0, -1)], []
+def radius(z):
+    if z > 0.8:
+        return 0.02 * math.sqrt(1 - ((z - 0.8) / 1.2) ** 8)
+    return math.sqrt(max(1 - z * z, 0)) * 0.98 / 0.6 * 0.6 if z < 0.75 else \
+        0.02 + (math.sqrt(1 - 0.75 ** 2) * 0.98 - 0.02) * (0.8 - z) / 0.05
+for r in range(1, rings):
+    z = 2 - 3 * r / rings
+    for a in range(around):
+        w = 2 * math.pi * a / around
+        nodes.append((radius(z) * math.cos(w), radius(z) * math.sin(w), z))
+at = lambda r, a: 0 if r == 0 else 1 if r == rings else 2 + (r - 1) * around + a % around
+for r in range(rings):
+    for a in range(around):
+        p, q, s, t = at(r, a), at(r + 1, a), at(r + 1, a + 1), at(r, a + 1)
+        faces += [f for f in ((p, q, s), (p, s, t)) if len(set(f)) == 3]
+print('OFF')
+print(len(nodes), len(faces), 0)
+for p in nodes:
+    print(*p)
+for f in faces:
+    print(3, *f)
+END
+    for levels in 0 1; do
+        run -0 --separate-stderr octree-mesh -s 3 --feature-angle 180 --resolve $levels \
+            --json $levels.json -o mesh.tm needle.off
+        [[ "$stderr" == *'octree-mesh: 1 tips or thin parts of the surface are rounded off, or missed, by up to '*', near ('*', 2)'* ]]
+        [ "$(json $levels.json rounded_tips)" = 1 ]
+    done
+    # smaller octants lose no more
+    [ "$(json 1.json lost_octants)" -le "$(json 0.json lost_octants)" ]
+}
+
+@test "what touches, bounds nothing, or is outside is said" {
+    # two cubes with an edge in common
+    awk 'NR > 2 && NR <= 10 { print $1 + 1, $2 + 1, $3; next } { print }' box.off >beside.off
+    together box.off beside.off >edge.off
+    run -0 --separate-stderr octree-mesh -s 3 --json count.json -o mesh.tm edge.off
+    [[ "${stderr_lines[0]}" == 'octree-mesh: edge.off: parts of the surface touch at 2 nodes, and along edges between these: they are apart there, each with nodes of its own' ]]
+    [ "$(json count.json components)" = 2 ]
+    # a sheet in a cube
+    printf 'OFF\n4 1 0\n0.3 0.3 0.5\n0.7 0.3 0.5\n0.7 0.7 0.5\n0.3 0.7 0.5\n4 0 1 2 3\n' \
+        >sheet.off
+    together box.off sheet.off >both.off
+    run -0 --separate-stderr octree-mesh -s 4 --lenient --json count.json -o mesh.tm both.off
+    [[ "$stderr" == *'octree-mesh: 1 pieces of the surface bound nothing and have no part in the mesh, as near (0.'*', 0.'*', 0.5)' ]]
+    [ "$(json count.json dropped_pieces)" = 1 ]
+    octree-mesh -s 4 --json count.json -o mesh.tm box.off
+    [ "$(json count.json dropped_pieces)" = 0 ]
+    # boxes and regions
+    box_file 2 3 6 >far.reg
+    run -0 --separate-stderr octree-mesh -s 3 -b far.reg -o mesh.tm box.off
+    [ "$stderr" = 'octree-mesh: the box from (2, 2, 2) to (3, 3, 3) is wholly outside of the surface: no octant is split for it' ]
+    awk 'NR > 2 && NR <= 10 { print $1 + 4, $2, $3; next } { print }' box.off >far.off
+    run -0 --separate-stderr octree-mesh -s 3 -r far.off 6 -o mesh.tm box.off
+    [ "$stderr" = 'octree-mesh: the region from (4, 0, 0) to (5, 1, 1) is wholly outside of the surface: no octant is split for it' ]
+    # inside of it, around it, across it
+    for box in "0.4 0.6" "-1 2" "0.5 2"; do
+        # shellcheck disable=SC2086 # two numbers
+        box_file $box 4 >near.reg
+        awk -v box="$box" 'BEGIN { split(box, at) }
+            NR > 2 && NR <= 10 { for (i = 1; i <= 3; i++) $i = at[$i + 1] } { print }' \
+            box.off >near.off
+        run -0 --separate-stderr octree-mesh -s 3 -b near.reg -r near.off 4 -o mesh.tm box.off
+        [ "$stderr" = "" ]
+    done
 }
 
 @test "a surface that is inverted is turned, and duplicates are dropped: both are said" {
@@ -418,6 +641,7 @@ assert abs(json.load(open("check.json"))["volume"] - 1.79) < 0.1'
     fails box.off 'short.reg*' -b short.reg
     box_file 0 1 18 >deep.reg
     fails box.off 'deep.reg:*' -b deep.reg
+    fails box.off 'leaves of 1e-09 are too small for the surface (* is the least for it)' --size 1e-9
     echo one >word.ref
     fails box.off 'word.ref:1: *' -l word.ref
 }
@@ -439,6 +663,9 @@ assert abs(json.load(open("check.json"))["volume"] - 1.79) < 0.1'
     done
     refuses "-r: '18' is not a whole number in 0 … 17" -r box.off 18 box.off
     refuses '-r box.off lacks its level: -r SURFACE L' -r box.off
+    refuses "--size: '0' *" --size 0 box.off
+    refuses "--inner-size: 'x' *" --inner-size x box.off
+    refuses "--most: '0' *" --most 0 box.off
     refuses "--feature-angle: '181' *" --feature-angle 181 box.off
     refuses "--feature-angle: 'x' *" --feature-angle x box.off
     refuses '*' box.off box.off

@@ -4,6 +4,7 @@
 # shellcheck disable=SC2154 # run sets stderr
 
 bats_require_minimum_version 1.5.0
+load helpers
 
 setup() {
     [ -x "$TM_BUILD/bin/octree-repair" ] || skip "there is no p4est"
@@ -41,6 +42,22 @@ END
 # report KEY: a number of the JSON report, of `after` where there are two.
 report() {
     tr '{,}' '[\n*]' <report.json | sed -n "s/.*\"$1\": *//p" | tail -n 1
+}
+
+# A corner of a cube, cut off: half of its bounding box is outside.
+make_corner() {
+    cat >corner.off <<'END'
+OFF
+4 4 0
+0 0 0
+1 0 0
+0 1 0
+0 0 1
+3 0 2 1
+3 0 1 3
+3 0 3 2
+3 1 2 3
+END
 }
 
 @test "a good mesh is returned byte for byte, unknown blocks too" {
@@ -105,6 +122,83 @@ report() {
     run -0 oct-import -m step_1.m3d step_1.oct
 }
 
+# drop_octants FILE: without the octants that have no elements; with an attribute as id.
+drop_octants() {
+    awk '/^[a-z]*\./ && octants { print kept, 1; printf "%s", rows; octants = 0 }
+        /^\.octant/ { octants = 1; print; getline; next }
+        octants && !/^#/ { if ($6 < $7) { id = 7 * $1 + 100; $1 = kept++ + 1
+            rows = rows $0 " " id "\n" }; next }
+        { print }' "$1"
+}
+
+@test "octants that are missing are made again: the mesh is the same" {
+    make_corner
+    octree-mesh --no-history -s 4 corner.off >all.tm
+    drop_octants all.tm >less.tm
+    [ "$(header .octant less.tm | cut -d ' ' -f 1)" -lt \
+        "$(header .octant all.tm | cut -d ' ' -f 1)" ]
+    refine() {
+        octree-repair -q --no-history -t 0.4 -i 1 --method refine --trace "$1" -o "$1.out" \
+            "$1.tm" || [ $? -eq 1 ]
+    }
+    refine all
+    refine less
+    cmp all.out less.out
+    cmp all_1.oct less_1.oct
+    # their ids are in the trace's first files
+    awk '{ print 7 * ($1 + 1) + 100 }' all_0.ref | cmp - less_0.ref
+    oct-export --ids less.tm | cmp - less_0.oct
+    oct-import -m less_0.m3d less_0.oct >again.tm
+    rows .octant again.tm | awk '{ print $2, $6, $7, $8 }' |
+        diff - <(rows .octant less.tm | awk '{ print $2, $6 - 1, $7 - 1, $8 }')
+}
+
+@test "--octants: a list is split, and the loop goes on as if it had found it" {
+    make_corner
+    octree-mesh --no-history -s 4 corner.off >all.tm
+    drop_octants all.tm >less.tm
+    step() { octree-repair -q --no-history -t 0.4 --method refine "$@"; }
+    run -1 step -i 2 --trace loop -o loop.tm all.tm
+    [ -s loop_0.ref ] && [ -s loop_1.ref ]
+    # step by step, from ids too, in any order and twice
+    awk '{ print 7 * ($1 + 1) + 100 }' loop_0.ref | sort -r >ids.ref
+    cat ids.ref ids.ref >twice.ref
+    run -1 step -i 1 --octants twice.ref --trace one -o one.tm less.tm
+    cmp one_0.ref <(sort -n ids.ref)
+    cmp one_1.ref loop_1.ref
+    cmp one_1.oct loop_1.oct
+    run -1 step -i 1 --octants loop_1.ref --trace two -o two.tm one.tm
+    cmp two.tm loop.tm
+    run -1 step -i 2 --octants loop_0.ref -o two.tm all.tm
+    cmp two.tm loop.tm
+    # of a good mesh, too, and by the other method
+    echo 0 >first.ref
+    run -0 octree-repair -q --json report.json --octants first.ref -o split.tm good.tm
+    [ "$(report iterations)" -eq 1 ]
+    [ "$(header .octant split.tm)" = "$(($(header .octant good.tm | cut -d ' ' -f 1) + 7)) 0" ]
+    run -0 mesh-check split.tm
+}
+
+@test "--octants: wrong lists and octants that are not there" {
+    echo 512 >beyond.ref
+    run -3 --separate-stderr octree-repair --octants beyond.ref -o out.tm good.tm
+    [ "$stderr" = 'octree-repair: beyond.ref: octant 512 is not in the mesh (no octant has '\
+'that id)' ]
+    echo 0 1 >beyond.ref
+    run -3 --separate-stderr octree-repair --octants beyond.ref -o out.tm good.tm
+    [[ "$stderr" == *"beyond.ref:1: '1' follows the octant"* ]]
+    echo 0 >first.ref
+    run -4 octree-repair --octants nowhere.ref -o out.tm good.tm
+    run -2 octree-repair --octants first.ref -i 0 -o out.tm good.tm
+    { sed '/^surface.node/,$d' good.tm; echo .end; } >alone.tm
+    run -3 --separate-stderr octree-repair -q --octants first.ref -o out.tm alone.tm
+    [[ "$stderr" == *"there are no octants to refine"* ]]
+    awk '/^[a-z]*\./ { skip = $1 == ".octant" } !skip' good.tm >without.tm
+    run -3 --separate-stderr octree-repair -q --octants first.ref -o out.tm without.tm
+    [[ "$stderr" == *"without.tm: has no octants to split"* ]]
+    [ ! -e out.tm ]
+}
+
 @test "what cannot be is left: exit 1, the best state, a line for each octant" {
     run -1 --separate-stderr octree-repair -t 1 -i 0 -o left.tm good.tm
     [[ "$stderr" == *": octant "*" is left to improve"* ]]
@@ -115,18 +209,7 @@ report() {
 }
 
 @test "no gain elsewhere lets the worst fall below the threshold, or further below" {
-    cat >corner.off <<'END'
-OFF
-4 4 0
-0 0 0
-1 0 0
-0 1 0
-0 0 1
-3 0 2 1
-3 0 1 3
-3 0 3 2
-3 1 2 3
-END
+    make_corner
     octree-mesh --no-history -s 3 corner.off >corner.tm
     octree-repair -q -t 0.2 -i 0 --json report.json -o left.tm corner.tm || [ $? -eq 1 ]
     worst() { jens-stats "$1" | sed -n 's/^worst quality *//p'; }

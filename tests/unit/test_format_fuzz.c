@@ -318,6 +318,11 @@ static void test_oct(void **state)
     read_damaged(text, read_oct);
     snprintf(text, sizeof text, "12 2 2 3\n\n%s\n1 2\n%s", points, octants);
     read_damaged(text, read_oct);
+    snprintf(text, sizeof text,
+             "12 2 2\n\n%s\n8 0 1 2 3 4 5 6 7 1 12\n0\n8 3 2 8 9 7 6 10 11 1 7\n0\n\n"
+             "Geometric Transform\n0 0 0\n0 0 0\n1 0",
+             points);
+    read_damaged(text, read_oct);
 }
 
 int main(void)

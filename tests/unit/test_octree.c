@@ -281,12 +281,12 @@ static void test_places(void **state)
         assert_int_equal(tm_leaf_point[TM_LEAF_CENTRE][k], 1);
 }
 
-static void assert_brick(const double low[3], const double high[3],
+static void assert_brick(const double low[3], const double high[3], double size,
                          const uint32_t roots[3], double side)
 {
     tm_error error = {0};
     tm_brick brick;
-    assert_ok(tm_brick_over(&brick, low, high, &error), &error);
+    assert_ok(tm_brick_over(&brick, low, high, size, &error), &error);
     assert_true(fabs(brick.side - side) <= 1e-12 * side);
     for (int i = 0; i < 3; i++) {
         assert_int_equal(brick.roots[i], roots[i]);
@@ -300,19 +300,23 @@ static void test_brick(void **state)
 {
     (void)state;
     const double zero[3] = {0, 0, 0};
-    assert_brick(zero, (double[3]){1, 1, 1}, (uint32_t[3]){1, 1, 1}, 1.01);
-    assert_brick(zero, (double[3]){2, 1, 5}, (uint32_t[3]){2, 1, 5}, 1.01);
+    assert_brick(zero, (double[3]){1, 1, 1}, 0, (uint32_t[3]){1, 1, 1}, 1.01);
+    assert_brick(zero, (double[3]){2, 1, 5}, 0, (uint32_t[3]){2, 1, 5}, 1.01);
     /* Twice 1.01: two cubes would touch the box. */
-    assert_brick(zero, (double[3]){1, 2.02, 1}, (uint32_t[3]){1, 3, 1}, 1.01);
+    assert_brick(zero, (double[3]){1, 2.02, 1}, 0, (uint32_t[3]){1, 3, 1}, 1.01);
     /* A plate: as many cubes as there may be. */
-    assert_brick(zero, (double[3]){100, 100, 0.01}, (uint32_t[3]){32, 32, 1},
+    assert_brick(zero, (double[3]){100, 100, 0.01}, 0, (uint32_t[3]){32, 32, 1},
                  1.0002 * 100 / 32);
+    /* Of a given size, doubled. */
+    assert_brick(zero, (double[3]){1, 1, 1}, 0.3, (uint32_t[3]){1, 1, 1}, 1.2);
+    assert_brick(zero, (double[3]){1, 1, 1}, 3, (uint32_t[3]){1, 1, 1}, 3);
+    assert_brick(zero, (double[3]){100, 100, 0.01}, 1, (uint32_t[3]){26, 26, 1}, 4);
     tm_error error = {0};
     tm_brick brick;
-    assert_refused(tm_brick_over(&brick, zero, zero, &error), &error, "no extent");
+    assert_refused(tm_brick_over(&brick, zero, zero, 0, &error), &error, "no extent");
     tm_brick_free(&brick);
     assert_refused(tm_brick_over(&brick, (double[3]){1e16, 0, 0},
-                                 (double[3]){1e16 + 2, 1, 1}, &error),
+                                 (double[3]){1e16 + 2, 1, 1}, 0, &error),
                    &error, "too far");
     tm_brick_free(&brick);
 }
@@ -515,9 +519,8 @@ static void test_from_leaves(void **state)
     build_some(&octree, &surface);
     const size_t leaves = octree.leaves;
     tm_leaf *shuffled = malloc(leaves * sizeof *shuffled);
-    uint32_t *order = malloc(leaves * sizeof *order);
+    uint32_t *order;
     assert_non_null(shuffled);
-    assert_non_null(order);
     memcpy(shuffled, octree.leaf, leaves * sizeof *shuffled);
     for (size_t i = leaves; i > 1; i--) {
         const size_t other = random_below((unsigned)i);
@@ -526,7 +529,7 @@ static void test_from_leaves(void **state)
         shuffled[other] = last;
     }
     tm_octree again = brick_only(&octree);
-    assert_ok(tm_octree_from_leaves(&again, shuffled, leaves, &surface, order, &error),
+    assert_ok(tm_octree_from_leaves(&again, shuffled, leaves, &surface, &order, &error),
               &error);
     assert_same(&octree, &again);
     for (size_t i = 0; i < leaves; i++)
@@ -543,9 +546,11 @@ static void refuse_leaves(const tm_octree *octree, const tm_leaf *leaf, size_t l
 {
     tm_error error = {0};
     tm_octree again = brick_only(octree);
-    assert_refused(tm_octree_from_leaves(&again, leaf, leaves, NULL, NULL, &error),
+    uint32_t *order;
+    assert_refused(tm_octree_from_leaves(&again, leaf, leaves, NULL, &order, &error),
                    &error, part);
     assert_null(again.leaf);
+    assert_null(order);
 }
 
 static void test_wrong_leaves(void **state)
@@ -558,9 +563,7 @@ static void test_wrong_leaves(void **state)
     tm_leaf *leaf = malloc(leaves * sizeof *leaf);
     assert_non_null(leaf);
     memcpy(leaf, octree.leaf, leaves * sizeof *leaf);
-    refuse_leaves(&octree, leaf, leaves - 1, "do not fill");
-    refuse_leaves(&octree, leaf + 1, leaves - 1, "missing");
-    refuse_leaves(&octree, leaf, 0, "do not fill");
+    refuse_leaves(&octree, leaf, 0, "no octants");
     leaf[5] = leaf[4];
     refuse_leaves(&octree, leaf, leaves, "octant 5 ");
     leaf[5] = octree.leaf[5];
@@ -573,6 +576,84 @@ static void test_wrong_leaves(void **state)
     leaf[9].level = TM_OCTREE_FINEST;
     refuse_leaves(&octree, leaf, leaves, "too deep");
     free(leaf);
+    tm_octree_free(&octree);
+    tm_surface_free(&surface);
+}
+
+/* The octree of the leaves with keep[leaf] != 0. */
+static void make_of_kept(const tm_octree *octree, const tm_surface *surface,
+                         const uint8_t *keep, tm_octree *again)
+{
+    tm_error error = {0};
+    uint32_t *order;
+    size_t kept = 0;
+    tm_leaf *leaf = malloc(octree->leaves * sizeof *leaf);
+    assert_non_null(leaf);
+    for (size_t i = 0; i < octree->leaves; i++)
+        if (keep[i])
+            leaf[kept++] = octree->leaf[i];
+    *again = brick_only(octree);
+    assert_ok(tm_octree_from_leaves(again, leaf, kept, surface, &order, &error), &error);
+    check(again, surface);
+    size_t next = 0;
+    for (size_t i = 0; i < again->leaves; i++)
+        if (order[i] != TM_NONE) {
+            assert_int_equal(order[i], next);
+            assert_int_equal(compare_leaves(&again->leaf[i], &leaf[next++]), 0);
+        }
+    assert_int_equal(next, kept);
+    free(order);
+    free(leaf);
+}
+
+/* Leaves that no rule asks for, or all but a crossed one: they come again as they were.
+ */
+static void test_missing_leaves(void **state)
+{
+    (void)state;
+    tm_error error = {0};
+    tm_surface surface;
+    tm_octree octree, again;
+    make_some_ellipsoid(&surface);
+    const tm_octree_rule rule = {.kind = TM_RULE_SURFACE, .level = 4};
+    assert_ok(tm_octree_build(&octree, &surface, &rule, 1, &error), &error);
+    uint8_t *keep = malloc(octree.leaves);
+    assert_non_null(keep);
+    size_t one = octree.leaves;
+    for (size_t i = 0; i < octree.leaves; i++) {
+        keep[i] = octree.leaf[i].crossed;
+        one = keep[i] ? i : one;
+    }
+    make_of_kept(&octree, &surface, keep, &again);
+    assert_same(&octree, &again);
+    tm_octree_free(&again);
+    memset(keep, 0, octree.leaves);
+    keep[one] = 1;
+    make_of_kept(&octree, &surface, keep, &again);
+    assert_same(&octree, &again);
+    tm_octree_free(&again);
+    free(keep);
+    tm_octree_free(&octree);
+    tm_surface_free(&surface);
+}
+
+/* Any leaves may be missing, whole roots too: those that are given stay. */
+static void test_any_missing_leaves(void **state)
+{
+    (void)state;
+    tm_surface surface;
+    tm_octree octree, again;
+    build_some(&octree, &surface);
+    uint8_t *keep = malloc(octree.leaves);
+    assert_non_null(keep);
+    for (unsigned of = 2; of < 40; of += 9) {
+        for (size_t i = 0; i < octree.leaves; i++)
+            keep[i] = random_below(of) == 0;
+        keep[0] = 1;
+        make_of_kept(&octree, &surface, keep, &again);
+        tm_octree_free(&again);
+    }
+    free(keep);
     tm_octree_free(&octree);
     tm_surface_free(&surface);
 }
@@ -698,6 +779,8 @@ int main(void)
         cmocka_unit_test(test_deepest),
         cmocka_unit_test(test_from_leaves),
         cmocka_unit_test(test_wrong_leaves),
+        cmocka_unit_test(test_missing_leaves),
+        cmocka_unit_test(test_any_missing_leaves),
         cmocka_unit_test(test_unbalanced_leaves),
         cmocka_unit_test(test_stream),
         cmocka_unit_test(test_p4est_abort),

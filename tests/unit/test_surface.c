@@ -537,6 +537,60 @@ static void test_markers(void **state)
     tm_surface_free(&s);
 }
 
+/* A tube of 40 rings with flat ends; all rings but the first `smooth` are rough, so that
+ * sharp edges there come singly. */
+static void add_rough_tube(tm_polygon_surface *p, double x, unsigned smooth)
+{
+    enum { AROUND = 64, RINGS = 40 };
+    const double step = 2 * shapes_pi / AROUND, roughness = 0.045;
+    uint32_t ring[RINGS][AROUND];
+    for (unsigned j = 0; j < RINGS; j++)
+        for (unsigned i = 0; i < AROUND; i++) {
+            const double r = j < smooth ? 1 : 1 + roughness * (2 * random_unit() - 1);
+            ring[j][i] =
+                add_node(p, x + r * cos(i * step), r * sin(i * step), (double)j * -step);
+        }
+    for (unsigned i = 0; i < AROUND; i++)
+        for (unsigned j = 1; j < RINGS; j++) {
+            const unsigned next = (i + 1) % AROUND;
+            add_triangle(p, ring[j][i], ring[j][next], ring[j - 1][next]);
+            add_triangle(p, ring[j][i], ring[j - 1][next], ring[j - 1][i]);
+        }
+    const uint32_t top = add_node(p, x, 0, 0);
+    const uint32_t bottom = add_node(p, x, 0, (RINGS - 1) * -step - 0.5);
+    for (unsigned i = 0; i < AROUND; i++) {
+        add_triangle(p, top, ring[0][i], ring[0][(i + 1) % AROUND]);
+        add_triangle(p, bottom, ring[RINGS - 1][(i + 1) % AROUND], ring[RINGS - 1][i]);
+    }
+}
+
+/* What is rough: not the body beside it, nor a long edge of it with nothing rough around;
+ * but all of it where the angle is to be taken as it is. */
+static void test_rough(void **state)
+{
+    (void)state;
+    const tm_surface_options unless_rough = {.feature_angle = TM_FEATURE_ANGLE,
+                                             .unless_rough = true};
+    for (int with_cube = 0; with_cube < 2; with_cube++)
+        for (unsigned smooth = 1; smooth <= 8; smooth += 7)
+            for (int all = 0; all < 2; all++) {
+                tm_polygon_surface p;
+                tm_surface s;
+                tm_polygon_surface_init(&p);
+                add_rough_tube(&p, 0, smooth);
+                if (with_cube)
+                    add_cube(&p, 2, 2, 0, 1);
+                build(&s, &p, all ? &strict : &unless_rough);
+                assert_int_equal(s.rough, !all);
+                const size_t rim = smooth > 1, cube = with_cube ? 1 : 0;
+                if (all)
+                    assert_true(s.curves > 100);
+                else
+                    assert_features(&s, rim + 12 * cube, 8 * cube, 1 + rim + 6 * cube);
+                tm_surface_free(&s);
+            }
+}
+
 int main(void)
 {
     random_start();
@@ -550,6 +604,7 @@ int main(void)
         cmocka_unit_test(test_nothing),      cmocka_unit_test(test_polygons),
         cmocka_unit_test(test_curves),       cmocka_unit_test(test_feature_angle),
         cmocka_unit_test(test_markers),      cmocka_unit_test(test_needles),
+        cmocka_unit_test(test_rough),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

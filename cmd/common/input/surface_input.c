@@ -181,6 +181,20 @@ tm_format surface_input_read_any(const filter *f, tm_polygon_surface *surface,
     return read_surface(f, surface, stream, true);
 }
 
+static void note_rough(const filter *f, const tm_surface *s, const char *name)
+{
+    if (!s->rough)
+        return;
+    if (s->curves == 0)
+        filter_note(
+            f, "%s: the surface is rough all over: no edge of it is kept as sharp", name);
+    else
+        filter_note(f,
+                    "%s: %zu sharp edges are in rough parts of the surface and not kept "
+                    "(--feature-angle takes all)",
+                    name, s->rough_edges);
+}
+
 /* What was found and mended in the surface. */
 static void note_mending(const filter *f, const tm_surface *s)
 {
@@ -194,9 +208,13 @@ static void note_mending(const filter *f, const tm_surface *s)
         filter_note(f, "%s: %zu triangles without area are dropped", name, s->flat);
     if (s->open_edges)
         filter_note(f, "%s: the surface is open at %zu edges", name, s->open_edges);
-    if (s->rough)
+    if (s->touching)
         filter_note(
-            f, "%s: the surface is rough all over: no edge of it is kept as sharp", name);
+            f,
+            "%s: parts of the surface touch at %zu nodes, and along edges between "
+            "these: they are apart there, each with nodes of its own",
+            name, s->touching);
+    note_rough(f, s, name);
     if (s->crossings)
         filter_note(f, "%s: the surface crosses itself at %zu pairs of triangles", name,
                     s->crossings);

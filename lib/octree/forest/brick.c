@@ -16,12 +16,21 @@ static const double beyond = 1e-4;
 /* p4est needs some hundred bytes for each. */
 static const size_t roots_max = (size_t)1 << 20;
 
-static double cube_side(const double extent[3])
+double tm_brick_side(const double low[3], const double high[3], double size)
 {
+    double extent[3];
+    for (int i = 0; i < 3; i++)
+        extent[i] = high[i] - low[i];
     const double shortest = fmin(extent[0], fmin(extent[1], extent[2]));
     const double longest = fmax(extent[0], fmax(extent[1], extent[2]));
-    return fmax(cube_of_shortest * shortest,
-                (1 + 2 * beyond) * longest / TM_BRICK_LONGEST);
+    const double least =
+        fmax(cube_of_shortest * shortest, (1 + 2 * beyond) * longest / TM_BRICK_LONGEST);
+    if (!(size > 0) || !isfinite(least))
+        return least;
+    double side = size;
+    while (side < least)
+        side *= 2;
+    return side;
 }
 
 static void make_trees(void *user)
@@ -51,13 +60,13 @@ static tm_status fill(tm_brick *brick, tm_error *error)
 }
 
 tm_status tm_brick_over(tm_brick *brick, const double low[3], const double high[3],
-                        tm_error *error)
+                        double size, tm_error *error)
 {
     *brick = (tm_brick){.side = 0};
     double extent[3];
     for (int i = 0; i < 3; i++)
         extent[i] = high[i] - low[i];
-    brick->side = cube_side(extent);
+    brick->side = tm_brick_side(low, high, size);
     if (!(brick->side > 0) || !isfinite(brick->side))
         return tm_fail(error, TM_ERROR_INPUT, "the surface has no extent");
     for (int i = 0; i < 3; i++) {
@@ -65,6 +74,8 @@ tm_status tm_brick_over(tm_brick *brick, const double low[3], const double high[
         brick->roots[i] = count < 1 ? 1 : (uint32_t)count;
         const double across = brick->roots[i] * brick->side;
         brick->low[i] = low[i] + extent[i] / 2 - across / 2;
+        if (brick->side > size && (1 + beyond) * extent[i] < size)
+            brick->low[i] -= size / 2;
         if (!(brick->low[i] < low[i]) || !(brick->low[i] + across > high[i]))
             return tm_fail(error, TM_ERROR_INPUT,
                            "the surface is too far from the origin for its size");

@@ -131,13 +131,19 @@ tm_status tm_octree_build(tm_octree *octree, const tm_surface *surface,
     if (status != TM_OK)
         return status;
     tm_brick brick;
-    status = tm_brick_over(&brick, surface->low, surface->high, error);
+    status = tm_brick_over(&brick, surface->low, surface->high,
+                           tm_octree_least_size(rule, rules), error);
     tm_leaf_list leaves = {.count = 0};
+    tm_octree_rule *levels = tm_new(rules, sizeof *levels);
+    if (status == TM_OK)
+        status = levels ? tm_octree_set_levels(rule, rules, brick.side, levels, error)
+                        : tm_fail_memory(error);
     if (status == TM_OK) {
         *octree = on_brick(&brick);
-        status = build(octree, &leaves, &brick, surface, rule, rules, error);
+        status = build(octree, &leaves, &brick, surface, levels, rules, error);
     }
     free(leaves.leaf);
+    free(levels);
     tm_brick_free(&brick);
     if (status != TM_OK)
         tm_octree_free(octree);

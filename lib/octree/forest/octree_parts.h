@@ -22,6 +22,17 @@ tm_status tm_octree_descend(tm_leaf_list *leaves, const tm_octree *octree,
  * order and fill the brick. The same cost. */
 tm_status tm_octree_cross(tm_octree *octree, const tm_surface *surface, tm_error *error);
 
+/* octree_estimate.c: sizes as levels. */
+
+/* The least size that a rule has; 0 where none has any. */
+double tm_octree_least_size(const tm_octree_rule *rule, size_t rules);
+
+/* Copies the rules to out[rules], with the level that makes leaves no larger than the
+ * size where one has that; `side` is that of the root cubes. TM_ERROR_INPUT where that is
+ * too deep. */
+tm_status tm_octree_set_levels(const tm_octree_rule *rule, size_t rules, double side,
+                               tm_octree_rule *out, tm_error *error);
+
 /* balance.c: 2:1 balance, which p4est does (C. Burstedde, L. C. Wilcox, O. Ghattas,
  * p4est: scalable algorithms for parallel adaptive mesh refinement on forests of octrees,
  * SIAM Journal on Scientific Computing 33, 2011). */

@@ -192,19 +192,14 @@ tm_status tm_octree_read_blocks(tm_octree *octree, const tm_stream *stream,
         return tm_fail(error, TM_ERROR_INPUT,
                        "the stream has no octree (the blocks .root and .octant)");
     tm_leaf *leaf = tm_new(octant->count, sizeof *leaf);
-    uint32_t *rows = tm_new(octant->count, sizeof *rows);
-    tm_status status = leaf && rows ? read_roots(octree, root, stream->base, error)
-                                    : tm_fail_memory(error);
+    tm_status status =
+        leaf ? read_roots(octree, root, stream->base, error) : tm_fail_memory(error);
     if (status == TM_OK)
         status =
             read_octants(leaf, octree, octant, root->integer[0], stream->base, error);
     if (status == TM_OK)
-        status = tm_octree_from_leaves(octree, leaf, octant->count, surface, rows, error);
+        status =
+            tm_octree_from_leaves(octree, leaf, octant->count, surface, order, error);
     free(leaf);
-    if (status != TM_OK) {
-        free(rows);
-        rows = NULL;
-    }
-    *order = rows;
     return status;
 }

@@ -14,9 +14,9 @@ tm_status tm_octree_to_stream(const tm_octree *octree, const uint32_t *element,
                               tm_stream *stream, tm_error *error);
 
 /* The octree of the blocks .root and .octant; *octree is overwritten. Leaf i is row
- * order[i]; order is malloc'ed, NULL after an error. TM_ERROR_INPUT: a block is missing,
- * the roots are no brick of equal cubes, the octants do not fill it or are not balanced
- * (tm_octree_from_leaves). */
+ * order[i], TM_NONE where no octant is there (tm_octree_from_leaves); order is malloc'ed,
+ * NULL after an error. TM_ERROR_INPUT: a block is missing, the roots are no brick of
+ * equal cubes, octants overlap or are not balanced. */
 tm_status tm_octree_read_blocks(tm_octree *octree, const tm_stream *stream,
                                 const tm_surface *surface, uint32_t **order,
                                 tm_error *error);

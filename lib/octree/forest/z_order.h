@@ -22,6 +22,16 @@ static inline uint64_t tm_z_index(const uint32_t point[3])
     return index;
 }
 
+/* The low corner of the cell at a position in its root. */
+static inline void tm_z_point(uint64_t index, uint32_t point[3])
+{
+    for (unsigned i = 0; i < 3; i++) {
+        point[i] = 0;
+        for (unsigned bit = 0; bit < TM_OCTREE_FINEST; bit++)
+            point[i] |= (uint32_t)(index >> (3 * bit + i) & 1) << bit;
+    }
+}
+
 /* Whether two cells are in the same root. */
 static inline bool tm_z_same_root(const uint32_t a[3], const uint32_t b[3])
 {

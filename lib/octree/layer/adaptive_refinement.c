@@ -3,6 +3,7 @@
 
 #include "../../base/array.h"
 #include "../forest/octree_build.h"
+#include "octree_mesh_parts.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -116,6 +117,7 @@ tm_status tm_octree_mesh_refine_lost(tm_octree_mesh *mesh, tm_octree *octree,
     for (size_t l = 0; l < octree->leaves; l++)
         if (octree->leaf[l].level > deepest)
             deepest = octree->leaf[l].level;
+    const unsigned level = deepest;
     deepest += levels;
     if (deepest > TM_OCTREE_LEVEL_MAX)
         deepest = TM_OCTREE_LEVEL_MAX;
@@ -131,5 +133,8 @@ tm_status tm_octree_mesh_refine_lost(tm_octree_mesh *mesh, tm_octree *octree,
             try_split(mesh, octree, surface, deepest, split, &better, progress, error);
         free(split);
     }
-    return status;
+    tm_progress_stage(progress, "looking for losses");
+    return status == TM_OK
+               ? tm_octree_mesh_find_losses(mesh, octree, surface, level, error)
+               : status;
 }

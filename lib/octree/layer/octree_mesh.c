@@ -52,22 +52,6 @@ static tm_status measure_boundary(tm_octree_mesh *m, tm_error *error)
     return TM_OK;
 }
 
-static tm_status count_lost(tm_octree_mesh *m, const tm_octree *octree,
-                            const tm_surface *surface, tm_error *error)
-{
-    uint8_t *lost = tm_new(octree->leaves, sizeof *lost);
-    if (!lost)
-        return tm_fail_memory(error);
-    m->report.lost = tm_interior_find_lost(&m->interior, octree, surface, lost);
-    for (size_t l = 0; m->report.lost > 0 && l < octree->leaves; l++)
-        if (lost[l]) {
-            tm_leaf_centre(octree, &octree->leaf[l], m->report.lost_at);
-            break;
-        }
-    free(lost);
-    return TM_OK;
-}
-
 static tm_status find_boundary_once(tm_octree_mesh *m, const tm_octree *octree,
                                     const tm_surface *surface, tm_error *error)
 {
@@ -111,8 +95,6 @@ static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *su
     tm_progress_stage(progress, "finding the interior boundary");
     if (status == TM_OK)
         status = find_boundary(m, octree, surface, error);
-    if (status == TM_OK)
-        status = count_lost(m, octree, surface, error);
     tm_progress_stage(progress, "matching features");
     if (status == TM_OK)
         status = tm_feature_find(&m->feature, &m->boundary, surface, m->at, error);

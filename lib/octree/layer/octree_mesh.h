@@ -13,8 +13,13 @@ TM_EXTERN_C_BEGIN
 
 /* What was made, and what could not be. Places are points. */
 typedef struct tm_octree_mesh_report {
-    size_t lost;                      /* leaves with surface but no boundary close by */
-    double lost_at[3];                /* the centre of one of them */
+    size_t lost;       /* leaves with surface that the boundary is farther from than half
+                          of their side; those that are split for such count once */
+    double lost_at[3]; /* surface in one of them */
+    size_t rounded; /* parts of the surface that are as far, around nodes of it: tips */
+    double rounded_at[3], rounded_by; /* the farthest of all, and its distance */
+    size_t dropped;                   /* shells that the boundary has nothing of */
+    double dropped_at[3];             /* a node of one of them */
     size_t corners_lost, curves_lost; /* of the surface */
     double feature_lost_at[3];
     size_t off_surface; /* boundary nodes that are not on the surface */
@@ -34,7 +39,8 @@ typedef struct tm_octree_mesh {
     tm_octree_mesh_report report;
 } tm_octree_mesh;
 
-/* Makes the mesh of an octree. The surface's patches are joined for a while where one of
+/* Makes the mesh of an octree; what is lost, rounded and dropped is only said by
+ * tm_octree_mesh_refine_lost(). The surface's patches are joined for a while where one of
  * its curves is too fine, and are as they were after. TM_ERROR_INPUT where no leaf is
  * inside; TM_ERROR_SYSTEM where memory or 32-bit ids are out. *mesh is to be freed, after
  * an error too. `progress` may be NULL. */

@@ -50,6 +50,17 @@ tm_status tm_lattice_points(const tm_assembly *assembly, const tm_octree *octree
                             const tm_interior_boundary *boundary, double (*xyz)[3],
                             tm_error *error);
 
+/* losses.c: what of the surface the mesh misses. */
+
+/* Fills lost, rounded and dropped of the report, which are 0 before: by the distance to
+ * the boundary of the mesh, in sides of the leaves there, of which those below `level`
+ * are taken for such of it. Only `dropped` where the inside is by the winding number:
+ * there surface may be within the mesh. TM_ERROR_SYSTEM where memory is out. O(n log n).
+ */
+tm_status tm_octree_mesh_find_losses(tm_octree_mesh *mesh, const tm_octree *octree,
+                                     const tm_surface *surface, unsigned level,
+                                     tm_error *error);
+
 /* untangling.c: the last step of the mesh: no element is inverted. */
 
 /* Moves nodes around elements of low quality until these are better (optimise.h). Where

@@ -214,6 +214,33 @@ static tm_status run_full(const repair *r, tm_error *error)
     return status;
 }
 
+/* Splits octants, whatever that makes of the mesh. */
+static tm_status remake(const repair *r, const uint32_t *octant, size_t count,
+                        tm_error *error)
+{
+    tm_repair_state made = {0};
+    const tm_status status =
+        tm_repair_remake(&made, r->state, r->surface, octant, count, error);
+    if (status == TM_OK)
+        replace(r->state, &made);
+    tm_repair_state_free(&made);
+    r->report->iterations++;
+    return status;
+}
+
+/* The octants that the caller names. */
+static tm_status split_given(const repair *r, tm_error *error)
+{
+    const tm_repair_options *o = r->options;
+    tm_status status = TM_OK;
+    if (o->visit)
+        status = o->visit(o->context, 0, r->state, o->octant, o->octants, error);
+    if (status == TM_OK)
+        status = remake(r, o->octant, o->octants, error);
+    r->report->after = tm_repair_measure(r->state, o->threshold);
+    return status;
+}
+
 /* The loop of the thesis: there is no best state, the last one counts. */
 static tm_status run_refine(const repair *r, tm_error *error)
 {
@@ -222,16 +249,11 @@ static tm_status run_refine(const repair *r, tm_error *error)
     tm_status status = show(r, false, &count, error);
     while (status == TM_OK && count > 0 && r->report->iterations < o->iterations) {
         uint32_t *octant;
-        tm_repair_state made = {0};
         status =
             tm_repair_bad_octants(r->state, o->threshold, false, &octant, &count, error);
         if (status == TM_OK)
-            status = tm_repair_remake(&made, r->state, r->surface, octant, count, error);
-        if (status == TM_OK)
-            replace(r->state, &made);
-        tm_repair_state_free(&made);
+            status = remake(r, octant, count, error);
         free(octant);
-        r->report->iterations++;
         if (status == TM_OK)
             status = show(r, false, &count, error);
     }
@@ -246,15 +268,16 @@ tm_status tm_repair(tm_repair_state *state, tm_surface *surface,
     *report = (tm_repair_report){.before = tm_repair_measure(state, options->threshold)};
     report->after = report->before;
     state->progress = options->progress;
-    const repair r = {.state = state,
-                      .surface = surface,
-                      .options = options,
-                      .report = report,
-                      .elements_at_most =
-                          (size_t)(options->growth * (double)state->mesh.elements)};
-    if (options->method == TM_REPAIR_FULL)
-        return run_full(&r, error);
-    if (state->octree.leaves == 0 && report->before.bad > 0)
+    repair r = {.state = state, .surface = surface, .options = options, .report = report};
+    const bool refine = options->method == TM_REPAIR_REFINE;
+    if (state->octree.leaves == 0 &&
+        ((refine && report->before.bad > 0) || options->octants > 0))
         return tm_fail(error, TM_ERROR_INPUT, "there are no octants to refine");
-    return run_refine(&r, error);
+    if (options->octants > 0) {
+        const tm_status status = split_given(&r, error);
+        if (status != TM_OK)
+            return status;
+    }
+    r.elements_at_most = (size_t)(options->growth * (double)state->mesh.elements);
+    return refine ? run_refine(&r, error) : run_full(&r, error);
 }

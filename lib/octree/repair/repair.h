@@ -20,7 +20,11 @@ typedef struct tm_repair_options {
     tm_repair_method method;
     double threshold;    /* an element is bad if its J_ENS is below, or it is not valid */
     unsigned iterations; /* meshes that are made from split octants, at most */
-    double growth;       /* of the number of elements, at most; TM_REPAIR_FULL */
+    /* Rows of .octant, ascending, that are split once, and all is meshed again, before
+     * the method begins: the first of the iterations. NULL: none. */
+    const uint32_t *octant;
+    size_t octants;
+    double growth; /* of the number of elements, at most; TM_REPAIR_FULL */
     /* Called with each state, the first one too, and with bad octants; `bad` are rows of
      * .octant, ascending. May be NULL. A status other than TM_OK ends the repair. */
     tm_status (*visit)(void *context, unsigned iteration, const tm_repair_state *state,
@@ -36,8 +40,9 @@ typedef struct tm_repair_report {
     size_t divided; /* elements, also there */
 } tm_repair_report;
 
-/* Repairs *state. TM_REPAIR_REFINE needs its octree; without it TM_REPAIR_FULL does not
- * refine. What TM_REPAIR_FULL leaves is never worse than what came
+/* Repairs *state. TM_REPAIR_REFINE, and octants to split, need its octree; without it
+ * TM_REPAIR_FULL does not refine. What TM_REPAIR_FULL leaves is never worse than what it
+ * began with
  * (tm_repair_better()), and a step that does not make it better is taken back: so the
  * worst J_ENS ends at or above the floor of report->before, whatever is gained elsewhere.
  *

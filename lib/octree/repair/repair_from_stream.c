@@ -4,6 +4,7 @@
 #include "../../base/array.h"
 #include "../../geom/vector.h"
 #include "../../element/shape.h"
+#include "../../format/oct.h"
 #include "../../mesh/mixed_stream.h"
 #include "../../stream/coordinates.h"
 #include "../layer/octree_mesh_stream.h"
@@ -31,14 +32,20 @@ static tm_status allocate(tm_repair_state *state, tm_error *error)
     return TM_OK;
 }
 
-static void find_octants(tm_repair_state *state, const tm_block *octant)
+/* The octants that elements are in, and their ids, where the attribute is that. */
+static tm_status find_octants(tm_repair_state *state, const tm_block *octant,
+                              unsigned base, tm_error *error)
 {
     enum { FIRST = 4, PAST, COLUMNS };
-    for (size_t o = 0; octant && o < octant->count; o++) {
+    for (size_t o = 0; o < octant->count; o++) {
         const uint32_t *row = octant->integer + o * COLUMNS;
         for (uint32_t e = row[FIRST]; e < row[PAST]; e++)
             state->octant[e] = (uint32_t)o;
     }
+    if (octant->attributes == 0)
+        return TM_OK;
+    const tm_status status = tm_octant_ids(&state->id, octant, base, error);
+    return status == TM_ERROR_INPUT ? TM_OK : status;
 }
 
 /* Without the octree the mesh can be optimised still. */
@@ -138,9 +145,9 @@ tm_status tm_repair_from_stream(tm_repair_state *state, tm_stream *stream,
                          "the stream has no elements (the blocks .node and .mix)");
     if (status == TM_OK)
         status = allocate(state, error);
-    if (status == TM_OK)
-        find_octants(state, tm_stream_find(stream, ".octant"));
-    return status;
+    const tm_block *octant = tm_stream_find(stream, ".octant");
+    return status == TM_OK && octant ? find_octants(state, octant, stream->base, error)
+                                     : status;
 }
 
 static bool says_none_held(const tm_block *node)

@@ -188,5 +188,6 @@ void tm_repair_state_free(tm_repair_state *state)
     free(state->origin);
     tm_octree_free(&state->octree);
     free(state->row);
+    free(state->id);
     *state = (tm_repair_state){0};
 }

@@ -22,7 +22,8 @@ typedef struct tm_repair_state {
     uint32_t *octant;   /* [elements]: TM_NONE where it is in none */
     uint32_t *origin;   /* [elements]: of which it is a part, ascending, until `remade` */
     tm_octree octree;   /* no leaves: there is none */
-    uint32_t *row;      /* [leaves]: of the octant */
+    uint32_t *row;      /* [leaves]: of the octant, TM_NONE of one that was missing */
+    uint32_t *id;       /* [octants]: in .oct and .ref; NULL: their numbers from 0 */
     bool divided;       /* some elements are parts of what they were; nodes were added */
     bool remade;        /* from another octree: all of it is new */
     const tm_progress *progress; /* of the repair; NULL in trials */

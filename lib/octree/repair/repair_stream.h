@@ -14,7 +14,6 @@ TM_EXTERN_C_BEGIN
 typedef struct tm_repair_notes {
     bool attributed;    /* the attribute of .node says where nodes are */
     tm_error no_octree; /* why there is none; its message is empty where there is one */
-    bool completed;     /* octants were added where the brick has none */
     char dropped[256];  /* blocks that were removed, with blanks between */
 } tm_repair_notes;
 

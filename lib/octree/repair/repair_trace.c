@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "repair_trace.h"
 
+#include "../../base/array.h"
 #include "../forest/octree_stream.h"
 
 #include <stdlib.h>
@@ -35,6 +36,17 @@ static tm_status copy_elements(const tm_mixed_mesh *mesh, tm_stream *stream,
         return status;
     memcpy(mix->start, mesh->start, (mesh->elements + 1) * sizeof *mesh->start);
     memcpy(mix->item, mesh->item, items * sizeof *mesh->item);
+    return TM_OK;
+}
+
+static tm_status copy_ids(const tm_repair_state *state, tm_block *octant, tm_error *error)
+{
+    octant->attribute = tm_new(octant->count, sizeof *octant->attribute);
+    if (!octant->attribute)
+        return tm_fail_memory(error);
+    octant->attributes = 1;
+    for (size_t o = 0; o < octant->count; o++)
+        octant->attribute[o] = state->id[o];
     return TM_OK;
 }
 
@@ -74,7 +86,7 @@ static tm_status copy_octants(const tm_repair_state *state, tm_stream *stream,
             row[FIRST] = (uint32_t)e;
         row[PAST] = (uint32_t)e + 1;
     }
-    return TM_OK;
+    return state->id ? copy_ids(state, octant, error) : TM_OK;
 }
 
 static tm_status copy_surface(const tm_surface *surface, tm_stream *stream,
