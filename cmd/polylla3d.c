@@ -136,8 +136,10 @@ static void put_facets(filter *f, tm_stream *stream, const tm_block made[2])
     }
 }
 
-/* Appends the polyhedra of the tetrahedra to their attributes. */
-static void put_labels(filter *f, tm_stream *stream, const tm_partition *partition)
+/* Appends the polyhedra of the tetrahedra to their attributes; order[k] is the k-th of
+ * the partition. */
+static void put_labels(filter *f, tm_stream *stream, const tm_partition *partition,
+                       const uint32_t *order)
 {
     tm_error error;
     tm_block *ele = tm_stream_find(stream, ".ele");
@@ -149,10 +151,11 @@ static void put_labels(filter *f, tm_stream *stream, const tm_partition *partiti
         tm_fail_memory(&error);
         filter_fail(f, &error);
     }
-    for (size_t t = 0; t < ele->count; t++) {
-        for (size_t k = 0; k < width; k++)
-            attribute[t * (width + 1) + k] = ele->attribute[t * width + k];
-        attribute[t * (width + 1) + width] = partition->cell[t] + stream->base;
+    for (size_t k = 0; k < ele->count; k++) {
+        size_t t = order[k];
+        for (size_t a = 0; a < width; a++)
+            attribute[t * (width + 1) + a] = ele->attribute[t * width + a];
+        attribute[t * (width + 1) + width] = partition->cell[k] + stream->base;
     }
     free(ele->attribute);
     ele->attribute = attribute;
@@ -180,6 +183,43 @@ static void make_facets(filter *f, const settings *o, const tm_tet_mesh *mesh,
     r->facets = made[0].count;
 }
 
+/* Cuts a mesh, which is sorted first: order[k] is which tetrahedron the k-th was. */
+static void cut(filter *f, const settings *o, tm_tet_mesh *mesh, tm_partition *partition,
+                uint32_t *order, result *r)
+{
+    tm_error error;
+    filter_stage(f, "sorting");
+    if (tm_tet_mesh_sort(mesh, order, &error) != TM_OK)
+        filter_fail(f, &error);
+    if (o->ignore_markers)
+        tm_ignore_markers(mesh);
+    if (tm_partition_make(partition, mesh, &o->poly, &r->poly, &error) != TM_OK)
+        filter_fail(f, &error);
+}
+
+/* Gives the tetrahedra of the stream labels: they stay in their order, a copy is cut. */
+static void label(filter *f, tm_stream *stream, tm_tet_mesh *mesh, const settings *o,
+                  result *r)
+{
+    tm_error error;
+    tm_tet_mesh sorted = {0};
+    tm_partition partition;
+    uint32_t *order = malloc((mesh->slots + 1) * sizeof *order);
+    if (!order) {
+        tm_fail_memory(&error);
+        filter_fail(f, &error);
+    }
+    if (tm_tet_mesh_copy(&sorted, mesh, &error) != TM_OK)
+        filter_fail(f, &error);
+    cut(f, o, &sorted, &partition, order, r);
+    if (tm_tet_mesh_to_stream(mesh, stream, &error) != TM_OK)
+        filter_fail(f, &error);
+    put_labels(f, stream, &partition, order);
+    tm_partition_free(&partition);
+    tm_tet_mesh_free(&sorted);
+    free(order);
+}
+
 /* Makes polyhedra of the stream's tetrahedra. */
 static void convert(filter *f, tm_stream *stream, const settings *o, result *r)
 {
@@ -197,21 +237,15 @@ static void convert(filter *f, tm_stream *stream, const settings *o, result *r)
         filter_fail(f, &error);
     }
     tet_mesh_from_stream(f, stream, &mesh);
-    filter_stage(f, "sorting");
-    if (!o->label && tm_tet_mesh_sort(&mesh, &error) != TM_OK)
-        filter_fail(f, &error);
-    if (o->ignore_markers)
-        tm_ignore_markers(&mesh);
-    if (tm_partition_make(&partition, &mesh, &o->poly, &r->poly, &error) != TM_OK)
-        filter_fail(f, &error);
-    if (!o->label)
-        make_facets(f, o, &mesh, &partition, made, r);
+    if (o->label) {
+        label(f, stream, &mesh, o, r);
+        return;
+    }
+    cut(f, o, &mesh, &partition, NULL, r);
+    make_facets(f, o, &mesh, &partition, made, r);
     if (tm_tet_mesh_to_stream(&mesh, stream, &error) != TM_OK)
         filter_fail(f, &error);
-    if (o->label)
-        put_labels(f, stream, &partition);
-    else
-        put_facets(f, stream, made);
+    put_facets(f, stream, made);
     tm_partition_free(&partition);
 }
 

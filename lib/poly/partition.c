@@ -267,6 +267,30 @@ static size_t count_flat_cells(const tm_partition *partition, const tm_tet_mesh 
     return count;
 }
 
+/* Labels tetrahedra by their regions. Ties are told by the numbers of nodes: so that they
+ * do not depend on how the mesh was numbered, nodes are numbered by their places here. */
+static tm_status find_regions(const tm_tet_mesh *mesh, const tm_poly_options *options,
+                              uint32_t *label, size_t *regions, tm_error *error)
+{
+    tm_tet_mesh ranked = *mesh;
+    uint32_t *rank = tm_new(mesh->nodes, sizeof *rank);
+    ranked.xyz = tm_new(mesh->nodes, sizeof *ranked.xyz);
+    ranked.tet = tm_new(mesh->slots, sizeof *ranked.tet);
+    bool done = rank && ranked.xyz && ranked.tet && tm_tet_mesh_rank_nodes(mesh, rank);
+    for (size_t v = 0; v < mesh->nodes && done; v++)
+        memcpy(ranked.xyz[rank[v]], mesh->xyz[v], sizeof *ranked.xyz);
+    for (size_t t = 0; t < mesh->slots && done; t++)
+        for (int i = 0; i < 4; i++)
+            ranked.tet[t][i] = rank[mesh->tet[t][i]];
+    tm_status status =
+        done ? tm_poly_modes[options->mode].label(&ranked, options, label, regions, error)
+             : tm_fail_memory(error);
+    free(rank);
+    free(ranked.xyz);
+    free(ranked.tet);
+    return status;
+}
+
 tm_status tm_partition_make(tm_partition *partition, const tm_tet_mesh *mesh,
                             const tm_poly_options *options, tm_poly_report *report,
                             tm_error *error)
@@ -276,8 +300,8 @@ tm_status tm_partition_make(tm_partition *partition, const tm_tet_mesh *mesh,
     if (!partition->cell)
         return tm_fail_memory(error);
     tm_progress_stage(options->progress, "joining tetrahedra");
-    tm_status status = tm_poly_modes[options->mode].label(mesh, options, partition->cell,
-                                                          &report->regions, error);
+    tm_status status =
+        find_regions(mesh, options, partition->cell, &report->regions, error);
     partition->cells = report->regions;
     if (status == TM_OK && options->repair)
         status = repair_regions(partition, mesh, options, report, error);

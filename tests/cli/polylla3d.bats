@@ -277,6 +277,53 @@ END
     [ "$(rows .ele "$out/label.tm" | awk '{ print $6 }' | sort -un | wc -l)" -gt 10 ]
     diff <(rows .ele "$out/label.tm" | cut -d ' ' -f 1-5) <(rows .ele points.tm)
     tet-stats -q "$out/label.tm" >"$out/text"
+    local mesh
+    for mesh in points boxes grid; do
+        polylla3d -q --no-history --label $mesh.tm >"$out/label.tm"
+        polylla3d -q --no-history $mesh.tm >"$out/poly.tm"
+        python3 - "$out/label.tm" "$out/poly.tm" "$(header .ele $mesh.tm | cut -d ' ' -f 3)" <<'END'
+import itertools, sys
+def rows(path, name):
+    lines = iter(open(path))
+    for line in lines:
+        if line.strip() == name:
+            return [next(lines).split() for _ in range(int(next(lines).split()[0]))]
+faces = {}
+for row in rows(sys.argv[1], '.ele'):
+    for face in itertools.combinations(sorted(map(int, row[1:5])), 3):
+        faces.setdefault(face, []).append(int(float(row[5 + int(sys.argv[3] or 0)])))
+between = {face: sorted(cells) for face, cells in faces.items()
+           if len(cells) == 1 or cells[0] != cells[1]}
+written = {tuple(sorted(map(int, row[4:7]))): sorted(int(c) for c in row[1:3] if c != '-1')
+           for row in rows(sys.argv[2], '.facet')}
+assert between == written
+END
+    done
+}
+
+@test "the polyhedra do not depend on how the mesh is numbered" {
+    local mesh options
+    for mesh in points sphere boxes grid; do
+        python3 "$BATS_TEST_DIRNAME/../bench/shuffle.py" 5 $mesh.tm "$out/other.tm"
+        for options in '' --star '--star --absorb' '--mode face' '--mode edge' '--mode cavity'; do
+            # shellcheck disable=SC2086 # words
+            polylla3d -q --no-history $options $mesh.tm >"$out/1.tm"
+            # shellcheck disable=SC2086
+            polylla3d -q --no-history $options "$out/other.tm" >"$out/2.tm"
+            python3 - "$out/1.tm" "$out/2.tm" <<'END'
+import sys
+def facets(path):
+    blocks, lines = {}, iter(open(path))
+    for line in lines:
+        if line[0] == '.' and line.strip() != '.end':
+            blocks[line.strip()] = [next(lines).split() for _ in range(int(next(lines).split()[0]))]
+    place = {row[0]: tuple(row[1:4]) for row in blocks['.node']}
+    base = int(blocks['.node'][0][0])
+    return [(int(row[1]) - base, max(int(row[2]) - base, -1), [place[n] for n in row[4:4 + int(row[3])]]) for row in blocks['.facet']]
+assert facets(sys.argv[1]) == facets(sys.argv[2])
+END
+        done
+    done
 }
 
 @test "the same bytes for one thread and for two, and for a pipe" {
