@@ -256,6 +256,7 @@ static void write_json(filter *f, const result *r)
                                          ROW("regions", poly.regions),
                                          ROW("regions_taken_apart", poly.taken_apart),
                                          ROW("absorbed", poly.absorbed),
+                                         ROW("single", poly.single),
                                          ROW("not_star_shaped", poly.not_star),
                                          ROW("polyhedra", poly.cells),
                                          ROW("facets", facets),
@@ -291,6 +292,11 @@ int main(int argc, char **argv)
     bool is_missed = r.poly.not_star > 0;
     if (is_missed)
         filter_note(&f, "%zu polyhedra are no stars: flat tetrahedra", r.poly.not_star);
+    if (10 * r.poly.single > r.poly.cells)
+        filter_note(&f,
+                    "%zu polyhedra are of one tetrahedron: with any beside it they would "
+                    "be no stars, or no balls",
+                    r.poly.single);
     char summary[256];
     double cells = (double)r.poly.cells;
     snprintf(summary, sizeof summary, "%zu tetrahedra -> %zu polyhedra, %.2f each",

@@ -5,7 +5,9 @@
 #include "facets.h"
 
 #include "../base/array.h"
+#include "../examine/poly_statistics.h"
 #include "../geom/vector.h"
+#include "../stream/block.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -231,7 +233,7 @@ static void count_facet(merger *m, uint32_t cell)
         m->facets_of[cell]++;
 }
 
-/* Whether all cells keep enough polygons; those that do not are to stay as they are. */
+/* Whether a cell keeps too few polygons; it is to stay as it is. */
 static bool find_flat_cells(merger *m, size_t polygons)
 {
     bool found = false;
@@ -263,28 +265,100 @@ static uint32_t *find_borders(const merger *m, size_t polygons)
     return first;
 }
 
-static tm_status merge(merger *m, tm_block *merged, tm_error *error)
+/* The polygons as a block, and the cells of these. */
+static tm_status write(const merger *m, size_t polygons, tm_block *merged, tm_block *cell,
+                       tm_error *error)
 {
-    size_t facets = m->facet->count, polygons;
+    uint32_t *first = find_borders(m, polygons);
+    tm_status status = first ? TM_OK : tm_fail_memory(error);
+    if (status == TM_OK)
+        status = tm_block_allocate(merged, polygons, CORNERS * m->facet->count, error);
+    if (status == TM_OK) {
+        write_polygons(m, first, merged);
+        status = tm_cells_from_facets(merged, cell, m->cells, error);
+    }
+    free(first);
+    return status;
+}
+
+/* Measures the cells of some facets: their volumes, then their kernels' radii. */
+static tm_status measure(const merger *m, const tm_block *facet, const tm_block *cell,
+                         double *measured, tm_error *error)
+{
+    const unsigned threads = 1;
+    const tm_poly_arrays mesh = {.nodes = m->mesh->nodes,
+                                 .xyz = (const double(*)[3])m->mesh->xyz,
+                                 .facets = facet->count,
+                                 .side = (const uint32_t(*)[2])facet->integer,
+                                 .facet_start = facet->start,
+                                 .facet_node = facet->item,
+                                 .cells = cell->count,
+                                 .cell_start = cell->start,
+                                 .cell_facet = cell->item};
+    return tm_poly_measure_each(measured, measured + m->cells, &mesh, threads, error);
+}
+
+/* Whether a cell has lost its volume or its star by facets that are not plane; it is to
+ * stay as it is. */
+static bool find_bent_cells(merger *m, const double *before, const double *now)
+{
+    bool found = false;
+    for (size_t c = 0; c < m->cells; c++) {
+        bool lost = (before[c] > 0 && !(now[c] > 0)) ||
+                    (before[m->cells + c] > 0 && !(now[m->cells + c] > 0));
+        found |= lost && !m->stays[c];
+        m->stays[c] |= lost;
+    }
+    return found;
+}
+
+/* An empty block of the kind, without attributes. */
+static tm_block empty_like(const tm_block *b)
+{
+    tm_block empty = {.kind = b->kind, .markers = b->markers};
+    memcpy(empty.name, b->name, sizeof empty.name);
+    return empty;
+}
+
+/* Merges until all cells that are not to stay as they are have kept what they were. */
+static tm_status merge(merger *m, const tm_block *was, tm_block *merged, tm_block *cell,
+                       tm_error *error)
+{
+    const bool bends = m->plane->degrees > 0;
+    double *measured = tm_new(4 * m->cells, sizeof *measured);
+    double *before = measured, *now = measured ? measured + 2 * m->cells : NULL;
+    tm_status status = measured ? TM_OK : tm_fail_memory(error);
+    bool again = status == TM_OK;
+    if (again && bends)
+        status = measure(m, m->facet, was, before, error);
+    while (again && status == TM_OK) {
+        size_t polygons;
+        if (!find_polygons(m, &polygons)) {
+            status = tm_fail_memory(error);
+            break;
+        }
+        again = find_flat_cells(m, polygons);
+        if (again)
+            continue;
+        status = write(m, polygons, merged, cell, error);
+        if (status == TM_OK && bends) {
+            status = measure(m, merged, cell, now, error);
+            again = status == TM_OK && find_bent_cells(m, before, now);
+        }
+    }
+    free(measured);
+    return status;
+}
+
+static bool allocate(merger *m)
+{
+    size_t facets = m->facet->count;
     m->beyond = tm_new(facets, sizeof *m->beyond);
     m->polygon = tm_new(facets, sizeof *m->polygon);
     m->node_polygon = tm_new(m->mesh->nodes, sizeof *m->node_polygon);
     m->facets_of = tm_new(m->cells, 1);
     m->stays = calloc(m->cells + 1, sizeof *m->stays);
-    if (!m->beyond || !m->polygon || !m->node_polygon || !m->facets_of || !m->stays)
-        return tm_fail_memory(error);
-    do {
-        if (!find_polygons(m, &polygons))
-            return tm_fail_memory(error);
-    } while (find_flat_cells(m, polygons));
-    uint32_t *first = find_borders(m, polygons);
-    tm_status status = first ? TM_OK : tm_fail_memory(error);
-    if (status == TM_OK)
-        status = tm_block_allocate(merged, polygons, CORNERS * facets, error);
-    if (status == TM_OK)
-        write_polygons(m, first, merged);
-    free(first);
-    return status;
+    return m->beyond && m->polygon && m->node_polygon && m->facets_of && m->stays;
 }
 
 tm_status tm_merge_coplanar(const tm_tet_mesh *mesh, const tm_coplanar *plane,
@@ -292,11 +366,9 @@ tm_status tm_merge_coplanar(const tm_tet_mesh *mesh, const tm_coplanar *plane,
                             tm_error *error)
 {
     merger m = {.mesh = mesh, .plane = plane, .facet = facet, .cells = cell->count};
-    tm_block merged = *facet, cells = *cell;
-    merged.integer = merged.item = NULL;
-    merged.start = NULL;
-    merged.marker = NULL;
-    tm_status status = merge(&m, &merged, error);
+    tm_block merged = empty_like(facet), cells = empty_like(cell);
+    tm_status status =
+        allocate(&m) ? merge(&m, cell, &merged, &cells, error) : tm_fail_memory(error);
     tm_edge_map_free(&m.edges);
     free(m.beyond);
     free(m.polygon);
@@ -305,17 +377,13 @@ tm_status tm_merge_coplanar(const tm_tet_mesh *mesh, const tm_coplanar *plane,
     free(m.stays);
     free(m.queue);
     *joined = facet->count - merged.count;
-    /* The new facets take the place of the old ones; the cells keep their attributes. */
-    free(facet->integer);
-    free(facet->item);
-    free(facet->start);
-    free(facet->marker);
-    *facet = merged;
-    if (status != TM_OK)
-        return status;
+    /* The new ones take the place of the old ones; the cells keep their attributes. */
+    cells.attributes = cell->attributes;
+    cells.attribute = cell->attribute;
     cell->attribute = NULL;
-    status = tm_cells_from_facets(facet, cell, cells.count, error);
-    free(cell->attribute);
-    cell->attribute = cells.attribute;
+    tm_block_clear(facet);
+    tm_block_clear(cell);
+    *facet = merged;
+    *cell = cells;
     return status;
 }

@@ -9,8 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Pieces of so many tetrahedra are absorbed. */
-enum { SMALL = 8 };
+/* Pieces of so many tetrahedra are absorbed; by one that is small, too, until it has so
+ * many, by a larger one as many as it had. */
+enum { SMALL = 8, ENOUGH = 4 * SMALL };
 
 /* Sets of tetrahedra as lists: those of set s are item[start[s] … start[s+1]). */
 typedef struct {
@@ -136,12 +137,13 @@ static tm_status take_up(repair *r, const lists *l, uint32_t p, uint32_t *size)
 {
     tm_shelling *s = &r->shelling;
     uint32_t had = l->start[p + 1] - l->start[p];
+    const size_t most = had > ENOUGH / 2 ? 2 * (size_t)had : ENOUGH;
     if (!tm_shelling_resume(s, p, l->item + l->start[p], had))
         return tm_fail_memory(r->error);
     for (size_t next = 0; next < s->queued; next++) {
         uint32_t q = s->piece[s->queue[next]];
         bool taken;
-        if (q == p || size[q] > SMALL)
+        if (q == p || size[q] > SMALL || s->size + size[q] > most)
             continue;
         if (!tm_shelling_add(s, l->item + l->start[q], size[q], &taken))
             return tm_fail_memory(r->error);
@@ -250,21 +252,23 @@ static tm_status order_by_cell(tm_partition *partition, size_t tets, tm_error *e
     return done ? TM_OK : tm_fail_memory(error);
 }
 
-/* Cells of one flat tetrahedron: all others are stars if that is asked for. */
-static size_t count_flat_cells(const tm_partition *partition, const tm_tet_mesh *mesh)
+/* Counts cells of one tetrahedron, and flat ones: all others are stars if that is asked
+ * for. */
+static void count_single(const tm_partition *partition, const tm_tet_mesh *mesh,
+                         tm_poly_report *report)
 {
     const double(*xyz)[3] = (const double(*)[3])mesh->xyz;
     const uint32_t *order = partition->order, *cell = partition->cell;
-    size_t count = 0;
-    for (size_t k = 0; k < mesh->slots && mesh->flat > 0; k++) {
+    for (size_t k = 0; k < mesh->slots; k++) {
         uint32_t c = cell[order[k]];
         if ((k > 0 && cell[order[k - 1]] == c) ||
             (k + 1 < mesh->slots && cell[order[k + 1]] == c))
             continue;
         const uint32_t *n = mesh->tet[order[k]];
-        count += tm_orient3d(xyz[n[0]], xyz[n[1]], xyz[n[2]], xyz[n[3]]) == 0;
+        report->single++;
+        report->not_star += mesh->flat > 0 &&
+                            tm_orient3d(xyz[n[0]], xyz[n[1]], xyz[n[2]], xyz[n[3]]) == 0;
     }
-    return count;
 }
 
 /* Labels tetrahedra by their regions. Ties are told by the numbers of nodes: so that they
@@ -312,6 +316,6 @@ tm_status tm_partition_make(tm_partition *partition, const tm_tet_mesh *mesh,
         status = order_by_cell(partition, mesh->slots, error);
     report->cells = partition->cells;
     if (status == TM_OK && options->star)
-        report->not_star = count_flat_cells(partition, mesh);
+        count_single(partition, mesh, report);
     return status;
 }

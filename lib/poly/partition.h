@@ -54,7 +54,8 @@ typedef struct tm_poly_report {
     size_t tets, regions, cells;
     size_t taken_apart; /* regions that were no ball, or no star, or too large */
     size_t absorbed;    /* tetrahedra */
-    size_t not_star;    /* with star: cells of one flat tetrahedron */
+    size_t single;      /* with star: cells of one tetrahedron, and */
+    size_t not_star;    /* those of a flat one */
 } tm_poly_report;
 
 typedef struct tm_partition {

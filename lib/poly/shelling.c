@@ -19,8 +19,33 @@ void tm_shelling_free(tm_shelling *s)
     free(s->member);
     free(s->queue);
     free(s->plane);
+    free(s->xyz);
     tm_star_free(&s->star);
     *s = (tm_shelling){0};
+}
+
+/* Scales the nodes, by powers of two, so that no side of the box around them is less than
+ * half of the longest: stars stay stars. */
+static bool scale(tm_shelling *s)
+{
+    const tm_tet_mesh *mesh = s->mesh;
+    double low[3], high[3], most = 0, by[3];
+    s->xyz = tm_new(mesh->nodes, sizeof *s->xyz);
+    for (int x = 0; x < 3; x++) {
+        low[x] = HUGE_VAL;
+        high[x] = -HUGE_VAL;
+        for (size_t v = 0; v < mesh->nodes; v++) {
+            low[x] = fmin(low[x], mesh->xyz[v][x]);
+            high[x] = fmax(high[x], mesh->xyz[v][x]);
+        }
+        most = fmax(most, high[x] - low[x]);
+    }
+    for (int x = 0; x < 3; x++)
+        by[x] = high[x] > low[x] ? ldexp(1, ilogb(most / (high[x] - low[x]))) : 1;
+    for (size_t v = 0; v < mesh->nodes && s->xyz; v++)
+        for (int x = 0; x < 3; x++)
+            s->xyz[v][x] = by[x] * mesh->xyz[v][x];
+    return s->xyz;
 }
 
 tm_status tm_shelling_start(tm_shelling *s, const tm_tet_mesh *mesh,
@@ -29,7 +54,7 @@ tm_status tm_shelling_start(tm_shelling *s, const tm_tet_mesh *mesh,
     *s = (tm_shelling){.mesh = mesh, .options = options};
     s->piece = tm_new(mesh->slots, sizeof *s->piece);
     s->node_piece = tm_new(mesh->nodes, sizeof *s->node_piece);
-    if (!s->piece || !s->node_piece)
+    if (!s->piece || !s->node_piece || !scale(s))
         return tm_fail_memory(error);
     for (size_t t = 0; t < mesh->slots; t++)
         s->piece[t] = TM_NONE;
@@ -64,8 +89,8 @@ static bool add(tm_shelling *s, uint32_t t)
         uint32_t v = s->mesh->tet[t][i];
         s->node_piece[v] = s->id;
         for (int x = 0; x < 3 && s->options->star; x++) {
-            s->low[x] = fmin(s->low[x], s->mesh->xyz[v][x]);
-            s->high[x] = fmax(s->high[x], s->mesh->xyz[v][x]);
+            s->low[x] = fmin(s->low[x], s->xyz[v][x]);
+            s->high[x] = fmax(s->high[x], s->xyz[v][x]);
         }
     }
     return push_neighbours(s, t);
@@ -76,7 +101,7 @@ static void begin(tm_shelling *s, uint32_t id, uint32_t t)
     s->id = id;
     s->size = s->queued = 0;
     s->depth = -1; /* no centre */
-    memcpy(s->origin, s->mesh->xyz[s->mesh->tet[t][0]], sizeof s->origin);
+    memcpy(s->origin, s->xyz[s->mesh->tet[t][0]], sizeof s->origin);
     for (int x = 0; x < 3; x++) {
         s->low[x] = HUGE_VAL;
         s->high[x] = -HUGE_VAL;
@@ -146,7 +171,7 @@ static bool plane_of(const tm_shelling *s, uint32_t t, uint32_t i, double plane[
 {
     uint32_t n[3];
     double a[3];
-    const double(*xyz)[3] = (const double(*)[3])s->mesh->xyz;
+    const double(*xyz)[3] = (const double(*)[3])s->xyz;
     tm_tet_face_below(s->mesh, t, i, n);
     tm_triangle_normal(plane, xyz[n[0]], xyz[n[2]], xyz[n[1]]);
     tm_subtract(a, xyz[n[0]], s->origin);
@@ -203,8 +228,8 @@ static double extent_with(const tm_shelling *s, uint32_t t)
     for (int x = 0; x < 3; x++) {
         double low = s->low[x], high = s->high[x];
         for (int i = 0; i < 4; i++) {
-            low = fmin(low, s->mesh->xyz[s->mesh->tet[t][i]][x]);
-            high = fmax(high, s->mesh->xyz[s->mesh->tet[t][i]][x]);
+            low = fmin(low, s->xyz[s->mesh->tet[t][i]][x]);
+            high = fmax(high, s->xyz[s->mesh->tet[t][i]][x]);
         }
         extent2 += (high - low) * (high - low);
     }

@@ -16,6 +16,7 @@
 typedef struct tm_shelling {
     const tm_tet_mesh *mesh;
     const tm_poly_options *options;
+    double (*xyz)[3];     /* [nodes], scaled: a thin mesh as if it were not */
     uint32_t *piece;      /* [slots]: of each tetrahedron, or TM_NONE */
     uint32_t *node_piece; /* [nodes]: the last piece that was grown and has the node */
     uint32_t id;          /* of the piece that is grown */

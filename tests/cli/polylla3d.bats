@@ -258,6 +258,30 @@ END
     polylla3d -q --star --absorb --json "$out/absorb" points.tm >"$out/poly.tm"
     [ "$(json "$out/absorb" polyhedra)" -lt "$(json "$out/star" polyhedra)" ]
     [ "$(json "$out/absorb" absorbed)" -gt 0 ]
+    # Where all are small, they do not all become one.
+    awk 'BEGIN { print 1000, 3; for (i = 0; i < 1000; i++)
+        print i, i % 10, int(i / 10) % 10, int(i / 100) }' | tetgen-mesh --quiet >"$out/grid.tm"
+    for mesh in "$out/grid.tm" grid.tm; do
+        for star in '' --star; do
+            # shellcheck disable=SC2086 # a word or none
+            polylla3d -q --absorb $star "$mesh" | rows .cell /dev/stdin |
+                awk '$(3 + $2) > 32 { exit 1 }'
+        done
+    done
+}
+
+@test "a mesh that is thin, or turned to be flat, gets stars as one that is not; what is single is said" {
+    awk '/^\.node/ { print; getline; print; n = $1
+        for (i = 0; i < n; i++) { getline; $4 = sprintf("%.17g", $4 / 1024); print }; next } { print }' \
+        points.tm >"$out/thin.tm"
+    polylla3d -q --star --mode face --json "$out/thick" points.tm >"$out/poly.tm"
+    polylla3d -q --star --mode face --json "$out/thin" "$out/thin.tm" >"$out/poly.tm"
+    awk -v a="$(json "$out/thick" polyhedra)" -v b="$(json "$out/thin" polyhedra)" \
+        'BEGIN { exit !(b < 1.5 * a) }'
+    poly-stats --json "$out/json" "$out/poly.tm" >"$out/table"
+    [ "$(json "$out/json" not_star_shaped)" -eq 0 ]
+    run -0 --separate-stderr polylla3d --star --max-tets 1 -o "$out/1.tm" points.tm
+    [[ $stderr == *" polyhedra are of one tetrahedron: "* ]]
 }
 
 @test "--merge-coplanar: the sides of a box of one polyhedron" {
@@ -394,6 +418,11 @@ END
     for degrees in '' =5 =10 =30; do
         polylla3d -q "--merge-coplanar$degrees" "$out/random.tm" >"$out/merged.tm"
         vtu-export -q "$out/merged.tm" >"$out/merged.vtu"
+        # Stars stay stars, and volumes positive, where facets are not plane any more.
+        polylla3d -q --star "--merge-coplanar$degrees" "$out/random.tm" >"$out/merged.tm"
+        mesh-check -q "$out/merged.tm"
+        poly-stats --json "$out/json" "$out/merged.tm" >"$out/table"
+        [ "$(json "$out/json" not_star_shaped)" -eq 0 ]
     done
     printf "termesh 1\n.node\n4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 1 1 0\n.ele\n1 4 0\n1 1 2 3 4\n.end\n" |
         polylla3d -q --merge-coplanar | vtu-export >"$out/flat.vtu"
