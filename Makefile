@@ -49,7 +49,7 @@ ifdef has_p4est
 LDLIBS += -Wl,--as-needed -lp4est -lsc $(MPI_LDLIBS) -Wl,--no-as-needed
 else
 left_out := octree-mesh octree-repair $(wildcard lib/octree/layer/*.c lib/octree/repair/*.c) \
-	$(shell grep -lE '^.include.*(p[48]est|brick\.h|mpi_start)' lib/octree/forest/*.c) \
+	$(shell grep -lE '^.include.*(p[48]est|brick\.h|octree_estimate|mpi_start)' lib/octree/forest/*.c) \
 	$(basename $(notdir $(shell grep -lE 'octree_build|octree/(layer|repair)|(octree|repair)_fixture' \
 		tests/unit/test_*.c)))
 endif
