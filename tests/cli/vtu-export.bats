@@ -151,3 +151,12 @@ print(len(m.points), len(m.cells_dict["tetra"]), sep=",")' | tail -n 1)" = "$cou
     sed 's/^6 1 2 4/6 1 1 4/' cubes.tm >wrong.tm
     run -3 --separate-stderr vtu-export wrong.tm
 }
+
+@test "meshio reads cell data as one number for each cell" {
+    need_meshio
+    two_boxes_and_a_ring
+    vtu-export --no-boundary boxes.tm >boxes.vtu
+    [ "$("$vtk_python" -c 'import meshio, sys
+m = meshio.read(sys.argv[1])
+print({len(d.shape) for data in m.cell_data.values() for d in data})' boxes.vtu | tail -n 1)" = '{1}' ]
+}

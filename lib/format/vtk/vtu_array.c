@@ -98,9 +98,10 @@ static tm_status pack(tm_vtu_arrays *a, const void *bytes, size_t size,
 tm_status tm_vtu_write_array(tm_vtu_arrays *a, const char *name, tm_vtu_type type,
                              size_t components, const void *numbers, size_t count)
 {
-    tm_text_format(a->xml,
-                   "        <DataArray type=\"%s\" Name=\"%s\" "
-                   "NumberOfComponents=\"%zu\" format=\"appended\" offset=\"%zu\"/>\n",
-                   types[type].name, name, components, a->data.size);
+    tm_text_format(a->xml, "        <DataArray type=\"%s\" Name=\"%s\" ",
+                   types[type].name, name);
+    if (components != 1) /* meshio makes columns of a list that has one */
+        tm_text_format(a->xml, "NumberOfComponents=\"%zu\" ", components);
+    tm_text_format(a->xml, "format=\"appended\" offset=\"%zu\"/>\n", a->data.size);
     return pack(a, numbers, count * types[type].size, types[type].size);
 }
