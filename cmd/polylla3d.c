@@ -6,12 +6,15 @@
 #include "../lib/poly/facets.h"
 #include "../lib/tet/mesh_measure.h"
 
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum {
     MODE = FILTER_OWN,
     FACE_METRIC,
+    CELLS,
+    SIZE,
     NO_REPAIR,
     STAR,
     ABSORB,
@@ -25,6 +28,8 @@ enum {
 static const struct option options[] = {
     {"mode", required_argument, NULL, MODE},
     {"face-metric", required_argument, NULL, FACE_METRIC},
+    {"cells", required_argument, NULL, CELLS},
+    {"size", required_argument, NULL, SIZE},
     {"no-repair", no_argument, NULL, NO_REPAIR},
     {"star", no_argument, NULL, STAR},
     {"absorb", no_argument, NULL, ABSORB},
@@ -39,8 +44,11 @@ static const char own_help[] =
     "      --mode MODE     how tetrahedra are joined: terminal (default), one "
     "polyhedron\n"
     "                      for each terminal edge; edge, by their longest edge; face,\n"
-    "                      across their best face; cavity, by their circumcentres\n"
+    "                      across their best face; cavity, by their circumcentres;\n"
+    "                      compact, to round cells of even size\n"
     "      --face-metric M the best face of --mode face: area (default) or inradius\n"
+    "      --cells N       compact: about N of them\n"
+    "      --size H        compact: about as large as cubes of side H\n"
     "      --star          each star-shaped with respect to a ball\n"
     "      --absorb        those of a few tetrahedra join others beside them\n"
     "      --max-tets N    of N tetrahedra at most\n"
@@ -74,6 +82,10 @@ static void set_option(filter *f, settings *o, int c)
         p->mode = (tm_poly_mode)filter_word(f, MODE, optarg);
     else if (c == FACE_METRIC)
         p->face_metric = (tm_face_metric)filter_word(f, FACE_METRIC, optarg);
+    else if (c == CELLS)
+        p->cells = (size_t)filter_integer(f, "--cells", optarg, 1, INT32_MAX);
+    else if (c == SIZE)
+        p->size = filter_number(f, "--size", optarg, DBL_MIN, DBL_MAX);
     else if (c == NO_REPAIR)
         p->repair = false;
     else if (c == STAR)
@@ -98,13 +110,20 @@ static void set_option(filter *f, settings *o, int c)
 static settings read_options(filter *f)
 {
     settings o = {.poly = {.repair = true}};
-    bool has_metric = false;
+    bool has_metric = false, has_mode = false;
     int c;
     while ((c = filter_option(f)) != -1) {
         set_option(f, &o, c);
         has_metric |= c == FACE_METRIC;
+        has_mode |= c == MODE;
     }
-    const tm_poly_options *p = &o.poly;
+    tm_poly_options *p = &o.poly;
+    const bool is_sized = p->cells > 0 || p->size > 0;
+    if (is_sized && !has_mode)
+        p->mode = TM_POLY_COMPACT;
+    if (is_sized != (p->mode == TM_POLY_COMPACT) || (p->cells > 0 && p->size > 0))
+        filter_usage_error(f, "--mode compact needs one of --cells and --size, which are "
+                              "for it alone");
     if (has_metric && p->mode != TM_POLY_FACE)
         filter_usage_error(f, "--face-metric is for --mode face");
     if (!p->repair && (p->star || p->absorb || p->no_swallow || p->max_tets || o.merge))
@@ -268,7 +287,8 @@ static void write_json(filter *f, const result *r)
 int main(int argc, char **argv)
 {
     filter f = {.name = "polylla3d",
-                .synopsis = "[--mode terminal|edge|face|cavity] [--no-repair] [--star] "
+                .synopsis = "[--mode terminal|edge|face|cavity|compact] [--cells N | "
+                            "--size H] [--no-repair] [--star] "
                             "[--absorb] [--max-tets N] [--no-swallow] "
                             "[--merge-coplanar[=DEG]] [--ignore-markers] [--label] "
                             "[--face-metric area|inradius] [FILE]",

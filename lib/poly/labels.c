@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How tetrahedra are joined to regions: the modes of the partition. */
-#include "partition.h"
+#include "compact.h"
 
 #include "../base/array.h"
 #include "../base/disjoint_sets.h"
@@ -326,4 +326,5 @@ const tm_poly_mode_row tm_poly_modes[TM_POLY_MODES] = {
     [TM_POLY_EDGE] = {"edge", label_longest_edge},
     [TM_POLY_FACE] = {"face", label_best_face},
     [TM_POLY_CAVITY] = {"cavity", label_cavity},
+    [TM_POLY_COMPACT] = {"compact", tm_poly_compact},
 };

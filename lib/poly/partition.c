@@ -3,6 +3,7 @@
 
 #include "../base/array.h"
 #include "../geom/predicates.h"
+#include "../geom/vector.h"
 #include "shelling.h"
 #include "simple.h"
 
@@ -156,6 +157,27 @@ static tm_status take_up(repair *r, const lists *l, uint32_t p, uint32_t *size)
     return TM_OK;
 }
 
+/* Compact cells may well be of few tetrahedra: only what has less than a third of the
+ * mean volume is small then. The others get a size that is not. */
+static bool spare_even_ones(const repair *r, uint32_t *size)
+{
+    const tm_tet_mesh *mesh = r->mesh;
+    const uint32_t *piece = r->shelling.piece;
+    double *volume = calloc(r->pieces + 1, sizeof *volume), all = 0;
+    for (size_t t = 0; t < mesh->slots && volume; t++) {
+        const uint32_t *n = mesh->tet[t];
+        const double(*x)[3] = (const double(*)[3])mesh->xyz;
+        double v = fabs(tm_tet_volume(x[n[0]], x[n[1]], x[n[2]], x[n[3]]));
+        volume[piece[t]] += v;
+        all += v;
+    }
+    for (size_t p = 0; p < r->pieces && volume; p++)
+        if (size[p] <= SMALL && 3 * volume[p] >= all / (double)r->report->regions)
+            size[p] = SMALL + 1;
+    free(volume);
+    return volume;
+}
+
 /* Small pieces join those beside them: first larger ones take them up, then small ones.
  */
 static tm_status absorb(repair *r)
@@ -168,10 +190,12 @@ static tm_status absorb(repair *r)
         status = tm_fail_memory(r->error);
     for (size_t p = 0; p < r->pieces && status == TM_OK; p++)
         size[p] = l.start[p + 1] - l.start[p];
+    if (status == TM_OK && r->options->mode == TM_POLY_COMPACT &&
+        !spare_even_ones(r, size))
+        status = tm_fail_memory(r->error);
     for (int round = 0; round < 2; round++)
         for (uint32_t p = 0; p < l.sets && status == TM_OK; p++)
-            if (round == 0 ? l.start[p + 1] - l.start[p] > SMALL
-                           : size[p] > 0 && size[p] <= SMALL)
+            if (round == 0 ? size[p] > SMALL : size[p] > 0 && size[p] <= SMALL)
                 status = take_up(r, &l, p, size);
     free(size);
     free_lists(&l);

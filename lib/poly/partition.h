@@ -24,6 +24,7 @@ typedef enum tm_poly_mode {
     TM_POLY_EDGE,     /* tetrahedra with one longest edge: what the 2022 program did */
     TM_POLY_FACE,     /* joined across the best face of each tetrahedron */
     TM_POLY_CAVITY,   /* circumcentres in the circumscribed sphere of a seed */
+    TM_POLY_COMPACT,  /* compact ones of even size: compact.h */
     TM_POLY_MODES
 } tm_poly_mode;
 
@@ -33,6 +34,8 @@ typedef enum tm_face_metric { TM_FACE_AREA, TM_FACE_INRADIUS } tm_face_metric;
 typedef struct tm_poly_options {
     tm_poly_mode mode;
     tm_face_metric face_metric;
+    size_t cells;    /* compact: about so many, or with 0 */
+    double size;     /* about as large as cubes of this side */
     bool repair;     /* the rest is for this */
     bool star;       /* star-shaped with respect to a ball */
     bool absorb;     /* cells of a few tetrahedra join one beside them */

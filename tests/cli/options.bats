@@ -119,7 +119,7 @@ offers() {
     words visf-export --binary
     [ "$(offers polylla3d --mode te)" = terminal ]
     [ "$(offers polylla3d --mode = te)" = terminal ]
-    [ "$(offers polylla3d --mode = | wc -l)" -eq 4 ]
+    [ "$(offers polylla3d --mode = | wc -l)" -eq 5 ]
     [ "$(offers lepp-improve -s c)" = converged ]
     [ "$(offers polylla3d -o te)" = '' ]
 }

@@ -270,6 +270,36 @@ END
     done
 }
 
+@test "--cells, --size: round cells of even size, which stay balls and stars" {
+    local mesh
+    for mesh in points sphere boxes grid; do
+        polylla3d -q --no-history --cells 30 --star --absorb --json "$out/json" $mesh.tm >"$out/poly.tm"
+        python3 judge.py "$out/poly.tm" $mesh.tm simple
+        poly-stats --json "$out/stats" "$out/poly.tm" >"$out/table"
+        [ "$(json "$out/stats" not_star_shaped)" -eq 0 ]
+        [ "$(json "$out/json" polyhedra)" -ge 25 ]
+    done
+    # As many as asked for, and no larger than the mean by far.
+    polylla3d -q --cells 60 --absorb sphere.tm | rows .cell /dev/stdin |
+        awk '{ n = $(3 + $2); sum += n; most = n > most ? n : most }
+            END { exit !(NR >= 55 && NR <= 70 && most < 4 * sum / NR) }'
+    # a cube of side 0.5 for each of about 8 of the unit cube
+    surface cube off | tetgen-mesh --quiet -q -a 0.002 >"$out/cube.tm"
+    polylla3d -q --size 0.5 --json "$out/json" "$out/cube.tm" >"$out/poly.tm"
+    [ "$(json "$out/json" regions)" -eq 8 ]
+    # They are rounder than those of terminal edges: less area between as many.
+    polylla3d -q --star --absorb --json "$out/json" "$out/cube.tm" >"$out/poly.tm"
+    local cells
+    cells=$(json "$out/json" polyhedra)
+    polylla3d -q --star --absorb --cells "$cells" --json "$out/compact" "$out/cube.tm" >"$out/poly.tm"
+    [ "$(json "$out/compact" facets)" -lt "$(json "$out/json" facets)" ]
+    run -2 polylla3d --mode compact points.tm
+    run -2 polylla3d --cells 5 --size 1 points.tm
+    run -2 polylla3d --cells 5 --mode face points.tm
+    run -2 polylla3d --cells 0 points.tm
+    run -2 polylla3d --size 0 points.tm
+}
+
 @test "a mesh that is thin, or turned to be flat, gets stars as one that is not; what is single is said" {
     awk '/^\.node/ { print; getline; print; n = $1
         for (i = 0; i < n; i++) { getline; $4 = sprintf("%.17g", $4 / 1024); print }; next } { print }' \
@@ -329,7 +359,7 @@ END
     local mesh options
     for mesh in points sphere boxes grid; do
         python3 "$BATS_TEST_DIRNAME/../bench/shuffle.py" 5 $mesh.tm "$out/other.tm"
-        for options in '' --star '--star --absorb' '--mode face' '--mode edge' '--mode cavity'; do
+        for options in '' --star '--star --absorb' '--cells 40 --star' '--mode face' '--mode edge' '--mode cavity'; do
             # shellcheck disable=SC2086 # words
             polylla3d -q --no-history $options $mesh.tm >"$out/1.tm"
             # shellcheck disable=SC2086
