@@ -4,7 +4,7 @@
 #include "common/input/mesh_input.h"
 
 #include "../lib/examine/element_examine.h"
-#include "../lib/examine/poly_examine.h"
+#include "../lib/examine/poly/poly_examine.h"
 
 #include <math.h>
 

@@ -3,10 +3,16 @@
 #include "common/input/mesh_input.h"
 #include "common/plot/plot.h"
 
-enum { OPTION_PLOT = FILTER_OWN };
+#include <stdlib.h>
+
+enum { OPTION_PLOT = FILTER_OWN, OPTION_FOR };
 
 static const struct option long_options[] = {
-    {"plot", required_argument, NULL, OPTION_PLOT}, FILTER_OPTIONS};
+    {"plot", required_argument, NULL, OPTION_PLOT},
+    {"for", required_argument, NULL, OPTION_FOR},
+    FILTER_OPTIONS};
+
+static const filter_words words[] = {FILTER_WORDS(OPTION_FOR, tm_poly_use_names), {0}};
 
 static void write_plot(const filter *f, const char *file, const tm_poly_statistics *s)
 {
@@ -40,24 +46,52 @@ static void measure(const filter *f, const tm_stream *stream, tm_poly_statistics
                     filter_input_name(f), s->unmatched, mesh.facets);
 }
 
+/* Whether the mesh is fit for what it is wanted for; a note says so, and why not. */
+static bool judge(const filter *f, const tm_poly_statistics *s, tm_poly_use use)
+{
+    const tm_poly_finite_volume *fv = &s->fv;
+    const char *name = tm_poly_use_names[use];
+    if (tm_poly_is_fit(s, use)) {
+        filter_note(f, "fit for %s", name);
+        return true;
+    }
+    filter_note(f, "not fit for %s: smallest volume %.3g, %zu polyhedra are no balls",
+                name, s->min_volume, s->non_simple);
+    if (use == TM_USE_VEM)
+        filter_note(f, "%zu are not star-shaped: polylla3d --star makes none",
+                    s->not_star_shaped);
+    if (use == TM_USE_FV)
+        filter_note(
+            f, "%zu facets are not orthogonal, %zu skew, %zu pyramids have no volume",
+            fv->non_orthogonal, fv->skew, fv->wrong_pyramids);
+    return false;
+}
+
 int main(int argc, char **argv)
 {
     filter f = {
         .name = "poly-stats",
-        .synopsis = "[--plot FILE.svg] [FILE]",
+        .synopsis = "[--for fv|vem|dg] [--plot FILE.svg] [FILE]",
         .purpose = "Says how good the polyhedra of a mesh are: how many are simple and\n"
                    "star-shaped, their facets and tetrahedra, edges, angles, kernels.",
-        .help = "      --plot FILE.svg draw histograms by gnuplot\n",
+        .help =
+            "      --for USE       exit 1 if they are not fit for it: fv, finite "
+            "volumes;\n"
+            "                      vem, virtual elements; dg, discontinuous Galerkin\n"
+            "      --plot FILE.svg draw histograms by gnuplot\n",
         .options = long_options,
+        .words = words,
         .letters = FILTER_LETTERS,
         .json_is_output = true,
     };
     const char *plot = NULL;
-    int c;
+    int c, use = TM_POLY_USES;
     filter_start(&f, argc, argv);
     while ((c = filter_option(&f)) != -1)
         if (c == OPTION_PLOT)
             plot = optarg;
+        else if (c == OPTION_FOR)
+            use = filter_word(&f, OPTION_FOR, optarg);
     filter_operands(&f);
     filter_other_file(&f, "--plot", plot);
 
@@ -73,5 +107,6 @@ int main(int argc, char **argv)
         write_plot(&f, plot, &statistics);
     write_report(&f, &statistics);
     tm_stream_free(&stream);
-    return filter_finish(&f, 0);
+    const bool fit = use == TM_POLY_USES || judge(&f, &statistics, (tm_poly_use)use);
+    return filter_finish(&f, fit ? EXIT_SUCCESS : EXIT_GOAL);
 }

@@ -58,9 +58,9 @@
 #include "examine/element_examine.h"
 #include "examine/examination.h"
 #include "examine/jens_statistics.h"
-#include "examine/poly_boundary.h"
-#include "examine/poly_examine.h"
-#include "examine/poly_statistics.h"
+#include "examine/poly/poly_boundary.h"
+#include "examine/poly/poly_examine.h"
+#include "examine/poly/poly_statistics.h"
 #include "examine/tet_statistics.h"
 
 /* format: files of other programs */

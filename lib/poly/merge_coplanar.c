@@ -5,7 +5,7 @@
 #include "facets.h"
 
 #include "../base/array.h"
-#include "../examine/poly_statistics.h"
+#include "../examine/poly/poly_statistics.h"
 #include "../geom/vector.h"
 #include "../stream/block.h"
 

@@ -44,6 +44,12 @@ void tm_json_close(tm_json *json, char bracket)
     json->comma = true;
 }
 
+void tm_json_bool(tm_json *json, const char *key, bool value)
+{
+    begin(json, key);
+    tm_text_string(json->text, value ? "true" : "false");
+}
+
 void tm_json_integer(tm_json *json, const char *key, int64_t value)
 {
     begin(json, key);

@@ -25,6 +25,7 @@ typedef struct tm_json {
 
 void tm_json_open(tm_json *json, const char *key, char bracket); /* '{' or '[' */
 void tm_json_close(tm_json *json, char bracket);                 /* '}' or ']' */
+void tm_json_bool(tm_json *json, const char *key, bool value);
 void tm_json_integer(tm_json *json, const char *key, int64_t value);
 void tm_json_double(tm_json *json, const char *key,
                     double value); /* null if not finite */

@@ -117,6 +117,18 @@ shortest edge / diameter  0.5774  0.6422
 radius of the kernel's ball / diameter  0.1542  0.2214
 volume of the kernel / volume  1  1
 
+from the centroids of cells and facets
+largest non-orthogonality  16.72
+mean  16.72
+facets above 70  0
+largest skewness  0.500
+facets above 4  0
+pyramids without volume  0
+facets that are not all seen  0
+largest bend of a facet  0
+volumes, 95 % to 5 %  6.00
+largest box  1.732
+
 histogram of facets per polyhedron, %
 4 to 5  50.00  ******************************
 6 to 7  50.00  ******************************
@@ -158,7 +170,7 @@ assert list(s) == [
     "euler_failures", "not_star_shaped", "swallowed_vertices", "faces_per_polyhedron",
     "largest_faces", "tets_per_polyhedron", "largest_tets", "input",
     "reduction_percent", "volume", "min_volume", "min_edge", "min_face_area",
-    "min_dihedral", "max_dihedral", "edge_ratio", "kernel_radius", "kernel_ratio",
+    "min_dihedral", "max_dihedral", "finite_volume", "fit_for", "edge_ratio", "kernel_radius", "kernel_ratio",
     "faces_histogram", "tets_histogram", "kernel_ratio_histogram"]
 assert list(s["non_simple_by"]) == ["edges", "vertices", "pieces", "euler"]
 assert s["input"] == {"elements": 13, "faces": None, "edges": None, "nodes": 10}
@@ -347,4 +359,59 @@ polyhedra (.cell) "*"tet-stats, "* ]]
         run -4 poly-stats --plot /dev/full two.tm
         run -4 poly-stats --json /dev/full two.tm
     fi
+}
+
+@test "from the centroids: of parallelepipeds what a few lines of Python find; of cubes nothing" {
+    cubes >cubes.tm
+    poly-stats --for fv --json cubes.json cubes.tm >table
+    python3 - cubes.json <<'END'
+import json, sys
+found = json.load(open(sys.argv[1]))["finite_volume"]
+assert found.pop("max_skewness") < 1e-15
+assert abs(found.pop("max_diameter") - 3 ** 0.5) < 1e-15
+assert found.pop("volume_spread") == 1
+assert len(found) == 7 and not any(found.values())
+END
+    [ "$(json cubes.json fit_for)" = "{'fv': True, 'vem': True, 'dg': True}" ]
+    sheared_boxes 4 >boxes.tm
+    poly-stats --json boxes.json boxes.tm >table
+    python3 - boxes.tm boxes.json <<'END'
+import json, math, sys
+blocks, lines = {}, iter(open(sys.argv[1]))
+for line in lines:
+    if line[0] == '.' and line.strip() != '.end':
+        blocks[line.strip()] = [next(lines).split() for _ in range(int(next(lines).split()[0]))]
+xyz = {r[0]: [float(x) for x in r[1:4]] for r in blocks['.node']}
+nodes = {}
+for r in blocks['.facet']:
+    for c in r[1:3]:
+        nodes.setdefault(c, set()).update(r[4:4 + int(r[3])])
+def mean(names):
+    return [sum(xyz[n][k] for n in names) / len(names) for k in range(3)]
+centre = {c: mean(names) for c, names in nodes.items()}
+angles = []
+for r in blocks['.facet']:
+    if r[2] == '-1':
+        continue
+    a, b, c = (xyz[n] for n in r[4:7])
+    u, v = ([q[k] - p[k] for k in range(3)] for p, q in ((a, b), (a, c)))
+    n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+    d = [centre[r[2]][k] - centre[r[1]][k] for k in range(3)]
+    angles.append(math.degrees(math.acos(sum(p * q for p, q in zip(n, d))
+                                         / math.hypot(*n) / math.hypot(*d))))
+found = json.load(open(sys.argv[2]))["finite_volume"]
+assert abs(found["max_non_orthogonality"] - max(angles)) < 1e-9
+assert abs(found["mean_non_orthogonality"] - sum(angles) / len(angles)) < 1e-9
+assert found["wrong_pyramids"] == found["unseen"] == 0 and found["volume_spread"] > 2
+END
+}
+
+@test "--for: a mesh that is not fit is exit 1, with what is wrong" {
+    awk 'BEGIN { srand(11); print 600, 3; for (i = 1; i <= 600; i++) print i, rand(), rand(), rand() }' |
+        tetgen-mesh --quiet | polylla3d -q --star >stars.tm
+    run -1 --separate-stderr poly-stats --for fv stars.tm
+    [[ $stderr == *"not fit for fv"*"pyramids have no volume"* ]]
+    poly-stats --for vem stars.tm >table
+    poly-stats --for dg -q none.tm >table
+    run -2 poly-stats --for fem stars.tm
 }

@@ -10,8 +10,8 @@
  * sanitizer, no other exit status than 0, 1 and 3. No case may take longer than SECONDS.
  * TM_SEED repeats a run. The first case that fails is kept in a file. */
 #include "../../lib/examine/element_examine.h"
-#include "../../lib/examine/poly_examine.h"
-#include "../../lib/examine/poly_statistics.h"
+#include "../../lib/examine/poly/poly_examine.h"
+#include "../../lib/examine/poly/poly_statistics.h"
 #include "../../lib/tet/improve/improve.h"
 #include "../../lib/tet/lepp/lepp.h"
 #include "../unit/random.h"

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is simple and what is not, on the smallest polyhedra; every defect of a mesh of
  * polyhedra. */
-#include "../../lib/examine/poly_boundary.h"
-#include "../../lib/examine/poly_examine.h"
-#include "../../lib/examine/poly_parts.h"
+#include "../../lib/examine/poly/poly_boundary.h"
+#include "../../lib/examine/poly/poly_examine.h"
+#include "../../lib/examine/poly/poly_parts.h"
 #include "random.h"
 #include "voxels.h"
 

@@ -2,8 +2,8 @@
 /* Volumes of kernels against what they must add up to; shapes that are known; statistics
  * of meshes of which all is known. */
 #include "../../lib/geom/kernel.h"
-#include "../../lib/examine/poly_parts.h"
-#include "../../lib/examine/poly_statistics.h"
+#include "../../lib/examine/poly/poly_parts.h"
+#include "../../lib/examine/poly/poly_statistics.h"
 #include "random.h"
 #include "voxels.h"
 

@@ -6,7 +6,7 @@
 #define CMD_COMMON_PLOT_H
 
 #include "../../../lib/examine/jens_statistics.h"
-#include "../../../lib/examine/poly_statistics.h"
+#include "../../../lib/examine/poly/poly_statistics.h"
 #include "../../../lib/examine/tet_statistics.h"
 #include "../../../lib/tet/lepp/lepp.h"
 #include "../app/filter.h"

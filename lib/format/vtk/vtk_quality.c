@@ -4,7 +4,7 @@
 #include "../../base/parallel.h"
 #include "../../element/jens.h"
 #include "../../element/tet_quality.h"
-#include "../../examine/poly_statistics.h"
+#include "../../examine/poly/poly_statistics.h"
 
 #include <math.h>
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "poly_parts.h"
 
-#include "../base/array.h"
-#include "../geom/vector.h"
+#include "../../base/array.h"
+#include "../../geom/vector.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -5,7 +5,7 @@
 
 #include "poly_examine.h"
 #include "poly_boundary.h"
-#include "../geom/kernel.h"
+#include "../../geom/kernel.h"
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "poly_parts.h"
 
-#include "../base/sum.h"
-#include "../geom/predicates.h"
-#include "../geom/vector.h"
+#include "../../base/sum.h"
+#include "../../geom/predicates.h"
+#include "../../geom/vector.h"
 
 #include <float.h>
 #include <math.h>

@@ -3,10 +3,10 @@
 #ifndef TM_EXAMINE_POLY_EXAMINE_H
 #define TM_EXAMINE_POLY_EXAMINE_H
 
-#include "../base/extern_c.h"
-#include "../base/error.h"
-#include "examination.h"
-#include "../mesh/poly_arrays.h"
+#include "../../base/extern_c.h"
+#include "../../base/error.h"
+#include "../examination.h"
+#include "../../mesh/poly_arrays.h"
 
 TM_EXTERN_C_BEGIN
 

@@ -4,12 +4,13 @@
 #ifndef TM_EXAMINE_POLY_STATISTICS_H
 #define TM_EXAMINE_POLY_STATISTICS_H
 
-#include "../base/extern_c.h"
-#include "../base/error.h"
-#include "../text/json.h"
-#include "../text/text.h"
-#include "../mesh/poly_arrays.h"
+#include "../../base/extern_c.h"
+#include "../../base/error.h"
+#include "../../text/json.h"
+#include "../../text/text.h"
+#include "../../mesh/poly_arrays.h"
 #include "poly_boundary.h"
+#include "poly_finite_volume.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -61,7 +62,21 @@ typedef struct tm_poly_statistics {
     size_t faces[TM_COUNT_BINS]; /* polyhedra by their facets, and */
     size_t tets[TM_COUNT_BINS];  /* by their tetrahedra, if input.elements > 0 */
     size_t kernel_ratios[TM_KERNEL_RATIO_BINS];
+    tm_poly_finite_volume fv;
 } tm_poly_statistics;
+
+/* What polyhedra may be for, and whether all of a mesh are fit for it: all are balls with
+ * a volume above 0, and */
+typedef enum tm_poly_use {
+    TM_USE_FV,  /* finite volumes: within checkMesh's limits, see poly_finite_volume.h */
+    TM_USE_VEM, /* virtual elements: star-shaped, too */
+    TM_USE_DG,  /* discontinuous Galerkin methods: nothing more */
+    TM_POLY_USES
+} tm_poly_use;
+
+extern const char *const tm_poly_use_names[TM_POLY_USES];
+
+bool tm_poly_is_fit(const tm_poly_statistics *statistics, tm_poly_use use);
 
 /* The first count of a bin: 1, 2, 3, 4, 6, 8, 12, 16, 24 … two for each power of 2. */
 size_t tm_count_bin_begin(size_t bin);

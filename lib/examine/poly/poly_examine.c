@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "poly_examine.h"
 
-#include "../base/array.h"
-#include "../base/parallel.h"
-#include "../base/sum.h"
-#include "../geom/vector.h"
+#include "../../base/array.h"
+#include "../../base/parallel.h"
+#include "../../base/sum.h"
+#include "../../geom/vector.h"
 #include "poly_boundary.h"
 #include "poly_parts.h"
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "poly_statistics.h"
 
-#include "../base/array.h"
-#include "../base/parallel.h"
-#include "../base/sum.h"
+#include "../../base/array.h"
+#include "../../base/parallel.h"
+#include "../../base/sum.h"
 #include "poly_parts.h"
 
 #include <math.h>
@@ -315,8 +315,25 @@ tm_status tm_poly_statistics_measure(tm_poly_statistics *statistics,
                                      const tm_poly_arrays *mesh, unsigned threads,
                                      tm_error *error)
 {
-    const tm_status status = measure_cells(statistics, mesh, threads, error);
-    return status == TM_OK ? find_sizes(statistics, mesh, error) : status;
+    tm_status status = measure_cells(statistics, mesh, threads, error);
+    if (status == TM_OK)
+        status = find_sizes(statistics, mesh, error);
+    if (status == TM_OK)
+        status = tm_poly_finite_volume_measure(&statistics->fv, mesh, error);
+    return status;
+}
+
+const char *const tm_poly_use_names[TM_POLY_USES] = {
+    [TM_USE_FV] = "fv", [TM_USE_VEM] = "vem", [TM_USE_DG] = "dg"};
+
+bool tm_poly_is_fit(const tm_poly_statistics *s, tm_poly_use use)
+{
+    const tm_poly_finite_volume *fv = &s->fv;
+    if (s->unmatched > 0 || s->non_simple > 0 ||
+        (s->size.elements > 0 && !(s->min_volume > 0)))
+        return false;
+    return use == TM_USE_FV ? fv->non_orthogonal + fv->skew + fv->wrong_pyramids == 0
+                            : use == TM_USE_DG || s->not_star_shaped == 0;
 }
 
 /* Each polyhedron alone ------------------------------------------------------------- */

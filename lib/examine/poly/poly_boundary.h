@@ -5,9 +5,9 @@
 #ifndef TM_EXAMINE_POLY_BOUNDARY_H
 #define TM_EXAMINE_POLY_BOUNDARY_H
 
-#include "../base/extern_c.h"
-#include "../base/error.h"
-#include "../mesh/poly_arrays.h"
+#include "../../base/extern_c.h"
+#include "../../base/error.h"
+#include "../../mesh/poly_arrays.h"
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "poly_boundary.h"
 
-#include "../base/array.h"
-#include "../base/disjoint_sets.h"
-#include "../base/hash.h"
+#include "../../base/array.h"
+#include "../../base/disjoint_sets.h"
+#include "../../base/hash.h"
 
 #include <stdlib.h>
 #include <string.h>

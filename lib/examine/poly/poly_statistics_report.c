@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* poly_statistics.h as JSON and as tables. */
-#include "../text/report.h"
+#include "../../text/report.h"
 #include "poly_statistics.h"
 
 #include <math.h>
@@ -54,6 +54,23 @@ static const tm_report_row shape[] = {
     ROW("max_dihedral", "largest dihedral angle", "%.4f", max_dihedral),
     {0}};
 
+static const tm_report_row finite_volume[] = {
+    TM_REPORT_HEADING_ROW("from the centroids of cells and facets"),
+    TM_REPORT_OPEN_ROW("finite_volume"),
+    ROW("max_non_orthogonality", "  largest non-orthogonality", "%.2f",
+        fv.max_non_orthogonality),
+    ROW("mean_non_orthogonality", "  mean", "%.2f", fv.mean_non_orthogonality),
+    ROW("non_orthogonal", "  facets above 70", NULL, fv.non_orthogonal),
+    ROW("max_skewness", "  largest skewness", "%.3f", fv.max_skewness),
+    ROW("skew", "  facets above 4", NULL, fv.skew),
+    ROW("wrong_pyramids", "  pyramids without volume", NULL, fv.wrong_pyramids),
+    ROW("unseen", "  facets that are not all seen", NULL, fv.unseen),
+    ROW("max_bend", "  largest bend of a facet", "%.3g", fv.max_bend),
+    ROW("volume_spread", "  volumes, 95 % to 5 %", "%.2f", fv.volume_spread),
+    ROW("max_diameter", "  largest box", "%.4g", fv.max_diameter),
+    TM_REPORT_CLOSE_ROW,
+    {0}};
+
 static const tm_report_row min_mean[] = {
     TM_REPORT_ROW("min", NULL, NULL, tm_poly_range, min),
     TM_REPORT_ROW("mean", NULL, NULL, tm_poly_range, mean),
@@ -99,6 +116,11 @@ void tm_poly_statistics_json(tm_json *json, const tm_poly_statistics *s)
     reduction_json(json, &s->size, &s->input);
     tm_report_json(json, volume, s);
     tm_report_json(json, shape, s);
+    tm_report_json(json, finite_volume, s);
+    tm_json_open(json, "fit_for", '{');
+    for (int use = 0; use < TM_POLY_USES; use++)
+        tm_json_bool(json, tm_poly_use_names[use], tm_poly_is_fit(s, (tm_poly_use)use));
+    tm_json_close(json, '}');
     tm_report_object(json, "edge_ratio", min_mean, &s->edge_ratio);
     tm_report_object(json, "kernel_radius", min_mean, &s->kernel_radius);
     tm_report_object(json, "kernel_ratio", min_mean, &s->kernel_ratio);
@@ -238,6 +260,7 @@ void tm_poly_statistics_table(tm_text *text, const tm_poly_statistics *s)
     reduction_rows(text, &s->size, &s->input);
     table(text, shape, s);
     range_rows(text, s);
+    table(text, finite_volume, s);
     count_histogram(text, "histogram of facets per polyhedron, %", s->faces,
                     s->size.elements);
     if (s->input.elements > 0)
