@@ -372,7 +372,7 @@ assert abs(found.pop("max_diameter") - 3 ** 0.5) < 1e-15
 assert found.pop("volume_spread") == 1
 assert len(found) == 7 and not any(found.values())
 END
-    [ "$(json cubes.json fit_for)" = "{'fv': True, 'vem': True, 'dg': True}" ]
+    [ "$(json cubes.json fit_for)" = '{"fv": true, "vem": true, "dg": true}' ]
     sheared_boxes 4 >boxes.tm
     poly-stats --json boxes.json boxes.tm >table
     python3 - boxes.tm boxes.json <<'END'

@@ -55,6 +55,7 @@ static const tm_report_row shape[] = {
     {0}};
 
 static const tm_report_row finite_volume[] = {
+    TM_REPORT_HEADING_ROW(""),
     TM_REPORT_HEADING_ROW("from the centroids of cells and facets"),
     TM_REPORT_OPEN_ROW("finite_volume"),
     ROW("max_non_orthogonality", "  largest non-orthogonality", "%.2f",
