@@ -8,6 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Of a mesh with more elements nothing is tried: it would be made twice again. */
+static const size_t most_to_try = 5000000;
+
 /* A stage. */
 static const char splitting[] = "splitting octants";
 
@@ -139,8 +142,9 @@ tm_status tm_octree_mesh_refine_lost(tm_octree_mesh *mesh, tm_octree *octree,
         levels > 0 ? make_without_loss(mesh, octree, surface, deepest, progress, error)
                    : tm_octree_mesh_make(mesh, octree, surface, progress, error);
     for (bool better = levels > 0; status == TM_OK && better;) {
-        uint8_t *split =
-            mesh->report.off_surface > 0 ? mark_off_surface(mesh, octree, deepest) : NULL;
+        const bool tries =
+            mesh->report.off_surface > 0 && mesh->assembly.mesh.elements <= most_to_try;
+        uint8_t *split = tries ? mark_off_surface(mesh, octree, deepest) : NULL;
         if (!split)
             break;
         status =
