@@ -8,6 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Of a mesh with more elements nothing is tried: it would be made twice again. */
+static const size_t most_to_try = 5000000;
+
 /* A stage. */
 static const char splitting[] = "splitting octants";
 
@@ -78,14 +81,27 @@ static uint8_t *mark_off_surface(const tm_octree_mesh *mesh, const tm_octree *oc
     return any ? split : NULL;
 }
 
+/* By how much pieces and Euler number of the boundary differ from the surface's. */
+static uint64_t topology_missing(const tm_octree_mesh *mesh, const tm_surface *surface)
+{
+    const tm_octree_mesh_report *r = &mesh->report;
+    const int64_t pieces = (int64_t)r->components - (int64_t)surface->components;
+    const int64_t euler = r->euler - surface->euler;
+    if (surface->by_winding)
+        return 0;
+    return (uint64_t)(pieces < 0 ? -pieces : pieces) +
+           (uint64_t)(euler < 0 ? -euler : euler);
+}
+
 /* The mesh of a copy of the octree with leaves split; *octree becomes the copy if fewer
- * nodes are off the surface, else the mesh is made of it again. Meshes are large: there
- * is only one at a time. */
+ * nodes are off the surface and its topology is as good, else the mesh is made of it
+ * again. Meshes are large: there is only one at a time. */
 static tm_status try_split(tm_octree_mesh *mesh, tm_octree *octree, tm_surface *surface,
                            unsigned deepest, const uint8_t *split, bool *better,
                            const tm_progress *progress, tm_error *error)
 {
     const size_t off_surface = mesh->report.off_surface;
+    const uint64_t missing = topology_missing(mesh, surface);
     tm_octree finer;
     tm_octree_mesh_free(mesh);
     tm_progress_stage(progress, splitting);
@@ -94,7 +110,8 @@ static tm_status try_split(tm_octree_mesh *mesh, tm_octree *octree, tm_surface *
         status = tm_octree_refine(&finer, surface, split, error);
     if (status == TM_OK)
         status = make_without_loss(mesh, &finer, surface, deepest, progress, error);
-    *better = status == TM_OK && mesh->report.off_surface < off_surface;
+    *better = status == TM_OK && mesh->report.off_surface < off_surface &&
+              topology_missing(mesh, surface) <= missing;
     if (*better) {
         tm_octree_free(octree);
         *octree = finer;
@@ -125,8 +142,9 @@ tm_status tm_octree_mesh_refine_lost(tm_octree_mesh *mesh, tm_octree *octree,
         levels > 0 ? make_without_loss(mesh, octree, surface, deepest, progress, error)
                    : tm_octree_mesh_make(mesh, octree, surface, progress, error);
     for (bool better = levels > 0; status == TM_OK && better;) {
-        uint8_t *split =
-            mesh->report.off_surface > 0 ? mark_off_surface(mesh, octree, deepest) : NULL;
+        const bool tries =
+            mesh->report.off_surface > 0 && mesh->assembly.mesh.elements <= most_to_try;
+        uint8_t *split = tries ? mark_off_surface(mesh, octree, deepest) : NULL;
         if (!split)
             break;
         status =

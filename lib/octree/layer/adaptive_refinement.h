@@ -11,7 +11,8 @@ TM_EXTERN_C_BEGIN
 
 /* Makes the mesh, of an octree in which leaves are split while there are some (1) where a
  * part of the surface is lost (tm_interior_find_lost()), (2) at boundary nodes that had
- * to be off the surface, as long as that makes them fewer; by at most `levels` more than
+ * to be off the surface, as long as that makes them fewer, in meshes of up to 5 000 000
+ * elements; by at most `levels` more than
  * the deepest leaf at first. `progress` may be NULL. Errors and cost as of
  * tm_octree_mesh_make(); *mesh is to be freed. */
 tm_status tm_octree_mesh_refine_lost(tm_octree_mesh *mesh, tm_octree *octree,

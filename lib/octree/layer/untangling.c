@@ -165,29 +165,45 @@ static tm_node_rule *find_rules(const tm_octree_mesh *m)
     return rule;
 }
 
+/* Improves what is below each goal in turn: first what is bad, then what could be better,
+ * with fewer measurements where that is much: a later goal makes nothing fall below it
+ * that is not, and nothing worse that is. */
+static tm_status improve(tm_octree_mesh *m, tm_node_rule *rule,
+                         const tm_boundary *boundary, const tm_progress *progress,
+                         double *worst, tm_error *error)
+{
+    /* What can be mended takes few measurements of elements; where the surface is
+     * too fine for the leaves there would be no end. */
+    static const size_t at_least[] = {1500000, 500000}, each[] = {1, 2};
+    static const double goal[] = {0.2, 0.3};
+    tm_status status = TM_OK;
+    for (size_t g = 0; g < sizeof goal / sizeof *goal && status == TM_OK; g++) {
+        const tm_optimise_options options = {
+            .threshold = goal[g],
+            .off_surface_threshold = goal[g],
+            .effort = 1,
+            .most_measured = at_least[g] + each[g] * m->assembly.mesh.elements,
+            .progress = progress};
+        tm_optimise_report report;
+        status = tm_mixed_optimise(&m->assembly.mesh, rule, boundary, &options, &report,
+                                   error);
+        *worst = report.worst_after;
+    }
+    return status;
+}
+
 tm_status tm_untangle_layer(tm_octree_mesh *mesh, const tm_octree *octree,
                             const tm_surface *surface, const tm_progress *progress,
                             tm_error *error)
 {
-    const double threshold = 0.2;
     const tm_boundary boundary = tm_boundary_of_surface(surface);
-    /* What can be mended takes few measurements of elements; where the surface is
-     * too fine for the leaves there would be no end. */
-    const size_t few = 1, at_least = 1500000;
-    const tm_optimise_options options = {
-        .threshold = threshold,
-        .off_surface_threshold = threshold,
-        .effort = 1,
-        .most_measured = at_least + few * mesh->assembly.mesh.elements,
-        .progress = progress};
-    tm_optimise_report report;
     tm_node_rule *rule = find_rules(mesh);
     if (!rule)
         return tm_fail_memory(error);
-    tm_status status = tm_mixed_optimise(&mesh->assembly.mesh, rule, &boundary, &options,
-                                         &report, error);
+    double worst = 1;
+    tm_status status = improve(mesh, rule, &boundary, progress, &worst, error);
     free(rule);
-    if (status == TM_OK && (report.worst_after < least_valid || any_is_turned(mesh)))
+    if (status == TM_OK && (worst < least_valid || any_is_turned(mesh)))
         status = hold_back(mesh, octree, error);
     return status;
 }
