@@ -134,7 +134,8 @@ static void check_stream(repair_case *c, const tm_repair_report *report)
     assert_int_equal(tm_stream_find(&c->stream, ".mix")->count, elements);
     const tm_mesh_view view = tm_mesh_view_of_mixed(&c->stream);
     assert_ok(tm_element_examine(&found, &view, 1, &error), &error);
-    assert_int_equal(tm_examination_is_good(&found), report->after.invalid == 0);
+    /* It looks at corners: a hexahedron that is inverted between them is good to it. */
+    assert_true(report->after.invalid > 0 || tm_examination_is_good(&found));
     check_octants(&c->stream);
     check_facets(&c->stream, &found);
     check_attributes(&c->stream, report->after.off_surface);
@@ -230,7 +231,6 @@ static void test_split(void **unused)
                                            .iterations = i < 2 ? 4 : 1,
                                            .growth = of[i].growth});
         assert_true(report.iterations > 0);
-        printf("NONE %zu\n", i);
         assert_true(i != 0 || report.after.bad == 0);
     }
 }

@@ -280,6 +280,58 @@ static void test_remake(void **unused)
     }
 }
 
+/* A cube with a pyramid on each side: leaves inside do not reach the tips. */
+static void add_pyramids(tm_polygon_surface *p)
+{
+    static const uint32_t side[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                        {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    uint32_t node[8];
+    for (unsigned i = 0; i < 8; i++)
+        node[i] = add_node(p, i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
+    for (size_t f = 0; f < 6; f++) {
+        const double sign = f % 2 ? 4 : -4;
+        const uint32_t tip = add_node(p, f / 2 == 0 ? sign : 0, f / 2 == 1 ? sign : 0,
+                                      f / 2 == 2 ? sign : 0);
+        for (size_t i = 0; i < 4; i++)
+            add_triangle(p, node[side[f][i]], node[side[f][(i + 1) % 4]], tip);
+    }
+}
+
+static size_t count_on(const tm_repair_state *s, uint8_t place)
+{
+    size_t count = 0;
+    for (size_t v = 0; v < s->mesh.nodes; v++)
+        count += s->on[v] == place;
+    return count;
+}
+
+/* Octants are split near tips that reach out of them: corners and sharp edges stay. */
+static void test_remake_tips(void **unused)
+{
+    (void)unused;
+    tm_error error;
+    tm_polygon_surface p;
+    repair_case c;
+    tm_repair_state made = {0};
+    uint32_t *octant;
+    size_t count;
+    tm_polygon_surface_init(&p);
+    add_pyramids(&p);
+    start_case(&c, &p, 4);
+    assert_int_equal(count_on(&c.state, TM_NODE_ON_CORNER), c.surface.corners);
+    assert_ok(tm_repair_bad_octants(&c.state, 0.25, false, &octant, &count, &error),
+              &error);
+    assert_true(count > 0);
+    assert_ok(tm_repair_remake(&made, &c.state, &c.surface, octant, count, &error),
+              &error);
+    assert_int_equal(count_on(&made, TM_NODE_ON_CORNER), c.surface.corners);
+    assert_true(count_on(&made, TM_NODE_ON_CURVE) >=
+                count_on(&c.state, TM_NODE_ON_CURVE));
+    free(octant);
+    tm_repair_state_free(&made);
+    end_case(&c);
+}
+
 static void make_hexahedron(double xyz[8][3], double by)
 {
     static const double cube[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
@@ -486,11 +538,12 @@ int main(void)
 {
     random_start();
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_least),   cmocka_unit_test(test_uncertified),
-        cmocka_unit_test(test_better),  cmocka_unit_test(test_star),
-        cmocka_unit_test(test_rules),   cmocka_unit_test(test_move),
-        cmocka_unit_test(test_divide),  cmocka_unit_test(test_sharp_corners),
-        cmocka_unit_test(test_octants), cmocka_unit_test(test_remake),
+        cmocka_unit_test(test_least),       cmocka_unit_test(test_uncertified),
+        cmocka_unit_test(test_better),      cmocka_unit_test(test_star),
+        cmocka_unit_test(test_rules),       cmocka_unit_test(test_move),
+        cmocka_unit_test(test_divide),      cmocka_unit_test(test_sharp_corners),
+        cmocka_unit_test(test_octants),     cmocka_unit_test(test_remake),
+        cmocka_unit_test(test_remake_tips),
     };
     return cmocka_run_group_tests(tests, start_mpi, NULL);
 }
