@@ -70,10 +70,12 @@ static void test_move(void **unused)
         tm_repair_state old = copy_elements(&c.state);
         const tm_repair_score before = measured(&c.state, threshold);
         tm_repair_score after = before;
-        assert_ok(tm_repair_move(&c.state, &c.surface, threshold,
-                                 threshold / (1 << random_below(4)), random_below(3),
-                                 &after, &error),
+        const tm_repair_effort effort = {
+            random_below(3), random_between(0, 0.3),
+            random_below(2) ? 1.0 / (1 << random_below(4)) : 0, 10000, 100000};
+        assert_ok(tm_repair_move(&c.state, &c.surface, threshold, effort, &after, &error),
                   &error);
+        assert_true(effort.share > 0 || after.off_surface == before.off_surface);
         check_score(&c.state, &after, threshold);
         check_not_worse(&before, &after);
         check_same_elements(&old, &c.state);
@@ -396,8 +398,8 @@ static void test_uncertified(void **unused)
     assert_int_equal(score.invalid, 1);
     assert_int_equal(score.bad, 1);
     assert_true(score.worst > 0.02);
-    assert_true(score.floor == 0);
-    const tm_repair_score valid = {.bad = 1, .worst = 0.001, .floor = 0.001};
+    assert_true(score.least == 0);
+    const tm_repair_score valid = {.bad = 1, .worst = 0.02, .least = 0.02, .good = 0.2};
     assert_true(tm_repair_better(&valid, &score));
     assert_false(tm_repair_better(&score, &valid));
 }
@@ -426,7 +428,7 @@ static void test_least(void **unused)
     }
 }
 
-/* All pairs of scores: never better both ways, never below the floor. */
+/* All pairs of scores: never better both ways, never where one thing is worse. */
 static void test_better(void **unused)
 {
     (void)unused;
@@ -438,7 +440,8 @@ static void test_better(void **unused)
                                  .off_surface = random_below(2),
                                  .worst = random_between(0, 0.4)};
         s[i].bad = s[i].invalid + random_below(2);
-        s[i].floor = s[i].invalid ? 0 : fmin(s[i].worst, threshold);
+        s[i].least = s[i].invalid ? 0 : s[i].worst;
+        s[i].good = threshold;
     }
     for (int i = 0; i < SCORES; i++)
         for (int j = 0; j < SCORES; j++) {
@@ -446,12 +449,19 @@ static void test_better(void **unused)
             assert_false(better && tm_repair_better(&s[j], &s[i]));
             if (better)
                 check_not_worse(&s[j], &s[i]);
-            if (s[i].invalid < s[j].invalid)
-                assert_int_equal(better, s[i].worst >= s[j].floor);
+            const bool other = s[i].off_surface != s[j].off_surface ||
+                               s[i].bad != s[j].bad || s[i].least > s[j].least;
+            if (s[i].invalid == s[j].invalid && s[i].off_surface <= s[j].off_surface &&
+                s[i].bad <= s[j].bad && s[i].worst >= fmin(s[j].worst, threshold))
+                assert_int_equal(better, other);
         }
-    const tm_repair_score few = {.bad = 1, .worst = 1e-15, .floor = 1e-15};
-    const tm_repair_score many = {.bad = 9, .worst = 0.18, .floor = 0.18};
+    const tm_repair_score few = {.bad = 1, .worst = 1e-15, .least = 1e-15, .good = 0.2};
+    const tm_repair_score many = {.bad = 9, .worst = 0.18, .least = 0.18, .good = 0.2};
     assert_false(tm_repair_better(&few, &many));
+    tm_repair_score held = many;
+    held.off_surface = 2;
+    assert_false(tm_repair_better(&few, &held));
+    assert_true(tm_repair_better(&many, &held));
 }
 
 /* Parts of an element fill it, whichever faces may be cut. */

@@ -48,8 +48,11 @@ static tm_status add_division(divider *d, size_t e, double jens, unsigned open,
     division *here = &grown[d->divisions];
     here->element = (uint32_t)e;
     const tm_status status = tm_division_find(&here->parts, &d->state->mesh, e, open,
-                                              fmax(d->threshold, TM_REPAIR_LEAST), error);
-    d->divisions += here->parts.worst > tm_repair_quality(&d->state->mesh, e, jens);
+                                              fmax(d->threshold, TM_REPAIR_FLAT), error);
+    const double quality = tm_repair_quality(&d->state->mesh, e, jens);
+    d->divisions += here->parts.worst > quality &&
+                    here->parts.worst >= fmin(jens, TM_REPAIR_FLAT) &&
+                    (here->parts.low <= 1 || quality < TM_REPAIR_LEAST);
     return status;
 }
 
@@ -58,7 +61,9 @@ static tm_status find_divisions(divider *d, tm_error *error)
     const tm_mixed_mesh *mesh = &d->state->mesh;
     size_t next = 0;
     tm_status status = tm_mixed_boundary_faces(mesh, &d->face, &d->faces, error);
-    for (size_t e = 0; status == TM_OK && e < mesh->elements; e++) {
+    for (size_t e = 0;
+         status == TM_OK && e < mesh->elements && !tm_stop_is_wanted(d->state->stop);
+         e++) {
         const double jens = tm_mixed_jens(mesh, e);
         if (mesh->start[e + 1] - mesh->start[e] > TM_TET_NODES &&
             tm_repair_is_bad(mesh, e, jens, d->threshold))
@@ -152,15 +157,16 @@ tm_status tm_repair_divide(tm_repair_state *state, const tm_surface *surface,
                            double threshold, tm_repair_score *score, size_t *divided,
                            tm_error *error)
 {
+    const tm_repair_effort effort = {1, TM_REPAIR_FLAT, 1, 4000, 200000};
     divider d = {.state = state, .threshold = threshold};
-    tm_repair_state made = {.progress = state->progress};
+    tm_repair_state made = {.progress = state->progress, .stop = state->stop};
     tm_progress_stage(state->progress, "dividing elements");
     tm_status status = find_divisions(&d, error);
     if (status == TM_OK && d.divisions > 0)
         status = apply(&d, &made, error);
     if (status == TM_OK && d.divisions > 0) {
         tm_repair_score now = tm_repair_measure(&made, threshold);
-        status = tm_repair_move(&made, surface, threshold, threshold, 1, &now, error);
+        status = tm_repair_move(&made, surface, threshold, effort, &now, error);
         if (status == TM_OK && tm_repair_better(&now, score)) {
             *score = now;
             *divided += d.divisions;

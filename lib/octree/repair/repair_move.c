@@ -7,68 +7,87 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* How often elements that became uncertified are worked on, and how much better their
- * corners have to be. */
+/* How often elements that are not certified are worked on, and how much better their
+ * corners have to be each time. */
 enum { ROUNDS = 3 };
 static const double certified_step = 0.05;
 
 /* What each element has to be: an element that is not certified has to be better than it
- * is. */
-static void set_thresholds(const tm_repair_state *state, double threshold, double *to)
+ * is. Returns how many those are. */
+static size_t set_thresholds(const tm_repair_state *state, double threshold, double *to)
 {
     const tm_mixed_mesh *mesh = &state->mesh;
-    const double least = fmax(threshold, TM_REPAIR_LEAST);
+    size_t count = 0;
     for (size_t e = 0; e < mesh->elements; e++) {
         const double jens = tm_mixed_jens(mesh, e);
-        const bool uncertified = jens >= least && tm_repair_is_bad(mesh, e, jens, 0);
-        to[e] = uncertified ? jens + certified_step : least;
+        const bool uncertified = jens >= threshold && tm_repair_is_bad(mesh, e, jens, 0);
+        to[e] = uncertified ? jens + certified_step : threshold;
+        count += uncertified;
     }
+    return count;
 }
 
-static tm_status move(tm_repair_state *state, const tm_boundary *boundary,
-                      const tm_optimise_options *options, tm_error *error)
+typedef struct {
+    tm_repair_state *state;
+    const tm_boundary *boundary; /* NULL: nodes of it do not move */
+    double *thresholds;          /* [elements] */
+    tm_optimise_options options;
+} mover;
+
+/* Moves so many times, as long as there are uncertified elements, then takes back what is
+ * not better. */
+static tm_status move(mover *m, int rounds, double threshold, tm_repair_score *score,
+                      tm_error *error)
 {
-    tm_optimise_report report;
-    return tm_mixed_optimise(&state->mesh, state->rule, boundary, options, &report,
-                             error);
+    tm_repair_points before = {0};
+    bool changed = false;
+    tm_status status = tm_repair_save(&before, m->state, error);
+    for (int round = 0; status == TM_OK && round < rounds; round++) {
+        tm_optimise_report report;
+        const size_t uncertified =
+            set_thresholds(m->state, m->options.threshold, m->thresholds);
+        if (tm_stop_is_wanted(m->options.stop) || (rounds > 1 && uncertified == 0))
+            break;
+        status = tm_mixed_optimise(&m->state->mesh, m->state->rule, m->boundary,
+                                   &m->options, &report, error);
+        changed |=
+            report.moved > 0 || report.off_surface_after != report.off_surface_before;
+    }
+    if (status == TM_OK && changed)
+        status = tm_repair_take_back(m->state, &before, threshold, score->least, error);
+    if (status == TM_OK && changed)
+        *score = tm_repair_measure(m->state, threshold);
+    tm_repair_points_free(&before);
+    return status;
 }
 
 tm_status tm_repair_move(tm_repair_state *state, const tm_surface *surface,
-                         double threshold, double off_surface_threshold, unsigned effort,
+                         double threshold, tm_repair_effort effort,
                          tm_repair_score *score, tm_error *error)
 {
     tm_boundary boundary = {0};
     if (surface)
         boundary = tm_boundary_of_surface(surface);
-    tm_repair_points best = {0};
-    double *thresholds = tm_new(state->mesh.elements, sizeof *thresholds);
-    tm_status status =
-        thresholds ? tm_repair_save(&best, state, error) : tm_fail_memory(error);
-    tm_optimise_options options = {.thresholds = thresholds,
-                                   .threshold = threshold,
-                                   .off_surface_threshold =
-                                       fmax(off_surface_threshold, TM_REPAIR_LEAST),
-                                   .effort = effort,
-                                   .progress = state->progress};
-    bool is_best = true;
-    for (int round = 0; status == TM_OK && round < ROUNDS; round++) {
-        set_thresholds(state, threshold, thresholds);
-        status = move(state, surface ? &boundary : NULL, &options, error);
-        if (status != TM_OK)
-            break;
-        const tm_repair_score now = tm_repair_measure(state, threshold);
-        is_best = tm_repair_better(&now, score);
-        if (is_best) {
-            *score = now;
-            tm_repair_points_free(&best);
-            status = tm_repair_save(&best, state, error);
-        }
-        if (now.invalid == 0)
-            break;
-    }
-    if (status == TM_OK && !is_best)
-        tm_repair_restore(&best, state);
-    tm_repair_points_free(&best);
-    free(thresholds);
+    const double least = fmax(threshold, effort.aim);
+    mover m = {
+        .state = state,
+        .boundary = surface ? &boundary : NULL,
+        .thresholds = tm_new(state->mesh.elements, sizeof *m.thresholds),
+        .options = {.threshold = least,
+                    .off_surface_threshold =
+                        effort.share > 0 ? fmax(effort.share * least, TM_REPAIR_FLAT) : 0,
+                    .effort = effort.effort,
+                    .most_measured = effort.at_least +
+                                     effort.measured * (score->bad + score->off_surface),
+                    .progress = state->progress,
+                    .stop = state->stop}};
+    if (!m.thresholds)
+        return tm_fail_memory(error);
+    m.options.thresholds = m.thresholds;
+    tm_status status = move(&m, 1, threshold, score, error);
+    m.options.off_surface_threshold = 0;
+    if (status == TM_OK && score->invalid > 0)
+        status = move(&m, ROUNDS, threshold, score, error);
+    free(m.thresholds);
     return status;
 }

@@ -100,6 +100,7 @@ tm_status tm_repair_remake(tm_repair_state *to, const tm_repair_state *from,
     tm_octree_mesh made = {0};
     to->remade = true;
     to->progress = from->progress;
+    to->stop = from->stop;
     tm_progress_within within;
     const tm_progress *inner =
         tm_progress_begin_within(&within, to->progress, "splitting octants");
