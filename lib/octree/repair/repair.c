@@ -16,9 +16,13 @@ static const tm_repair_effort efforts[] = {{0, TM_REPAIR_GOOD, 1, 3000, 1000000}
                                            {3, TM_REPAIR_GOOD, 0x1p-4, 12000, 1000000}};
 enum { EFFORTS = sizeof efforts / sizeof *efforts };
 
-/* Meshes are made of split octants, all in all, of so many times the elements that came,
- * and of so many more; and no more after so many that were not better. */
-enum { REMADE_TIMES = 4, REMADE_MORE = 300000, FAILURES = 3 };
+/* Meshes made of split octants have so many elements all in all, or a large one is made
+ * once; and no more are made after so many that were not better. */
+enum { REMADE_MOST = 300000, FAILURES = 2 };
+
+/* A mesh that has so many times the nodes off the surface after the first effort that
+ * another one has, and some, will not be better than that. */
+enum { HELD_TIMES = 2, HELD_MORE = 10 };
 
 /* What became of a step. */
 typedef enum { NOT_BETTER, BETTER, TOO_LARGE } outcome;
@@ -61,11 +65,11 @@ static tm_status make_valid(const repair *r, tm_repair_state *state, tm_error *e
 
 /* Makes elements anew, and divides them: those that are bad, and where nodes are off the
  * surface all that are not good, to make room. */
-static tm_status make_others(const repair *r, tm_repair_state *state,
+static tm_status make_others(const repair *r, tm_repair_state *state, double threshold,
                              tm_repair_score *score, tm_error *error)
 {
-    const double t = r->options->threshold;
-    const double to = score->off_surface > 0 ? fmax(t, TM_REPAIR_GOOD) : t;
+    const double to =
+        score->off_surface > 0 ? fmax(threshold, TM_REPAIR_GOOD) : threshold;
     tm_status status = TM_OK;
     *score = tm_repair_measure(state, to);
     if (score->bad > 0 && !is_stopped(r))
@@ -74,29 +78,57 @@ static tm_status make_others(const repair *r, tm_repair_state *state,
     if (status == TM_OK && score->bad > 0 && !is_stopped(r))
         status =
             tm_repair_divide(state, r->surface, to, score, &r->report->divided, error);
-    *score = tm_repair_measure(state, t);
+    *score = tm_repair_measure(state, threshold);
     return status;
 }
 
-/* All that helps without other octants; less of it once there are more than `held` nodes
- * off the surface all the same. */
-static tm_status mend(const repair *r, tm_repair_state *state, size_t held,
-                      tm_repair_score *score, tm_error *error)
+/* All that helps without other octants, for a threshold; less of it once there are more
+ * than `held` nodes off the surface all the same. */
+static tm_status mend_to(const repair *r, tm_repair_state *state, double threshold,
+                         size_t held, tm_repair_score *score, tm_error *error)
 {
-    const double t = r->options->threshold;
     tm_status status = TM_OK;
     if (score->invalid > 0) {
         status = make_valid(r, state, error);
-        *score = tm_repair_measure(state, t);
+        *score = tm_repair_measure(state, threshold);
     }
     for (size_t i = 0;
          i < EFFORTS && status == TM_OK && !is_done(score) && !is_stopped(r); i++) {
         if (i + 1 == EFFORTS)
             tm_repair_free_off_surface(state);
-        status = tm_repair_move(state, r->surface, t, efforts[i], score, error);
+        status = tm_repair_move(state, r->surface, threshold, efforts[i], score, error);
+        if (held < SIZE_MAX && score->off_surface / HELD_TIMES > held + HELD_MORE)
+            return status;
         if (status == TM_OK && i > 0 && !is_done(score) && score->off_surface <= held)
-            status = make_others(r, state, score, error);
+            status = make_others(r, state, threshold, score, error);
     }
+    return status;
+}
+
+/* The same for the threshold of the options. Where elements are invalid, first all is done
+ * that would be without one, so that it never leaves more of them; if in the end nothing
+ * is better, it begins again from what there was. */
+static tm_status mend(const repair *r, tm_repair_state *state, size_t held,
+                      tm_repair_score *score, tm_error *error)
+{
+    const double t = r->options->threshold;
+    if (t == 0 || score->invalid == 0)
+        return mend_to(r, state, t, held, score, error);
+    tm_repair_state before = {0};
+    tm_repair_score now = tm_repair_measure(state, 0);
+    tm_status status = tm_repair_copy_mesh(&before, state, error);
+    if (status == TM_OK)
+        status = mend_to(r, state, 0, held, &now, error);
+    now = tm_repair_measure(state, t);
+    if (status == TM_OK)
+        status = mend_to(r, state, t, held, &now, error);
+    if (status == TM_OK && !tm_repair_better(&now, score)) {
+        tm_repair_take_mesh(state, &before);
+        status = mend_to(r, state, t, held, score, error);
+    } else {
+        *score = now;
+    }
+    tm_repair_state_free(&before);
     return status;
 }
 
@@ -161,7 +193,7 @@ static tm_status refine(repair *r, const uint32_t *octant, size_t count, outcome
 static bool may_refine(const repair *r)
 {
     return r->report->iterations < r->options->iterations &&
-           r->remade < r->remade_at_most && !is_stopped(r);
+           r->remade + r->state->mesh.elements <= r->remade_at_most && !is_stopped(r);
 }
 
 /* Splits some of the octants that hold bad elements, or, where some are not valid, such:
@@ -258,13 +290,14 @@ tm_status tm_repair(tm_repair_state *state, tm_surface *surface,
     report->after = report->before;
     state->progress = options->progress;
     state->stop = options->stop;
-    repair r = {.state = state,
-                .surface = surface,
-                .options = options,
-                .report = report,
-                .elements_at_most =
-                    (size_t)(options->growth * (double)state->mesh.elements),
-                .remade_at_most = REMADE_TIMES * state->mesh.elements + REMADE_MORE};
+    repair r = {
+        .state = state,
+        .surface = surface,
+        .options = options,
+        .report = report,
+        .elements_at_most = (size_t)(options->growth * (double)state->mesh.elements),
+        .remade_at_most =
+            state->mesh.elements > REMADE_MOST ? state->mesh.elements : REMADE_MOST};
     if (options->method == TM_REPAIR_FULL)
         return run_full(&r, error);
     if (state->octree.leaves == 0 && report->before.bad > 0)

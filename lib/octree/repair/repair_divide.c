@@ -72,21 +72,6 @@ static tm_status find_divisions(divider *d, tm_error *error)
     return status;
 }
 
-static tm_status allocate(tm_repair_state *to, size_t items, tm_error *error)
-{
-    to->mesh.xyz = tm_new(to->mesh.nodes, sizeof *to->mesh.xyz);
-    to->rule = tm_new(to->mesh.nodes, sizeof *to->rule);
-    to->on = tm_new(to->mesh.nodes, sizeof *to->on);
-    to->mesh.start = tm_new(to->mesh.elements + 1, sizeof *to->mesh.start);
-    to->mesh.item = tm_new(items, sizeof *to->mesh.item);
-    to->octant = tm_new(to->mesh.elements, sizeof *to->octant);
-    to->origin = tm_new(to->mesh.elements, sizeof *to->origin);
-    return to->mesh.xyz && to->rule && to->on && to->mesh.start && to->mesh.item &&
-                   to->octant && to->origin
-               ? TM_OK
-               : tm_fail_memory(error);
-}
-
 static void add_element(tm_repair_state *to, size_t k, const uint32_t *item,
                         uint32_t middle, const tm_repair_state *from, size_t e)
 {
@@ -113,7 +98,7 @@ static tm_status apply(const divider *d, tm_repair_state *to, tm_error *error)
     }
     if (to->mesh.nodes >= TM_NONE || to->mesh.elements >= TM_NONE)
         return tm_fail(error, TM_ERROR_SYSTEM, "the mesh has too many elements");
-    const tm_status status = allocate(to, items, error);
+    const tm_status status = tm_repair_allocate(to, items, error);
     if (status != TM_OK)
         return status;
     memcpy(to->mesh.xyz, mesh->xyz, mesh->nodes * sizeof *mesh->xyz);
@@ -139,20 +124,6 @@ static tm_status apply(const divider *d, tm_repair_state *to, tm_error *error)
     return TM_OK;
 }
 
-/* Takes the mesh of another state. */
-static void take(tm_repair_state *state, tm_repair_state *by)
-{
-    by->octree = state->octree;
-    by->row = state->row;
-    by->remade = state->remade;
-    by->divided = true;
-    state->octree = (tm_octree){.leaves = 0};
-    state->row = NULL;
-    tm_repair_state_free(state);
-    *state = *by;
-    *by = (tm_repair_state){0};
-}
-
 tm_status tm_repair_divide(tm_repair_state *state, const tm_surface *surface,
                            double threshold, tm_repair_score *score, size_t *divided,
                            tm_error *error)
@@ -170,7 +141,8 @@ tm_status tm_repair_divide(tm_repair_state *state, const tm_surface *surface,
         if (status == TM_OK && tm_repair_better(&now, score)) {
             *score = now;
             *divided += d.divisions;
-            take(state, &made);
+            made.divided = true;
+            tm_repair_take_mesh(state, &made);
         }
     }
     tm_repair_state_free(&made);

@@ -6,6 +6,17 @@
 #include "../../surface/surface.h"
 #include "repair_state.h"
 
+/* Room for as many nodes and elements as to->mesh says, and their items. */
+tm_status tm_repair_allocate(tm_repair_state *to, size_t items, tm_error *error);
+
+/* Copies all but the octree to *to, which has zeros; it is to be freed, after an error
+ * too. */
+tm_status tm_repair_copy_mesh(tm_repair_state *to, const tm_repair_state *from,
+                              tm_error *error);
+
+/* Takes the mesh of another state of the same octree, which is empty then. */
+void tm_repair_take_mesh(tm_repair_state *state, tm_repair_state *by);
+
 /* How nodes are moved. */
 typedef struct tm_repair_effort {
     unsigned effort; /* of tm_optimise_options */
