@@ -10,13 +10,23 @@
 #include "../lib/octree/layer/octree_mesh_stream.h"
 #include "../lib/octree/layer/adaptive_refinement.h"
 #include "../lib/element/jens.h"
-#include "../lib/surface/surface.h"
+#include "../lib/base/array.h"
+#include "../lib/surface/surface_curvature.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { FEATURE_ANGLE = FILTER_OWN, RESOLVE, LENIENT, CAVITIES, SIZE, INNER_SIZE, MOST };
+enum {
+    FEATURE_ANGLE = FILTER_OWN,
+    RESOLVE,
+    LENIENT,
+    CAVITIES,
+    CURVATURE,
+    SIZE,
+    INNER_SIZE,
+    MOST
+};
 
 static const struct option options[] = {
     {"all", required_argument, NULL, 'a'},
@@ -27,6 +37,7 @@ static const struct option options[] = {
     {"levels", no_argument, NULL, 'u'},
     {"size", required_argument, NULL, SIZE},
     {"inner-size", required_argument, NULL, INNER_SIZE},
+    {"curvature", required_argument, NULL, CURVATURE},
     {"most", required_argument, NULL, MOST},
     {"feature-angle", required_argument, NULL, FEATURE_ANGLE},
     {"resolve", required_argument, NULL, RESOLVE},
@@ -35,7 +46,8 @@ static const struct option options[] = {
     FILTER_OPTIONS};
 
 static const char synopsis[] =
-    "[-a L] [-s L] [--size H] [--inner-size H] [-b FILE.reg] [-r SURFACE L] [-l FILE] "
+    "[-a L] [-s L] [--size H] [--inner-size H] [--curvature DEG] [-b FILE.reg] [-r "
+    "SURFACE L] [-l FILE] "
     "[-u] [--most N] [--feature-angle DEG] [--resolve N] [--cavities] "
     "[--lenient] [SURFACE]";
 
@@ -46,6 +58,9 @@ static const char own_help[] =
     "                      is given)\n"
     "      --size H        of side H where the surface is, in its unit of length\n"
     "      --inner-size H  of side H or less everywhere\n"
+    "      --curvature DEG where the surface is flatter, larger ones: across one it "
+    "turns by\n"
+    "                      no more than this\n"
     "  -b, --boxes FILE    of the levels of the boxes in FILE (.reg)\n"
     "  -r, --region S L    of level L on and in the closed surface in file S\n"
     "  -l, --leaves FILE   split the octants whose numbers are in FILE once more\n"
@@ -63,12 +78,14 @@ static const char own_help[] =
     "      --lenient       take surfaces that are open or cross themselves\n";
 
 static const double default_angle = TM_FEATURE_ANGLE, straight_angle = 180;
+static const double pi = 3.14159265358979323846;
 
 typedef struct {
     octree_rules rules;
     tm_surface_options surface;
     unsigned resolve;
-    double most; /* elements */
+    double most;      /* elements */
+    double curvature; /* degrees; 0: not asked */
     bool levels;
 } settings;
 
@@ -86,7 +103,7 @@ static void add_size(const filter *f, settings *o, const char *option,
 
 static settings read_options(filter *f)
 {
-    const double most_default = 5e7, most_ids = 4e9;
+    const double most_default = 5e7, most_ids = 4e9, least_turn = 0.1, most_turn = 90;
     settings o = {.surface = {.feature_angle = default_angle,
                               .unless_rough = true,
                               .regions = true},
@@ -114,6 +131,8 @@ static settings read_options(filter *f)
             add_size(f, &o, "--size", TM_RULE_SURFACE);
         else if (c == INNER_SIZE)
             add_size(f, &o, "--inner-size", TM_RULE_EVERYTHING);
+        else if (c == CURVATURE)
+            o.curvature = filter_number(f, "--curvature", optarg, least_turn, most_turn);
         else if (c == MOST)
             o.most = filter_number(f, "--most", optarg, 1, most_ids);
         else
@@ -122,6 +141,30 @@ static settings read_options(filter *f)
     if (o.rules.rules.count == 0)
         octree_rules_add_level(f, &o.rules, TM_RULE_SURFACE, default_level);
     return o;
+}
+
+/* Gives the rules for the surface the largest octants that its curvature leaves; the
+ * array that they have then. */
+static double *follow_curvature(const filter *f, settings *o, const tm_surface *s)
+{
+    const unsigned levels = 3; /* a plane has octants of so many less */
+    if (o->curvature == 0)
+        return NULL;
+    tm_error error;
+    double *largest = tm_new(s->triangles, sizeof *largest);
+    if (!largest)
+        tm_fail_memory(&error);
+    if (!largest)
+        filter_fail(f, &error);
+    tm_surface_find_curvature(s, largest);
+    for (size_t t = 0; t < s->triangles; t++)
+        largest[t] = o->curvature / straight_angle * pi / largest[t];
+    for (size_t r = 0; r < o->rules.rules.count; r++)
+        if (o->rules.rules.rule[r].kind == TM_RULE_SURFACE) {
+            o->rules.rules.rule[r].largest = largest;
+            o->rules.rules.rule[r].spread = levels;
+        }
+    return largest;
 }
 
 /* How many elements would be made if all octants were `coarser` times as large, and the
@@ -322,6 +365,7 @@ int main(int argc, char **argv)
     tm_octree_mesh mesh;
     tm_error error;
     surface_input_build(&f, &o.surface, &surface, &stream);
+    double *largest = follow_curvature(&f, &o, &surface);
     refuse_many(&f, &o, &surface);
     note_outside(&f, &o.rules, &surface);
     mpi_environment_set(&f);
@@ -332,6 +376,7 @@ int main(int argc, char **argv)
                                    filter_progress(&f), &error) != TM_OK)
         filter_fail(&f, &error);
     octree_rules_free(&o.rules);
+    free(largest);
     note_losses(&f, &surface, &mesh.report, smallest_side(&octree));
     if (f.json)
         write_json(&f, &octree, &mesh);

@@ -278,6 +278,104 @@ assert abs(json.load(open("check.json"))["volume"] - 12.5) < 1e-9'
     done
 }
 
+# sides_where NAME TEST: the largest side of an octant of the mesh NAME whose centre (x, y, z)
+# passes TEST, an expression of awk, and the smallest.
+sides_where() {
+    { rows .root "$1"; echo; rows .octant "$1"; } | awk '
+        NF == 0 { octants = 1; next }
+        !octants { for (i = 0; i < 3; i++) low[i] = $(2 + i); side = $5; unit = side / 2 ^ $6; next }
+        { s = side / 2 ^ $2; x = low[0] + unit * $3 + s / 2; y = low[1] + unit * $4 + s / 2
+          z = low[2] + unit * $5 + s / 2
+          if ('"$2"') { if (s > most) most = s; if (!least || s < least) least = s } }
+        END { print most, least }'
+}
+
+@test "--curvature: a cell spans no more than so much of a turn, and flat parts have larger ones" {
+    # a cylinder of radius 1
+    python3 - >cylinder.off <<'END'
+import math
+n = 96
+print('OFF')
+print(2 * n, n + 2, 0)
+for z in (0, 2):
+    for i in range(n):
+        print(math.cos(2 * math.pi * i / n), math.sin(2 * math.pi * i / n), z)
+print(n, *range(n - 1, -1, -1))
+print(n, *range(n, 2 * n))
+for i in range(n):
+    print(4, i, (i + 1) % n, n + (i + 1) % n, n + i)
+END
+    octree-mesh -s 6 --json all.json -o all.tm cylinder.off
+    for turn in 5 10 20; do
+        octree-mesh -s 6 --curvature $turn --json count.json -o mesh.tm cylinder.off
+        mesh-check -q mesh.tm
+        [ "$(json count.json held_back) $(json count.json lost_corners)" = "0 0" ]
+        [ "$(json count.json elements hex)" -lt $(($(json all.json elements hex) / 3)) ]
+        # at the wall, by the surface; at the middle of the ends
+        read -r most _ <<<"$(sides_where mesh.tm 'x * x + y * y < 1 && sqrt(x * x + y * y) > 1 - s / 2 && z > 0.5 && z < 1.5')"
+        read -r _ flat <<<"$(sides_where mesh.tm 'x * x + y * y < 0.1 && (z > 2 - s / 2 && z < 2 || z > 0 && z < s / 2)')"
+        python3 -c '
+import math, sys
+most, flat, turn, finest = map(float, sys.argv[1:])
+assert most <= math.radians(turn) * 1.1 and most > min(math.radians(turn), 4) / 2.2, most
+assert flat >= 3.9 * finest, flat' "$most" "$flat" $turn "$(python3 -c 'print(2.02 / 64)')"
+    done
+    # no more than -s says, and no less than three levels less
+    octree-mesh -s 4 --curvature 1 --resolve 0 -o mesh.tm cylinder.off
+    read -r _ least <<<"$(sides_where mesh.tm 1)"
+    python3 -c 'import sys; assert abs(float(sys.argv[1]) - 2.02 / 16) < 0.01' "$least"
+    # the walls of a gap are flat, but there are two
+    awk 'NR > 2 && NR <= 10 { print $1 + 1.1, $2, $3; next } { print }' box.off >right.off
+    together box.off right.off >gap.off
+    octree-mesh -s 6 --curvature 15 --resolve 0 --json count.json -o mesh.tm gap.off
+    [ "$(json count.json components) $(json count.json euler)" = "2 4" ]
+    [ "$(json count.json lost_octants) $(json count.json held_back)" = "0 0" ]
+    mesh-check -q mesh.tm
+    # with a size
+    octree-mesh --size 0.05 --curvature 15 -o mesh.tm cylinder.off
+    [ "$(sides mesh.tm 0.05 | cut -d ' ' -f 1)" -ge 1 ]
+    mesh-check -q mesh.tm
+}
+
+@test "where a curve of the surface is lost, nodes stay on what is beside it" {
+    # a slit that ends sharp, in a cube: its lower part is thinner than octants
+    cat >slit.off <<'END'
+OFF
+14 13 0
+0 0 0
+1 0 0
+1 1 0
+0 1 0
+0 0 1
+1 0 1
+1 1 1
+0 1 1
+0.4651 0.25 1
+0.5349 0.25 1
+0.5349 0.75 1
+0.4651 0.75 1
+0.5 0.25 0.5
+0.5 0.75 0.5
+4 0 3 2 1
+4 0 1 5 4
+4 1 2 6 5
+4 2 3 7 6
+4 3 0 4 7
+4 4 5 9 8
+4 5 6 10 9
+4 6 7 11 10
+4 7 4 8 11
+4 8 12 13 11
+4 9 10 13 12
+3 8 9 12
+3 10 11 13
+END
+    octree-mesh -q -s 5 --resolve 0 --json count.json -o mesh.tm slit.off
+    [ "$(json count.json lost_edges)" -gt 0 ]
+    [ "$(json count.json held_back)" = 0 ]
+    judge mesh.tm
+}
+
 @test "--most: what would be too much is refused, with what fits" {
     surface sphere off >sphere.off
     octree-mesh -q --json count.json -s 5 sphere.off >mesh.tm
@@ -666,6 +764,8 @@ assert abs(json.load(open("check.json"))["volume"] - 1.79) < 0.1'
     refuses "--size: '0' *" --size 0 box.off
     refuses "--inner-size: 'x' *" --inner-size x box.off
     refuses "--most: '0' *" --most 0 box.off
+    refuses "--curvature: '0' *" --curvature 0 box.off
+    refuses "--curvature: '91' *" --curvature 91 box.off
     refuses "--feature-angle: '181' *" --feature-angle 181 box.off
     refuses "--feature-angle: 'x' *" --feature-angle x box.off
     refuses '*' box.off box.off

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is made of surfaces that are known: counts, inside, features, errors. */
 #include "../../lib/surface/surface.h"
+#include "../../lib/surface/surface_curvature.h"
 #include "random.h"
 #include "surface_shapes.h"
 
@@ -591,6 +592,48 @@ static void test_rough(void **state)
             }
 }
 
+/* The least and the largest curvature of the surface of polygons, which are freed. */
+static void find_curvature(tm_polygon_surface *p, double range[2])
+{
+    tm_surface s;
+    build(&s, p, &strict);
+    double *curvature = malloc(s.triangles * sizeof *curvature);
+    assert_non_null(curvature);
+    tm_surface_find_curvature(&s, curvature);
+    range[0] = range[1] = curvature[0];
+    for (size_t t = 1; t < s.triangles; t++) {
+        range[0] = fmin(range[0], curvature[t]);
+        range[1] = fmax(range[1], curvature[t]);
+    }
+    free(curvature);
+    tm_surface_free(&s);
+}
+
+static void test_curvature(void **state)
+{
+    (void)state;
+    double xy[64][2], range[2];
+    tm_polygon_surface p;
+    /* Sharp edges count nothing. */
+    tm_polygon_surface_init(&p);
+    add_cube(&p, 1, 2, 3, 4);
+    find_curvature(&p, range);
+    assert_near(range[1], 0, 1e-12);
+    /* A cylinder of radius 2, of long triangles, turned; its ends are flat. */
+    make_star(xy, 64, 2, 2);
+    tm_polygon_surface_init(&p);
+    add_prism(&p, (const double(*)[2])xy, 64, 3);
+    turn_nodes(&p, 0.4);
+    find_curvature(&p, range);
+    assert_near(range[0], 0, 1e-12);
+    assert_near(range[1], 1.0 / 2, 0.001);
+    const double centre[3] = {1, 1, 1};
+    tm_polygon_surface_init(&p);
+    add_sphere(&p, centre, 4, 24, false);
+    find_curvature(&p, range);
+    assert_true(range[0] > 0.7 / 4 && range[1] < 2.0 / 4);
+}
+
 int main(void)
 {
     random_start();
@@ -604,7 +647,7 @@ int main(void)
         cmocka_unit_test(test_nothing),      cmocka_unit_test(test_polygons),
         cmocka_unit_test(test_curves),       cmocka_unit_test(test_feature_angle),
         cmocka_unit_test(test_markers),      cmocka_unit_test(test_needles),
-        cmocka_unit_test(test_rough),
+        cmocka_unit_test(test_rough),        cmocka_unit_test(test_curvature),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

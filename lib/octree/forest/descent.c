@@ -7,6 +7,9 @@
 
 enum { CHILDREN = 8, BATCH = 4, SHIFTS = 32 };
 
+/* What is in an octant that is crowded gets leaves of so many levels more. */
+enum { SPACE = 2 };
+
 typedef enum side { UNKNOWN, INSIDE, OUTSIDE } side;
 
 /* What of one surface meets an octant: a part of the source's stack of triangles. Where
@@ -22,7 +25,9 @@ typedef struct octant {
     uint32_t anchor[3];
     unsigned shift;
     double low[3], high[3];
-    part *part; /* [sources] */
+    unsigned crowded; /* levels that are still to come because it, or what it is in, is:
+                         see is_large() */
+    part *part;       /* [sources] */
 } octant;
 
 /* A surface that rules ask about: source 0 is the octree's, the others are regions. */
@@ -40,6 +45,7 @@ typedef struct descent {
     size_t *source_of; /* [rules] */
     size_t sources;
     source *source;
+    bool *is_corner;      /* [nodes of the octree's surface] */
     unsigned shift;       /* of the deepest octants that may be */
     part *part;           /* [SHIFTS][sources]: of the octants on the way down */
     tm_leaf_list *leaves; /* that are made, or NULL: */
@@ -96,13 +102,34 @@ static bool meets_box(const octant *o, const tm_octree_rule *box)
     return true;
 }
 
+/* Whether an octant is too large for a triangle that it meets, or for all together. */
+static bool is_large(const descent *d, octant *o, const tm_octree_rule *rule)
+{
+    const part *own = &o->part[0];
+    const unsigned level = TM_OCTREE_FINEST - o->shift;
+    if (!rule->largest || own->count == 0)
+        return own->count > 0;
+    const source *from = &d->source[0];
+    const uint32_t *met = from->triangle + own->start;
+    if (level + rule->spread + SPACE > rule->level &&
+        tm_octant_is_crowded(from->surface, d->is_corner, met, own->count, o->low,
+                             o->high[0] - o->low[0]))
+        o->crowded = SPACE;
+    if (o->crowded > 0 || level + rule->spread < rule->level)
+        return true;
+    for (size_t i = 0; i < own->count; i++)
+        if (o->high[0] - o->low[0] > rule->largest[met[i]])
+            return true;
+    return false;
+}
+
 static bool holds(const descent *d, octant *o, size_t r)
 {
     switch (d->rule[r].kind) {
     case TM_RULE_EVERYTHING:
         return true;
     case TM_RULE_SURFACE:
-        return o->part[0].count > 0;
+        return is_large(d, o, &d->rule[r]);
     case TM_RULE_BOX:
         return meets_box(o, &d->rule[r]);
     case TM_RULE_REGION:
@@ -160,6 +187,7 @@ static tm_status visit(descent *d, octant *o)
         if (outside_brick(d, &child))
             continue;
         tm_octree_box(d->octree, child.anchor, child.shift, child.low, child.high);
+        child.crowded = o->crowded > 0 ? o->crowded - 1 : 0;
         for (size_t s = 0; s < d->sources && status == TM_OK; s++)
             status = cull(d, &child, s, &o->part[s]);
         if (status == TM_OK)
@@ -212,8 +240,11 @@ static tm_status start(descent *d, const tm_surface *surface)
     d->source = calloc(d->rules + 1, sizeof *d->source);
     d->source_of = calloc(d->rules + 1, sizeof *d->source_of);
     d->part = tm_new(SHIFTS * (d->rules + 1), sizeof *d->part);
-    if (!d->source || !d->source_of || !d->part)
+    d->is_corner = calloc(surface->nodes + 1, sizeof *d->is_corner);
+    if (!d->source || !d->source_of || !d->part || !d->is_corner)
         return tm_fail_memory(d->error);
+    for (size_t k = 0; k < surface->corners; k++)
+        d->is_corner[surface->corner[k]] = true;
     size_t number = 0;
     tm_status status = start_source(d, surface, &number);
     for (size_t r = 0; r < d->rules && status == TM_OK; r++)
@@ -231,6 +262,7 @@ static tm_status descend(descent *d, const tm_surface *surface)
     free(d->source);
     free(d->source_of);
     free(d->part);
+    free(d->is_corner);
     return status;
 }
 

@@ -3,6 +3,7 @@
 
 #include "../../base/array.h"
 #include "../../geom/vector.h"
+#include "brick.h"
 #include "octree_parts.h"
 
 #include <math.h>
@@ -74,15 +75,31 @@ static bool holds(const tm_octree_rule *rule, const double point[3])
     }
 }
 
-/* The side of the leaves at a point, on the surface or not. */
-static double side_at(estimator *e, const double point[3], bool on_surface)
+/* The level that a rule for the surface asks for at a triangle of it. */
+static unsigned level_at(const estimator *e, const tm_octree_rule *rule, size_t t)
+{
+    if (!rule->largest)
+        return rule->level;
+    unsigned level = rule->level > rule->spread ? rule->level - rule->spread : 0;
+    while (level < rule->level && ldexp(e->side, -(int)level) > rule->largest[t])
+        level++;
+    return level;
+}
+
+/* The side of the leaves at a point, on triangle t of the surface or, for TM_NONE, not.
+ */
+static double side_at(estimator *e, const double point[3], size_t t)
 {
     unsigned level = 0;
-    for (size_t r = 0; r < e->rules; r++)
-        if (e->rule[r].level > level &&
-            ((on_surface && e->rule[r].kind == TM_RULE_SURFACE) ||
-             holds(&e->rule[r], point)))
-            level = e->rule[r].level;
+    for (size_t r = 0; r < e->rules; r++) {
+        const tm_octree_rule *rule = &e->rule[r];
+        if (rule->level <= level)
+            continue;
+        if (rule->kind == TM_RULE_SURFACE && t != TM_NONE)
+            level = level_at(e, rule, t) > level ? level_at(e, rule, t) : level;
+        else if (holds(rule, point))
+            level = rule->level;
+    }
     const double side = ldexp(e->side, -(int)level);
     e->smallest = fmin(e->smallest, side);
     return side;
@@ -138,7 +155,7 @@ static void count_surface(estimator *e, double coarser)
         for (size_t k = 0; k < points && area > 0; k++) {
             double point[3];
             point_of(e->surface, t, k, point);
-            const double side = coarser * side_at(e, point, true);
+            const double side = coarser * side_at(e, point, t);
             const double in_layer = area / (double)points / (side * side);
             const double thickness = e->volume / (e->area * side);
             e->layer += in_layer;
@@ -171,7 +188,7 @@ static void count_volume(estimator *e, double coarser)
                        (s->high[i] - s->low[i]) * ((double)at[i] + 0.5) / (double)along;
         if (along > 1 && !tm_surface_has_mesh(s, point))
             continue;
-        const double side = coarser * side_at(e, point, false);
+        const double side = coarser * side_at(e, point, TM_NONE);
         points++;
         filled += 1 / (side * side * side);
     }

@@ -22,6 +22,16 @@ tm_status tm_octree_descend(tm_leaf_list *leaves, const tm_octree *octree,
  * order and fill the brick. The same cost. */
 tm_status tm_octree_cross(tm_octree *octree, const tm_surface *surface, tm_error *error);
 
+/* crowding.c: more of a surface in an octant than one of the mesh can hold. */
+
+/* Whether the solid, or a gap in it, is thinner than two sides of an octant where that
+ * has surface, or the triangles that it meets look in opposite directions, are of three
+ * patches that do not meet at one corner, or have two corners in it. is_corner[nodes of
+ * the surface]. O(count), and some queries of the surface. */
+bool tm_octant_is_crowded(const tm_surface *surface, const bool *is_corner,
+                          const uint32_t *triangle, size_t count, const double low[3],
+                          double side);
+
 /* octree_estimate.c: sizes as levels. */
 
 /* The least size that a rule has; 0 where none has any. */

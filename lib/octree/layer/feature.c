@@ -4,6 +4,7 @@
 #include "../../base/array.h"
 #include "../../base/disjoint_sets.h"
 #include "../../geom/vector.h"
+#include "../../surface/surface_tree.h"
 #include "feature_parts.h"
 
 #include <stdlib.h>
@@ -205,6 +206,7 @@ static tm_status join_lost(finder *find, tm_surface *surface, const bool *lost,
     }
     for (size_t t = 0; t < surface->triangles; t++)
         surface->patch[t] = tm_set_root(parent, surface->patch[t]);
+    tm_surface_tree_refresh(surface);
     free(parent);
     return TM_OK;
 }

@@ -66,6 +66,7 @@ typedef struct tm_path_finder {
     tm_path_visit *visit; /* [nodes] */
     uint32_t round;
     uint32_t curve; /* the one whose path is sought */
+    double tube;    /* tm_path_tube or tm_path_wide_tube */
     double total;   /* its length */
     bool closed;    /* it comes back to where it begins */
     unsigned stops;
@@ -81,8 +82,9 @@ typedef struct tm_path_finder {
 } tm_path_finder;
 
 /* How far from the curve a path may go, and from where a closed one may start, in sides
- * of leaves. */
-static const double tm_path_tube = 2;
+ * of leaves; and the same where none is found so. Beside leaves that are twice as large
+ * the boundary is farther from the surface. */
+static const double tm_path_tube = 2, tm_path_wide_tube = 4;
 
 /* Searches from one stop of the curve to the next; where *found, visit[].from leads back
  * from the second. O(n log n) in the nodes near the curve. TM_ERROR_SYSTEM where memory

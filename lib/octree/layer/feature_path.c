@@ -206,7 +206,7 @@ static uint32_t node_near(const tm_path_finder *p, double param)
     double distance2;
     const uint32_t s =
         tm_boundary_cells_nearest(p->cells, point, p->feature->kind, &distance2);
-    const double reach = s == TM_NONE ? 0 : tm_path_tube * p->boundary->size[s];
+    const double reach = s == TM_NONE ? 0 : p->tube * p->boundary->size[s];
     return distance2 <= reach * reach ? s : TM_NONE;
 }
 
@@ -255,15 +255,16 @@ tm_status tm_path_along_curve(tm_path_finder *finder, uint32_t curve, uint32_t f
     tm_path_finder *p = finder;
     *found = false;
     p->curve = curve;
-    p->path_count = p->cut_count = 0;
     tm_status status = measure(p, error);
-    if (status != TM_OK)
-        return status;
-    if (find_stops(p, from, to))
-        status = find_path(p, found, error);
-    if (status == TM_OK && *found)
-        enter(p);
-    else
-        release(p);
+    for (int wide = 0; status == TM_OK && wide < 2 && !*found; wide++) {
+        p->tube = wide ? tm_path_wide_tube : tm_path_tube;
+        p->path_count = p->cut_count = 0;
+        if (find_stops(p, from, to))
+            status = find_path(p, found, error);
+        if (status == TM_OK && *found)
+            enter(p);
+        else
+            release(p);
+    }
     return status;
 }

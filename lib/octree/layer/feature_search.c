@@ -74,10 +74,10 @@ static bool may_pass(const tm_path_finder *p, const tm_path_visit *v, uint32_t s
 {
     const double size = p->boundary->size[s];
     if (p->feature->kind[s] != TM_ON_PATCH ||
-        v->distance2 > tm_path_tube * tm_path_tube * size * size)
+        v->distance2 > p->tube * p->tube * size * size)
         return false;
     const double middle = (from->param + to->param) / 2;
-    const double half = (to->param - from->param) / 2 + tm_path_tube * size;
+    const double half = (to->param - from->param) / 2 + p->tube * size;
     return along_curve(p, v->param, middle) <= half;
 }
 

@@ -3,7 +3,7 @@
 
 #include "../../base/array.h"
 #include "../../base/disjoint_sets.h"
-#include "../../geom/vector.h"
+#include "../../surface/surface_tree.h"
 #include "octree_mesh_parts.h"
 
 #include <stdlib.h>
@@ -274,6 +274,7 @@ tm_status tm_octree_mesh_make_of(tm_octree_mesh *mesh, const tm_octree *octree,
     memcpy(patch, surface->patch, bytes);
     const tm_status status = make(mesh, octree, surface, progress, error);
     memcpy(surface->patch, patch, bytes);
+    tm_surface_tree_refresh(surface);
     free(patch);
     return status;
 }

@@ -2,6 +2,8 @@
 #include "octree_mesh_parts.h"
 
 #include "../../base/array.h"
+#include "../../element/shape.h"
+#include "../../geom/vector.h"
 #include "../../optimise/optimise_surface.h"
 
 #include <stdlib.h>
@@ -21,6 +23,44 @@ typedef struct {
     bool *to_change; /* [nodes]: in this one */
     size_t invalid;  /* elements whose nodes are all on the lattice */
 } retreat;
+
+/* Whether an element's faces, each a fan of triangles, enclose a negative volume: its
+ * corners may all be right then, but it is on the wrong side of a face. */
+static bool is_turned(const tm_mixed_mesh *mesh, size_t e)
+{
+    const uint32_t *v = mesh->item + mesh->start[e];
+    const size_t k = mesh->start[e + 1] - mesh->start[e];
+    const tm_element_shape *shape = &tm_element_shapes[k];
+    const double *origin = mesh->xyz[v[0]];
+    double volume = 0;
+    for (size_t i = 0; i < shape->faces; i++) {
+        const uint8_t *face = shape->face[i];
+        for (size_t j = 2; j < tm_mixed_face_nodes(face); j++) {
+            double a[3], b[3], c[3], normal[3];
+            tm_subtract(a, mesh->xyz[v[face[0]]], origin);
+            tm_subtract(b, mesh->xyz[v[face[j - 1]]], origin);
+            tm_subtract(c, mesh->xyz[v[face[j]]], origin);
+            tm_cross(normal, a, b);
+            volume += tm_dot(normal, c);
+        }
+    }
+    return volume <= 0;
+}
+
+/* The same of any element of the layer: others are not turned so far. */
+static bool any_is_turned(const tm_octree_mesh *m)
+{
+    for (size_t f = 0; f < m->boundary.faces; f++)
+        for (unsigned i = 0; i < (m->boundary.cut[f] == TM_UNCUT ? 1u : 2u); i++)
+            if (is_turned(&m->assembly.mesh, m->assembly.layer[f] + i))
+                return true;
+    return false;
+}
+
+static bool is_valid(const tm_mixed_mesh *mesh, size_t e)
+{
+    return tm_mixed_jens(mesh, e) >= least_valid && !is_turned(mesh, e);
+}
 
 static bool has_changed(const retreat *r, size_t e)
 {
@@ -58,7 +98,7 @@ static bool take_back(retreat *r)
     const tm_mixed_mesh *mesh = r->mesh;
     bool any = false;
     for (size_t e = 0; e < mesh->elements; e++) {
-        if (!has_changed(r, e) || tm_mixed_jens(mesh, e) >= least_valid)
+        if (!has_changed(r, e) || is_valid(mesh, e))
             continue;
         if (mark_nodes(r, e))
             any = true;
@@ -147,7 +187,7 @@ tm_status tm_untangle_layer(tm_octree_mesh *mesh, const tm_octree *octree,
     tm_status status = tm_mixed_optimise(&mesh->assembly.mesh, rule, &boundary, &options,
                                          &report, error);
     free(rule);
-    if (status == TM_OK && report.worst_after < least_valid)
+    if (status == TM_OK && (report.worst_after < least_valid || any_is_turned(mesh)))
         status = hold_back(mesh, octree, error);
     return status;
 }

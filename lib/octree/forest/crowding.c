@@ -1,0 +1,139 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "octree_parts.h"
+
+#include "../../geom/vector.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Patches that are told apart: two meet at an edge, more at a corner. */
+enum { PATCHES = 3 };
+
+/* Directions that are remembered: more than eight that differ by 37° are rare, and only
+ * make the octant smaller later. */
+enum { DIRECTIONS = 8 };
+
+/* A point of the surface close to the middle of an octant, away from the border of its
+ * triangle, and the normal there. False of a triangle without area. */
+static bool choose_point(const tm_surface *surface, const double centre[3], double side,
+                         double point[3], double normal[3])
+{
+    const double away = 0.1; /* sides of the octant, at most */
+    tm_surface_point at = {.triangle = TM_NONE};
+    tm_surface_closest(surface, centre, TM_NONE, &at);
+    const double *p[3];
+    double to_middle[3];
+    for (int i = 0; i < 3; i++)
+        p[i] = surface->xyz[surface->triangle[at.triangle][i]];
+    tm_triangle_normal(normal, p[0], p[1], p[2]);
+    const double length = tm_norm(normal);
+    for (int i = 0; i < 3; i++)
+        to_middle[i] = (p[0][i] + p[1][i] + p[2][i]) / 3 - at.xyz[i];
+    const double far = tm_norm(to_middle);
+    const double step = far > 0 ? fmin(1, away * side / far) : 0;
+    for (int i = 0; i < 3; i++) {
+        point[i] = at.xyz[i] + step * to_middle[i];
+        normal[i] /= length;
+    }
+    return length > 0;
+}
+
+/* Whether the solid or a gap in it ends within two sides of the octant behind or before
+ * the surface. */
+static bool is_thin(const tm_surface *surface, const double low[3], double side)
+{
+    enum { SIDES = 2 };
+    double centre[3], point[3], normal[3];
+    for (int i = 0; i < 3; i++)
+        centre[i] = low[i] + side / 2;
+    if (!choose_point(surface, centre, side, point, normal))
+        return false;
+    for (int s = 1; s <= SIDES; s++)
+        for (int way = -1; way <= 1; way += 2) {
+            double q[3];
+            for (int i = 0; i < 3; i++)
+                q[i] = point[i] + way * s * side * normal[i];
+            if (tm_surface_has_inside(surface, q) != (way < 0))
+                return true;
+        }
+    return false;
+}
+
+/* Whether triangles look in opposite directions, as those of both sides of a thin wall.
+ */
+static bool is_opposed(const tm_surface *surface, const uint32_t *triangle, size_t count)
+{
+    const double opposite = -0.5, same = 0.8; /* cosines */
+    double direction[DIRECTIONS][3];
+    unsigned directions = 0;
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t *v = surface->triangle[triangle[i]];
+        double normal[3];
+        tm_triangle_normal(normal, surface->xyz[v[0]], surface->xyz[v[1]],
+                           surface->xyz[v[2]]);
+        const double length = tm_norm(normal);
+        bool known = length == 0;
+        for (int k = 0; k < 3 && length > 0; k++)
+            normal[k] /= length;
+        for (unsigned d = 0; d < directions; d++) {
+            const double cosine = tm_dot(normal, direction[d]);
+            if (cosine < opposite)
+                return true;
+            known |= cosine > same;
+        }
+        if (!known && directions < DIRECTIONS)
+            memcpy(direction[directions++], normal, sizeof normal);
+    }
+    return false;
+}
+
+/* Whether a node is in the octant, or no farther from it than `beside`. */
+static bool is_in(const tm_surface *surface, uint32_t v, const double low[3], double side,
+                  double beside)
+{
+    for (int k = 0; k < 3; k++) {
+        const double x = surface->xyz[v][k] - low[k];
+        if (x < -beside || x > side + beside)
+            return false;
+    }
+    return true;
+}
+
+/* Whether three patches come together without a corner, or there are two corners. */
+static bool has_many(const tm_surface *surface, const bool *is_corner,
+                     const uint32_t *triangle, size_t count, const double low[3],
+                     double side)
+{
+    uint32_t patch[PATCHES], corner = TM_NONE;
+    unsigned patches = 0;
+    bool corner_near = false;
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t t = triangle[i];
+        unsigned p = 0;
+        while (p < patches && patch[p] != surface->patch[t])
+            p++;
+        if (p == patches && patches < PATCHES)
+            patch[patches++] = surface->patch[t];
+        for (int c = 0; c < 3; c++) {
+            const uint32_t v = surface->triangle[t][c];
+            if (!is_corner[v] || !is_in(surface, v, low, side, side))
+                continue;
+            corner_near = true;
+            if (!is_in(surface, v, low, side, 0))
+                continue;
+            if (corner != TM_NONE && corner != v)
+                return true;
+            corner = v;
+        }
+    }
+    return patches == PATCHES && !corner_near;
+}
+
+bool tm_octant_is_crowded(const tm_surface *surface, const bool *is_corner,
+                          const uint32_t *triangle, size_t count, const double low[3],
+                          double side)
+{
+    return is_opposed(surface, triangle, count) ||
+           has_many(surface, is_corner, triangle, count, low, side) ||
+           is_thin(surface, low, side);
+}
