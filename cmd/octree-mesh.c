@@ -17,7 +17,16 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { FEATURE_ANGLE = FILTER_OWN, RESOLVE, LENIENT, CURVATURE, SIZE, INNER_SIZE, MOST };
+enum {
+    FEATURE_ANGLE = FILTER_OWN,
+    RESOLVE,
+    LENIENT,
+    CAVITIES,
+    CURVATURE,
+    SIZE,
+    INNER_SIZE,
+    MOST
+};
 
 static const struct option options[] = {
     {"all", required_argument, NULL, 'a'},
@@ -32,13 +41,15 @@ static const struct option options[] = {
     {"most", required_argument, NULL, MOST},
     {"feature-angle", required_argument, NULL, FEATURE_ANGLE},
     {"resolve", required_argument, NULL, RESOLVE},
+    {"cavities", no_argument, NULL, CAVITIES},
     {"lenient", no_argument, NULL, LENIENT},
     FILTER_OPTIONS};
 
 static const char synopsis[] =
     "[-a L] [-s L] [--size H] [--inner-size H] [--curvature DEG] [-b FILE.reg] [-r "
     "SURFACE L] [-l FILE] "
-    "[-u] [--most N] [--feature-angle DEG] [--resolve N] [--lenient] [SURFACE]";
+    "[-u] [--most N] [--feature-angle DEG] [--resolve N] [--cavities] "
+    "[--lenient] [SURFACE]";
 
 static const char own_help[] =
     "  -a, --all L         octants of level L everywhere\n"
@@ -63,6 +74,7 @@ static const char own_help[] =
     "      --resolve N     up to N levels more where a thin part or a gap of the "
     "surface\n"
     "                      would be lost (default 1)\n"
+    "      --cavities      a surface inside of another one bounds a hole, not a region\n"
     "      --lenient       take surfaces that are open or cross themselves\n";
 
 static const double default_angle = TM_FEATURE_ANGLE, straight_angle = 180;
@@ -92,7 +104,9 @@ static void add_size(const filter *f, settings *o, const char *option,
 static settings read_options(filter *f)
 {
     const double most_default = 5e7, most_ids = 4e9, least_turn = 0.1, most_turn = 90;
-    settings o = {.surface = {.feature_angle = default_angle, .unless_rough = true},
+    settings o = {.surface = {.feature_angle = default_angle,
+                              .unless_rough = true,
+                              .regions = true},
                   .resolve = 1,
                   .most = most_default};
     const unsigned default_level = 5;
@@ -104,10 +118,13 @@ static settings read_options(filter *f)
             o.surface =
                 (tm_surface_options){.feature_angle = filter_number(
                                          f, "--feature-angle", optarg, 0, straight_angle),
-                                     .lenient = o.surface.lenient};
+                                     .lenient = o.surface.lenient,
+                                     .regions = o.surface.regions};
         else if (c == RESOLVE)
             o.resolve =
                 (unsigned)filter_integer(f, "--resolve", optarg, 0, TM_OCTREE_LEVEL_MAX);
+        else if (c == CAVITIES)
+            o.surface.regions = false;
         else if (c == LENIENT)
             o.surface.lenient = true;
         else if (c == SIZE)
@@ -260,6 +277,12 @@ static void note_losses(const filter *f, const tm_surface *s,
             "%zu pieces of the surface bound nothing and have no part in the mesh, "
             "as near (%g, %g, %g)",
             r->dropped, r->dropped_at[0], r->dropped_at[1], r->dropped_at[2]);
+    if (r->regions_lost)
+        filter_note(
+            f,
+            "%zu of %zu regions, one within another, are not in the mesh: they, or "
+            "a wall around them, are too thin for this level",
+            r->regions_lost, s->components);
     if (!s->by_winding && (r->components != s->components || r->euler != s->euler))
         note_topology(f, s, r, leaf_side);
     if (r->corners_lost + r->curves_lost)
@@ -311,6 +334,8 @@ static void write_json(filter *f, const tm_octree *octree, const tm_octree_mesh 
                                          ROW("dropped_pieces", mesh.dropped),
                                          ROW("lost_corners", mesh.corners_lost),
                                          ROW("lost_edges", mesh.curves_lost),
+                                         ROW("regions", mesh.regions),
+                                         ROW("lost_regions", mesh.regions_lost),
                                          ROW("components", mesh.components),
                                          ROW("euler", mesh.euler),
                                          {0}};

@@ -119,16 +119,18 @@ tm_status tm_mixed_optimise(tm_mixed_mesh *mesh, tm_node_rule *rule,
     tm_optimise_work w = {
         .mesh = mesh, .rule = rule, .options = options, .report = report};
     tm_status status = start_work(&w, error);
-    if (status == TM_OK && (w.bads > 0 || report->off_surface_before > 0)) {
+    const bool bring =
+        report->off_surface_before > 0 && options->off_surface_threshold > 0;
+    if (status == TM_OK && (w.bads > 0 || bring)) {
         status = start_moving(&w, boundary, error);
         if (status == TM_OK)
             status = tm_optimise_mend(
                 &w, options->release_threshold > 0 ? 0 : options->effort, error);
         if (status == TM_OK && options->release_threshold > 0)
             status = tm_optimise_release(&w, error);
-        if (status == TM_OK && report->off_surface_before > 0)
+        if (status == TM_OK && bring)
             status = tm_optimise_off_surface(&w, error);
-        if (status == TM_OK && report->off_surface_before > 0)
+        if (status == TM_OK && bring)
             status = mend_again(&w, error);
     }
     if (w.bad) {

@@ -7,6 +7,7 @@
 #include "../base/extern_c.h"
 #include "../base/error.h"
 #include "../base/progress.h"
+#include "../base/stop.h"
 #include "../mesh/mixed_mesh.h"
 
 #include <stdbool.h>
@@ -55,7 +56,7 @@ typedef struct tm_optimise_options {
     double threshold;             /* of all elements … */
     const double *thresholds;     /* … or of each, where this is not NULL */
     double off_surface_threshold; /* the same for elements near nodes that are brought to
-                              the boundary; above 0, and not above the others */
+                              the boundary, not above the others; 0: none is brought */
     double release_threshold;     /* nodes of elements that stay below it may leave their
                                      corner, curve and patch for other parts of the surface;
                                      0: none may */
@@ -64,6 +65,7 @@ typedef struct tm_optimise_options {
     size_t most_measured; /* no more is begun once so many elements were measured in all;
                              0: no limit */
     const tm_progress *progress;
+    const tm_stop *stop;
 } tm_optimise_options;
 
 typedef struct tm_optimise_report {

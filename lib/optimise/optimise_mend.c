@@ -190,7 +190,8 @@ static tm_status rank_bad(tm_optimise_work *w, tm_error *error)
 bool tm_optimise_is_spent(const tm_optimise_work *w)
 {
     const size_t most = w->options->most_measured;
-    return most > 0 && w->cluster.measured >= most;
+    return (most > 0 && w->cluster.measured >= most) ||
+           tm_stop_is_wanted(w->options->stop);
 }
 
 static tm_status make_pass(tm_optimise_work *w, const pass *how, uint64_t round,

@@ -172,7 +172,7 @@ typedef struct tm_optimise_work {
  * leaves elements inverted, it may untangle first. */
 void tm_optimise_descend(tm_optimise_work *work, bool may_untangle);
 
-/* Whether no more is to be begun, by most_measured. */
+/* Whether no more is to be begun, by most_measured or the caller's wish. */
 bool tm_optimise_is_spent(const tm_optimise_work *work);
 
 /* Takes the best positions of the cluster into the mesh. */

@@ -55,6 +55,13 @@ typedef struct tm_surface {
     bool rough; /* some of it has sharp edges all over that are not taken for any */
     size_t rough_edges; /* these */
     bool by_winding;    /* the inside is where the winding number is above 1/2 */
+    bool regions;   /* what a shell in another one encloses is a region of its own, else a
+                       hole; of each shell region[shell] is that which it is around, or,
+                       where the file has none, region is NULL: 1 and more */
+    double *region; /* [components] */
+    size_t repeated_regions; /* of the file, in one with another one before */
+    size_t holes;            /* points in what is a hole all the same */
+    double (*hole)[3];
 } tm_surface;
 
 /* The default of feature_angle: degrees. */
@@ -65,6 +72,7 @@ typedef struct tm_surface_options {
     bool unless_rough;    /* no edge of a body is, where many of those end freely; but
                              what is long and smooth around: surface_loose.h */
     bool lenient;         /* open surfaces, and such that cross themselves, are taken */
+    bool regions;         /* a shell in another one bounds a region, not a hole */
 } tm_surface_options;
 
 /* Makes the surface of the polygons: nodes with equal coordinates become one, polygons
@@ -80,7 +88,8 @@ typedef struct tm_surface_options {
  * several polygons or holes; and unless lenient where an edge has one triangle, or more
  * than two that do not pair, where a shell cannot be oriented, or where two triangles
  * meet otherwise than in common nodes and edges, exactly (touching is meeting). With
- * lenient the surface is cut open at edges of the third and fourth kind.
+ * lenient the surface is cut open at edges of the third and fourth kind. With `regions`
+ * also where a region of the file is in no shell.
  *
  * *surface need not be initialised; tm_surface_free() also after an error.
  * O(n log n). */
@@ -127,6 +136,12 @@ void tm_surface_closest_on_curve(const tm_surface *surface, uint32_t curve,
  * A. Jacobson, Fast winding numbers for soups and clouds, 2018): its mean
  * error is below 0.01, the largest about 0.1. */
 bool tm_surface_has_inside(const tm_surface *surface, const double point[3]);
+
+/* Six times the volume of each shell, [components]; negative where it looks inward. */
+void tm_surface_shell_volumes(const tm_surface *surface, double *volume);
+
+/* Whether a point is in what is meshed: inside, or with `regions` within any shell. */
+bool tm_surface_has_mesh(const tm_surface *surface, const double point[3]);
 
 /* The generalised winding number, near 1 inside and 0 outside; for surfaces that have
  * by_winding. */

@@ -94,6 +94,8 @@ tm_status tm_surface_build(tm_surface *surface, const tm_polygon_surface *polygo
         status = shape(surface, options, polygons->base, error);
     if (status == TM_OK)
         status = prepare(surface, options, polygons->base, error);
+    if (status == TM_OK && options->regions)
+        status = tm_surface_find_regions(surface, polygons, error);
     return status;
 }
 
@@ -107,6 +109,8 @@ void tm_surface_free(tm_surface *surface)
     free(surface->origin);
     free(surface->across);
     free(surface->shell);
+    free(surface->region);
+    free(surface->hole);
     free(surface->patch);
     free(surface->curve_start);
     free(surface->curve_node);

@@ -67,7 +67,20 @@ static inline bool can_meet(const ray *r, const tm_tree_node *node)
            (r->up ? p[r->w] <= node->high[r->w] : node->low[r->w] <= p[r->w]);
 }
 
-bool tm_surface_ray_is_odd(const tm_surface *surface, const double point[3], uint32_t but,
+/* What stands for a shell where those that a ray meets an odd number of times are added
+ * without carry: bit 0 of the sum is whether the ray meets an odd number of triangles,
+ * and the sum is 0 where there are no such shells (and else once in 2^63 times). The
+ * finaliser of SplitMix64 (G. L. Steele, D. Lea, C. H. Flood, 2014). */
+static uint64_t sign_of_shell(uint32_t shell)
+{
+    uint64_t z = (shell + UINT64_C(1)) * UINT64_C(0x9e3779b97f4a7c15);
+    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
+    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
+    return (z ^ z >> 31) | 1;
+}
+
+/* The sum of the shells that a ray from the point meets an odd number of times. */
+static uint64_t odd_shells(const tm_surface *surface, const double point[3], uint32_t but,
                            bool *on)
 {
     const tm_surface_tree *tree = surface->tree;
@@ -76,7 +89,7 @@ bool tm_surface_ray_is_odd(const tm_surface *surface, const double point[3], uin
     r.up = surface->high[w] - point[w] < point[w] - surface->low[w];
     uint32_t stack[TM_TREE_DEPTH];
     size_t height = 0;
-    bool odd = false;
+    uint64_t odd = 0;
     if (can_meet(&r, &tree->node[0]))
         stack[height++] = 0;
     while (height > 0) {
@@ -92,23 +105,52 @@ bool tm_surface_ray_is_odd(const tm_surface *surface, const double point[3], uin
             if (but != TM_NONE && surface->shell[triangle->id] == but)
                 continue;
             const double(*corner)[3] = (const double(*)[3])triangle->corner;
-            if (is_over(&r, corner))
-                odd ^= is_ahead(&r, corner, on);
+            if (is_over(&r, corner) && is_ahead(&r, corner, on))
+                odd ^= sign_of_shell(surface->shell[triangle->id]);
         }
     }
     return odd;
+}
+
+bool tm_surface_ray_is_odd(const tm_surface *surface, const double point[3], uint32_t but,
+                           bool *on)
+{
+    return odd_shells(surface, point, but, on) & 1;
+}
+
+static bool is_in_box(const tm_surface *surface, const double point[3])
+{
+    for (int i = 0; i < 3; i++)
+        if (!(surface->low[i] <= point[i] && point[i] <= surface->high[i]))
+            return false;
+    return true;
 }
 
 bool tm_surface_has_inside(const tm_surface *surface, const double point[3])
 {
     const double most = 0.5;
     bool on = false;
-    for (int i = 0; i < 3; i++)
-        if (!(surface->low[i] <= point[i] && point[i] <= surface->high[i]))
-            return false;
+    if (!is_in_box(surface, point))
+        return false;
     if (surface->by_winding)
         return tm_surface_winding_number(surface, point) > most;
     return tm_surface_ray_is_odd(surface, point, TM_NONE, &on);
+}
+
+bool tm_surface_is_within(const tm_surface *surface, uint32_t shell,
+                          const double point[3])
+{
+    bool on = false;
+    return odd_shells(surface, point, TM_NONE, &on) !=
+           odd_shells(surface, point, shell, &on);
+}
+
+bool tm_surface_has_mesh(const tm_surface *surface, const double point[3])
+{
+    bool on = false;
+    if (!surface->regions || surface->by_winding)
+        return tm_surface_has_inside(surface, point);
+    return is_in_box(surface, point) && odd_shells(surface, point, TM_NONE, &on) != 0;
 }
 
 /* The generalised winding number: the sum of the solid angles of all triangles, over 4π;

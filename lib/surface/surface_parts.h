@@ -43,6 +43,10 @@ tm_status tm_surface_find_features(tm_surface *surface, double feature_angle,
                                    bool unless_rough, double least_length,
                                    tm_error *error);
 
+/* regions, region, repeated_regions, holes and hole, by the tree. */
+tm_status tm_surface_find_regions(tm_surface *surface, const tm_polygon_surface *polygons,
+                                  tm_error *error);
+
 /* The unit normal of t; false where it is so thin that it has none of its own. */
 bool tm_surface_own_normal(const tm_surface *surface, uint32_t t, double normal[3]);
 

@@ -71,6 +71,10 @@ void tm_surface_tree_free(tm_surface_tree *tree);
 bool tm_surface_ray_is_odd(const tm_surface *surface, const double point[3], uint32_t but,
                            bool *on);
 
+/* Whether a point is within a shell. */
+bool tm_surface_is_within(const tm_surface *surface, uint32_t shell,
+                          const double point[3]);
+
 /* Makes the tree's dipoles. */
 tm_status tm_surface_winding_build(tm_surface *surface, tm_error *error);
 

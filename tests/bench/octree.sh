@@ -5,7 +5,8 @@
 # speed beside tetgen -pq on the same surface; then what is aimed at. The environment:
 #   TM_DATA   a folder with femur.off, knot.off, fandisk.off, anchor_dense.off, cortex.mdl
 #             and cortex_surf_roi.mdl; those that are there are used
-#   LEVELS    of -s; 5 6 7
+#   LEVELS    of -s; 5 6 7, of solids of few sharp polygons 5, of the wedge, whose
+#             shortest side is what the level counts from, 2
 #   SHAPES    which shapes and which of these files; all
 #   OPTIONS   more options for octree-mesh
 #   REPAIR    a threshold: what octree-repair -t makes of these meshes is judged instead,
@@ -40,6 +41,15 @@ surface_of() {
         shapes "$1" >"$work/$1.off"
         echo "$work/$1.off"
         ;;
+    esac
+}
+
+# levels_of NAME
+levels_of() {
+    case $1 in
+    wedge) echo "${LEVELS:-2}" ;;
+    star | slit | spike | step | spool) echo "${LEVELS:-5}" ;;
+    *) echo "${LEVELS:-5 6 7}" ;;
     esac
 }
 
@@ -88,7 +98,7 @@ judge --head
 for name in ${SHAPES:-$(all_shapes)}; do
     file=$(surface_of "$name")
     rate=$(tetgen_rate "$file")
-    for level in ${LEVELS:-5 6 7}; do
+    for level in $(levels_of "$name"); do
         mesh "$name" "$file" "$rate" -s "$level"
     done
     if [ "$name" = cortex.mdl ] && [ -r "$region" ]; then

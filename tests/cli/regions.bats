@@ -127,24 +127,42 @@ for i, p in enumerate(sys.argv[1:]):
 END
 }
 
-@test "a region in what would be a cavity is refused, one region is none, several are said" {
+@test "regions of .poly: each has its number, with --cavities only those outside of holes" {
+    regions() {
+        rows .mix "$1" | awk '{ print $NF }' | sort -nu | paste -sd ' '
+    }
     nested 0.5 1.5 >filled.poly
-    run -3 --separate-stderr octree-mesh -s 3 filled.poly
+    octree-mesh -q -s 3 -o mesh.tm filled.poly
+    [ "$(volume mesh.tm)" = 27 ]
+    [ "$(regions mesh.tm)" = "1 2" ]
+    run -3 --separate-stderr octree-mesh -s 3 --cavities filled.poly
     [ "$output" = "" ]
-    [[ "$stderr" == *"octree-mesh: filled.poly: region 2, at (1.5, 1.5, 1.5), is outside, or in a cavity that would be left empty (one solid is filled; 'tetgen-mesh FILE | off-export'"* ]]
-    nested >hollow.poly
-    octree-mesh -s 3 -o mesh.tm hollow.poly 2>silence
-    [ "$(volume mesh.tm)" = 26 ]
+    [[ "$stderr" == *"octree-mesh: filled.poly: region 2, at (1.5, 1.5, 1.5), is outside, or in a cavity that is left empty" ]]
+    nested 7 >outside.poly
+    run -3 --separate-stderr octree-mesh -s 3 outside.poly
+    [[ "$stderr" == *"region 1, at (7, 7, 7), is outside" ]]
+    # who has no number gets the next one
     nested 0.5 >one.poly
-    octree-mesh -s 3 -o mesh.tm one.poly 2>message
-    sed 's/one/hollow/; /1 region, whose attribute elements would have: left out$/d' message |
-        cmp - silence
+    octree-mesh -q -s 3 -o mesh.tm one.poly
+    [ "$(regions mesh.tm)" = "1 2" ]
+    nested 1.5 | sed '$s/1 -1$/5 -1/' >inner.poly
+    octree-mesh -q -s 3 -o mesh.tm inner.poly
+    [ "$(regions mesh.tm)" = "5 6" ]
+    octree-mesh -q -s 3 --cavities -o mesh.tm one.poly
     [ "$(volume mesh.tm)" = 26 ]
     nested 0.5 2.5 >two.poly
     run -0 --separate-stderr octree-mesh -s 3 -o mesh.tm two.poly
-    [[ "$stderr" == *"octree-mesh: two.poly: 2 regions (one solid is filled; "*"): left out"* ]]
+    [[ "$stderr" == *"octree-mesh: two.poly: 1 regions that are in one with another before: left out"* ]]
     run -3 octree-mesh -s 3 --strict -o strict.tm two.poly
     [ ! -e strict.tm ]
+}
+
+@test "holes of .poly stay holes" {
+    nested 0.5 | awk '$1 == 0 && NF == 1 && !done { print 1; print 1, 1.5, 1.5, 1.5; done = 1
+        next } { print }' >hole.poly
+    octree-mesh -s 3 -o mesh.tm hole.poly 2>message
+    [ "$(volume mesh.tm)" = 26 ]
+    run ! grep 'not in the mesh' message
 }
 
 @test "tetgen-mesh: of faces in one place the first is taken" {

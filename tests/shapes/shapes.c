@@ -2,10 +2,12 @@
 /* shapes: prints the names of the shapes.
  * shapes NAME [N]: prints a closed surface of some thousand triangles as OFF; N is how
  *     fine it is: the cells of its grid along an axis.
- * Most are the surface of blocks of cells, with the nodes moved to where they belong; the
- * others are where a function vanishes. None crosses itself. */
+ * Most are the surface of blocks of cells, with the nodes moved to where they belong;
+ * some are where a function vanishes, the last ones a few polygons. None crosses itself.
+ */
 #include "blocks.h"
 #include "marching.h"
+#include "solids.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -259,6 +261,7 @@ typedef struct shape {
     shape_function *function;
     double side;
     bool tilted;
+    void (*make)(surface *s); /* a solid that is what it is */
 } shape;
 
 static const shape shapes[] = {
@@ -292,11 +295,21 @@ static const shape shapes[] = {
     {.name = "turned", .fine = 16, .place = place_turned, .tilted = true},
     {.name = "hand", .fine = 40, .function = hand, .side = 2.4, .tilted = true},
     {.name = "folded", .fine = 96, .cells = {0, 20, 1}, .place = place_folded},
+    {.name = "star", .make = make_star},
+    {.name = "slit", .make = make_slit},
+    {.name = "spike", .make = make_spike},
+    {.name = "wedge", .make = make_wedge},
+    {.name = "step", .make = make_step},
+    {.name = "spool", .make = make_spool},
 };
 enum { SHAPES = sizeof shapes / sizeof shapes[0] };
 
 static void make(const shape *is, size_t fine, surface *s)
 {
+    if (is->make != NULL) {
+        is->make(s);
+        return;
+    }
     if (is->function != NULL) {
         make_marching(
             &(marching){

@@ -70,10 +70,12 @@ static void test_move(void **unused)
         tm_repair_state old = copy_elements(&c.state);
         const tm_repair_score before = measured(&c.state, threshold);
         tm_repair_score after = before;
-        assert_ok(tm_repair_move(&c.state, &c.surface, threshold,
-                                 threshold / (1 << random_below(4)), random_below(3),
-                                 &after, &error),
+        const tm_repair_effort effort = {
+            random_below(3), random_between(0, 0.3),
+            random_below(2) ? 1.0 / (1 << random_below(4)) : 0, 10000, 100000};
+        assert_ok(tm_repair_move(&c.state, &c.surface, threshold, effort, &after, &error),
                   &error);
+        assert_true(effort.share > 0 || after.off_surface == before.off_surface);
         check_score(&c.state, &after, threshold);
         check_not_worse(&before, &after);
         check_same_elements(&old, &c.state);
@@ -280,6 +282,58 @@ static void test_remake(void **unused)
     }
 }
 
+/* A cube with a pyramid on each side: leaves inside do not reach the tips. */
+static void add_pyramids(tm_polygon_surface *p)
+{
+    static const uint32_t side[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                        {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    uint32_t node[8];
+    for (unsigned i = 0; i < 8; i++)
+        node[i] = add_node(p, i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
+    for (size_t f = 0; f < 6; f++) {
+        const double sign = f % 2 ? 4 : -4;
+        const uint32_t tip = add_node(p, f / 2 == 0 ? sign : 0, f / 2 == 1 ? sign : 0,
+                                      f / 2 == 2 ? sign : 0);
+        for (size_t i = 0; i < 4; i++)
+            add_triangle(p, node[side[f][i]], node[side[f][(i + 1) % 4]], tip);
+    }
+}
+
+static size_t count_on(const tm_repair_state *s, uint8_t place)
+{
+    size_t count = 0;
+    for (size_t v = 0; v < s->mesh.nodes; v++)
+        count += s->on[v] == place;
+    return count;
+}
+
+/* Octants are split near tips that reach out of them: corners and sharp edges stay. */
+static void test_remake_tips(void **unused)
+{
+    (void)unused;
+    tm_error error;
+    tm_polygon_surface p;
+    repair_case c;
+    tm_repair_state made = {0};
+    uint32_t *octant;
+    size_t count;
+    tm_polygon_surface_init(&p);
+    add_pyramids(&p);
+    start_case(&c, &p, 4);
+    assert_int_equal(count_on(&c.state, TM_NODE_ON_CORNER), c.surface.corners);
+    assert_ok(tm_repair_bad_octants(&c.state, 0.25, false, &octant, &count, &error),
+              &error);
+    assert_true(count > 0);
+    assert_ok(tm_repair_remake(&made, &c.state, &c.surface, octant, count, &error),
+              &error);
+    assert_int_equal(count_on(&made, TM_NODE_ON_CORNER), c.surface.corners);
+    assert_true(count_on(&made, TM_NODE_ON_CURVE) >=
+                count_on(&c.state, TM_NODE_ON_CURVE));
+    free(octant);
+    tm_repair_state_free(&made);
+    end_case(&c);
+}
+
 static void make_hexahedron(double xyz[8][3], double by)
 {
     static const double cube[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
@@ -344,8 +398,8 @@ static void test_uncertified(void **unused)
     assert_int_equal(score.invalid, 1);
     assert_int_equal(score.bad, 1);
     assert_true(score.worst > 0.02);
-    assert_true(score.floor == 0);
-    const tm_repair_score valid = {.bad = 1, .worst = 0.001, .floor = 0.001};
+    assert_true(score.least == 0);
+    const tm_repair_score valid = {.bad = 1, .worst = 0.02, .least = 0.02, .good = 0.2};
     assert_true(tm_repair_better(&valid, &score));
     assert_false(tm_repair_better(&score, &valid));
 }
@@ -374,7 +428,7 @@ static void test_least(void **unused)
     }
 }
 
-/* All pairs of scores: never better both ways, never below the floor. */
+/* All pairs of scores: never better both ways, never where one thing is worse. */
 static void test_better(void **unused)
 {
     (void)unused;
@@ -386,7 +440,8 @@ static void test_better(void **unused)
                                  .off_surface = random_below(2),
                                  .worst = random_between(0, 0.4)};
         s[i].bad = s[i].invalid + random_below(2);
-        s[i].floor = s[i].invalid ? 0 : fmin(s[i].worst, threshold);
+        s[i].least = s[i].invalid ? 0 : s[i].worst;
+        s[i].good = threshold;
     }
     for (int i = 0; i < SCORES; i++)
         for (int j = 0; j < SCORES; j++) {
@@ -394,12 +449,19 @@ static void test_better(void **unused)
             assert_false(better && tm_repair_better(&s[j], &s[i]));
             if (better)
                 check_not_worse(&s[j], &s[i]);
-            if (s[i].invalid < s[j].invalid)
-                assert_int_equal(better, s[i].worst >= s[j].floor);
+            const bool other = s[i].off_surface != s[j].off_surface ||
+                               s[i].bad != s[j].bad || s[i].least > s[j].least;
+            if (s[i].invalid == s[j].invalid && s[i].off_surface <= s[j].off_surface &&
+                s[i].bad <= s[j].bad && s[i].worst >= fmin(s[j].worst, threshold))
+                assert_int_equal(better, other);
         }
-    const tm_repair_score few = {.bad = 1, .worst = 1e-15, .floor = 1e-15};
-    const tm_repair_score many = {.bad = 9, .worst = 0.18, .floor = 0.18};
+    const tm_repair_score few = {.bad = 1, .worst = 1e-15, .least = 1e-15, .good = 0.2};
+    const tm_repair_score many = {.bad = 9, .worst = 0.18, .least = 0.18, .good = 0.2};
     assert_false(tm_repair_better(&few, &many));
+    tm_repair_score held = many;
+    held.off_surface = 2;
+    assert_false(tm_repair_better(&few, &held));
+    assert_true(tm_repair_better(&many, &held));
 }
 
 /* Parts of an element fill it, whichever faces may be cut. */
@@ -486,11 +548,12 @@ int main(void)
 {
     random_start();
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_least),   cmocka_unit_test(test_uncertified),
-        cmocka_unit_test(test_better),  cmocka_unit_test(test_star),
-        cmocka_unit_test(test_rules),   cmocka_unit_test(test_move),
-        cmocka_unit_test(test_divide),  cmocka_unit_test(test_sharp_corners),
-        cmocka_unit_test(test_octants), cmocka_unit_test(test_remake),
+        cmocka_unit_test(test_least),       cmocka_unit_test(test_uncertified),
+        cmocka_unit_test(test_better),      cmocka_unit_test(test_star),
+        cmocka_unit_test(test_rules),       cmocka_unit_test(test_move),
+        cmocka_unit_test(test_divide),      cmocka_unit_test(test_sharp_corners),
+        cmocka_unit_test(test_octants),     cmocka_unit_test(test_remake),
+        cmocka_unit_test(test_remake_tips),
     };
     return cmocka_run_group_tests(tests, start_mpi, NULL);
 }

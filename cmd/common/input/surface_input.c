@@ -243,7 +243,7 @@ static void refuse_walls(const filter *f, tm_polygon_surface *polygons)
     filter_fail(f, &error);
 }
 
-/* Regions are told apart by walls, or are in what would be left empty as a cavity. */
+/* Where shells in others bound holes: no region can be in one. */
 static void check_regions(const filter *f, const tm_polygon_surface *polygons,
                           const tm_surface *surface)
 {
@@ -253,15 +253,13 @@ static void check_regions(const filter *f, const tm_polygon_surface *polygons,
         if (tm_surface_has_inside(surface, p))
             continue;
         tm_fail_at(&error, TM_ERROR_INPUT, filter_input_name(f), 0, NULL,
-                   "region %zu, at (%g, %g, %g), is outside, or in a cavity that would "
-                   "be left empty (%s)",
-                   r + 1, p[0], p[1], p[2], one_solid);
+                   "region %zu, at (%g, %g, %g), is outside, or in a cavity that is left "
+                   "empty",
+                   r + 1, p[0], p[1], p[2]);
         filter_fail(f, &error);
     }
-    if (polygons->regions > 1)
-        filter_leave_out(f, "%zu regions (%s)", polygons->regions, one_solid);
-    else if (polygons->regions > 0)
-        filter_leave_out(f, "1 region, whose attribute elements would have");
+    if (polygons->regions > 0)
+        filter_leave_out(f, "%zu regions", polygons->regions);
 }
 
 /* What of the surface and its stream an octree's mesh has no place for. */
@@ -301,7 +299,11 @@ void surface_input_build(const filter *f, const tm_surface_options *options,
             snprintf(error.file, sizeof error.file, "%s", filter_input_name(f));
         filter_fail(f, &error);
     }
-    check_regions(f, &polygons, surface);
+    if (!surface->regions)
+        check_regions(f, &polygons, surface);
+    else if (surface->repeated_regions > 0)
+        filter_leave_out(f, "%zu regions that are in one with another before",
+                         surface->repeated_regions);
     if (history)
         leave_out(f, &polygons, &stream);
     tm_polygon_surface_free(&polygons);

@@ -89,8 +89,7 @@ static bool meets_or_inside(const descent *d, octant *o, size_t s)
         double centre[3];
         for (int i = 0; i < 3; i++)
             centre[i] = (o->low[i] + o->high[i]) / 2;
-        own->where =
-            tm_surface_has_inside(d->source[s].surface, centre) ? INSIDE : OUTSIDE;
+        own->where = tm_surface_has_mesh(d->source[s].surface, centre) ? INSIDE : OUTSIDE;
     }
     return own->where == INSIDE;
 }

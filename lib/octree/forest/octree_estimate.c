@@ -3,6 +3,7 @@
 
 #include "../../base/array.h"
 #include "../../geom/vector.h"
+#include "brick.h"
 #include "octree_parts.h"
 
 #include <math.h>
@@ -185,7 +186,7 @@ static void count_volume(estimator *e, double coarser)
         for (int i = 0; i < 3; i++)
             point[i] = s->low[i] +
                        (s->high[i] - s->low[i]) * ((double)at[i] + 0.5) / (double)along;
-        if (along > 1 && !tm_surface_has_inside(s, point))
+        if (along > 1 && !tm_surface_has_mesh(s, point))
             continue;
         const double side = coarser * side_at(e, point, TM_NONE);
         points++;
@@ -243,7 +244,7 @@ static bool has_shell_in(const tm_surface *first, const tm_surface *second)
         if (first->shell[t] < shells)
             continue;
         shells = first->shell[t] + 1;
-        if (tm_surface_has_inside(second, first->xyz[first->triangle[t][0]]))
+        if (tm_surface_has_mesh(second, first->xyz[first->triangle[t][0]]))
             return true;
     }
     return false;
@@ -253,7 +254,7 @@ bool tm_octree_rule_reaches(const tm_octree_rule *rule, const tm_surface *surfac
 {
     if (rule->kind == TM_RULE_BOX)
         return tm_surface_meets_box(surface, rule->low, rule->high) ||
-               tm_surface_has_inside(surface, rule->low);
+               tm_surface_has_mesh(surface, rule->low);
     if (rule->kind == TM_RULE_REGION)
         return come_close(rule->region, surface) || has_shell_in(rule->region, surface) ||
                has_shell_in(surface, rule->region);

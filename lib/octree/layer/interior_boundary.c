@@ -28,7 +28,7 @@ tm_leaf_state tm_interior_leaf_state(const tm_interior *interior, const tm_octre
     return state;
 }
 
-/* The nodes of the mesh whose octants are not all filled. */
+/* The nodes of the mesh whose octants are filled in part. */
 static tm_status number_nodes(finder *find, tm_error *error)
 {
     const tm_octree *octree = find->octree;
@@ -38,7 +38,8 @@ static tm_status number_nodes(finder *find, tm_error *error)
     if (!find->boundary_node)
         return tm_fail_memory(error);
     for (size_t n = 0; n < octree->nodes; n++) {
-        const bool on_boundary = interior->used[n] && interior->mask[n] != TM_ALL_OCTANTS;
+        const bool on_boundary = interior->used[n] && interior->mask[n] != 0 &&
+                                 interior->mask[n] != TM_ALL_OCTANTS;
         find->boundary_node[n] = on_boundary ? (uint32_t)boundary->nodes++ : TM_NONE;
     }
     boundary->grid_node = tm_new(boundary->nodes, sizeof *boundary->grid_node);

@@ -2,6 +2,7 @@
 #include "interior_leaves.h"
 
 #include "../../base/array.h"
+#include "../../base/disjoint_sets.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -234,6 +235,103 @@ void tm_interior_free(tm_interior *interior)
     free(interior->mask);
     free(interior->used);
     *interior = (tm_interior){0};
+}
+
+static bool is_at_brick(const tm_octree *octree, const tm_leaf *leaf)
+{
+    const uint32_t side = (uint32_t)1 << (octree->finest - leaf->level);
+    for (int i = 0; i < 3; i++)
+        if (leaf->anchor[i] == 0 || leaf->anchor[i] + side == octree->roots[i]
+                                                                  << octree->finest)
+            return true;
+    return false;
+}
+
+static bool has_point(const tm_octree *octree, const tm_leaf *leaf, const double point[3])
+{
+    const double unit = octree->side / (double)((uint32_t)1 << octree->finest);
+    const double side = (double)((uint32_t)1 << (octree->finest - leaf->level));
+    for (int i = 0; i < 3; i++) {
+        const double at = (point[i] - octree->low[i]) / unit - leaf->anchor[i];
+        if (!(at >= 0 && at < side))
+            return false;
+    }
+    return true;
+}
+
+static bool has_hole(const tm_octree *octree, const tm_leaf *leaf,
+                     const tm_surface *surface)
+{
+    for (size_t h = 0; h < surface->holes; h++)
+        if (has_point(octree, leaf, surface->hole[h]))
+            return true;
+    return false;
+}
+
+/* Leaves that are not chosen are joined through common nodes: where masks are good that
+ * is through common faces, too. */
+static bool choose_enclosed(tm_interior *enclosed, const tm_interior *interior,
+                            const tm_octree *octree, const tm_surface *surface)
+{
+    uint32_t *parent = tm_new(octree->nodes, sizeof *parent);
+    bool *outside = calloc(octree->nodes + 1, sizeof *outside);
+    for (size_t n = 0; parent && n < octree->nodes; n++)
+        parent[n] = (uint32_t)n;
+    for (size_t l = 0; parent && l < octree->leaves; l++)
+        for (int p = 1; !interior->chosen[l] && p < TM_LEAF_NODES; p++)
+            if (octree->node[l][p] != TM_NONE)
+                tm_set_unite(parent, octree->node[l][0], octree->node[l][p]);
+    for (size_t l = 0; parent && outside && l < octree->leaves; l++)
+        if (!interior->chosen[l] && (is_at_brick(octree, &octree->leaf[l]) ||
+                                     has_hole(octree, &octree->leaf[l], surface)))
+            outside[tm_set_root(parent, octree->node[l][0])] = true;
+    for (size_t l = 0; parent && outside && l < octree->leaves; l++) {
+        enclosed->chosen[l] =
+            !interior->chosen[l] && !outside[tm_set_root(parent, octree->node[l][0])];
+        enclosed->count += enclosed->chosen[l];
+    }
+    const bool done = parent && outside;
+    free(parent);
+    free(outside);
+    return done;
+}
+
+/* Those that the mesh of both has. */
+static void share_used(tm_interior *enclosed, tm_interior *interior,
+                       const tm_octree *octree)
+{
+    const size_t count[2] = {enclosed->count, interior->count};
+    for (size_t l = 0; l < octree->leaves; l++)
+        enclosed->chosen[l] |= interior->chosen[l];
+    tm_interior_find_used(enclosed, octree);
+    for (size_t l = 0; l < octree->leaves; l++)
+        enclosed->chosen[l] &= !interior->chosen[l];
+    memcpy(interior->used, enclosed->used, octree->nodes * sizeof *interior->used);
+    enclosed->count = count[0];
+    interior->count = count[1];
+}
+
+tm_status tm_interior_find_enclosed(tm_interior *enclosed, tm_interior *interior,
+                                    const tm_octree *octree, const tm_surface *surface,
+                                    tm_error *error)
+{
+    *enclosed = (tm_interior){
+        .chosen = calloc(octree->leaves, sizeof *enclosed->chosen),
+        .mask = calloc(octree->nodes, sizeof *enclosed->mask),
+        .used = calloc(octree->nodes, sizeof *enclosed->used),
+    };
+    if (!enclosed->chosen || !enclosed->mask || !enclosed->used ||
+        !choose_enclosed(enclosed, interior, octree, surface))
+        return tm_fail_memory(error);
+    if (enclosed->count == 0) {
+        tm_interior_free(enclosed);
+        return TM_OK;
+    }
+    for (size_t l = 0; l < octree->leaves; l++)
+        if (enclosed->chosen[l])
+            put_in_masks(enclosed, octree, l);
+    share_used(enclosed, interior, octree);
+    return TM_OK;
 }
 
 size_t tm_interior_find_lost(const tm_interior *interior, const tm_octree *octree,

@@ -29,6 +29,16 @@ tm_status tm_interior_choose(tm_interior *interior, const tm_octree *octree,
                              const tm_surface *surface, tm_error *error);
 void tm_interior_free(tm_interior *interior);
 
+/* Chooses, as another interior, the leaves that the chosen ones enclose: what is not
+ * chosen and not joined to the outside of the brick. Where there are some, both have the
+ * nodes `used` that either has, so that they have the same faces in common; no arrays and
+ * count 0 where there are none. Its masks are as good as those of the interior.
+ * TM_ERROR_SYSTEM where memory is out; it is to be freed, after an error too. O(leaves).
+ */
+tm_status tm_interior_find_enclosed(tm_interior *enclosed, tm_interior *interior,
+                                    const tm_octree *octree, const tm_surface *surface,
+                                    tm_error *error);
+
 /* Makes a leaf chosen that is not, or the other way, with the masks of its nodes; used
  * and count are then as tm_interior_find_used() says again. */
 void tm_interior_flip(tm_interior *interior, const tm_octree *octree, size_t leaf);

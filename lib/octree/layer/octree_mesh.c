@@ -82,6 +82,132 @@ static tm_status find_boundary(tm_octree_mesh *m, const tm_octree *octree,
                                                surface, m->at, &changed, error);
     if (status == TM_OK && changed)
         status = find_boundary_once(m, octree, surface, error);
+    if (status != TM_OK || !surface->regions)
+        return status;
+    status =
+        tm_interior_find_enclosed(&m->enclosed, &m->interior, octree, surface, error);
+    if (status == TM_OK && m->enclosed.count > 0)
+        status = find_boundary_once(m, octree, surface, error);
+    return status;
+}
+
+/* Joins the nodes of each region, which has no other in common with another one than
+ * outer ones. */
+static void join_regions(const tm_octree_mesh *m, uint32_t *parent)
+{
+    const tm_mixed_mesh *mesh = &m->assembly.mesh;
+    const size_t outer = m->assembly.outer, past = outer + m->boundary.nodes;
+    for (size_t n = 0; n < mesh->nodes; n++)
+        parent[n] = (uint32_t)n;
+    for (size_t e = 0; e < mesh->elements; e++) {
+        uint32_t first = TM_NONE;
+        for (size_t i = mesh->start[e]; i < mesh->start[e + 1]; i++) {
+            const uint32_t n = mesh->item[i];
+            if (n >= outer && n < past)
+                continue;
+            if (first == TM_NONE)
+                first = n;
+            tm_set_unite(parent, first, n);
+        }
+    }
+}
+
+/* What most of the outside of a region is closest to (R. Boyer and J. Moore's count). */
+typedef struct {
+    uint32_t shell;
+    size_t votes;
+} election;
+
+static void vote(election *e, uint32_t shell)
+{
+    if (e->votes == 0)
+        e->shell = shell;
+    if (e->shell == shell)
+        e->votes++;
+    else
+        e->votes--;
+}
+
+/* A region is that of the shell around it: of those at its faces the one that is turned
+ * outward, seen from the region. */
+static void elect_shells(const tm_octree_mesh *m, const tm_surface *surface,
+                         const double *volume, uint32_t *parent, election *at)
+{
+    const tm_assembly *a = &m->assembly;
+    for (size_t f = 0; f < m->boundary.faces; f++) {
+        const uint32_t s = m->boundary.face[f][0];
+        const uint32_t shell = surface->shell[m->at[s].triangle];
+        if (volume[shell] > 0)
+            vote(&at[tm_set_root(parent, a->inner[s])], shell);
+        else if (a->across && a->across[s] != TM_NONE)
+            vote(&at[tm_set_root(parent, a->across[s])], shell);
+    }
+}
+
+/* Numbers the regions of leaves, from 1 as the shells come; counts those there are. */
+static void number_regions(tm_octree_mesh *m, const tm_octree *octree,
+                           const tm_surface *surface, uint32_t *parent,
+                           const election *at, bool *met)
+{
+    const tm_assembly *a = &m->assembly;
+    for (size_t l = 0; l < octree->leaves; l++) {
+        const uint32_t *core_node = NULL;
+        if (m->interior.chosen[l])
+            core_node = a->core_node;
+        else if (m->enclosed.count > 0 && m->enclosed.chosen[l])
+            core_node = a->core_across;
+        if (!core_node)
+            continue;
+        const uint32_t shell =
+            at[tm_set_root(parent, core_node[octree->node[l][0]])].shell;
+        m->region[l] = shell + 1;
+        met[shell] = true;
+    }
+    for (size_t i = 0; i < surface->components; i++)
+        m->report.regions += met[i];
+}
+
+static tm_status find_regions(tm_octree_mesh *m, const tm_octree *octree,
+                              const tm_surface *surface, const double *volume,
+                              tm_error *error)
+{
+    const size_t nodes = m->assembly.mesh.nodes;
+    bool *met = calloc(surface->components + 1, sizeof *met);
+    uint32_t *parent = tm_new(nodes, sizeof *parent);
+    election *at = calloc(nodes + 1, sizeof *at);
+    m->region = calloc(octree->leaves + 1, sizeof *m->region);
+    const bool done = met && parent && at && m->region;
+    if (done) {
+        join_regions(m, parent);
+        elect_shells(m, surface, volume, parent, at);
+        number_regions(m, octree, surface, parent, at, met);
+    }
+    free(met);
+    free(parent);
+    free(at);
+    return done ? TM_OK : tm_fail_memory(error);
+}
+
+/* The regions that leaves are in, where there are several, or the file numbers them; and
+ * how many are not there: shells in others, or around such, but for holes. */
+static tm_status count_regions(tm_octree_mesh *m, const tm_octree *octree,
+                               const tm_surface *surface, tm_error *error)
+{
+    double *volume = tm_new(surface->components, sizeof *volume);
+    if (!volume)
+        return tm_fail_memory(error);
+    tm_surface_shell_volumes(surface, volume);
+    size_t within = 0;
+    for (size_t i = 0; i < surface->components; i++)
+        within += volume[i] < 0;
+    tm_status status = TM_OK;
+    if (m->enclosed.count > 0 || surface->region)
+        status = find_regions(m, octree, surface, volume, error);
+    if (m->enclosed.count > 0)
+        within = surface->components - m->report.regions;
+    if (within > surface->holes && !surface->by_winding)
+        m->report.regions_lost = within - surface->holes;
+    free(volume);
     return status;
 }
 
@@ -101,13 +227,16 @@ static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *su
         status = tm_feature_find(&m->feature, &m->boundary, surface, m->at, error);
     tm_progress_stage(progress, "assembling elements");
     if (status == TM_OK)
-        status = tm_assemble(&m->assembly, octree, &m->interior, &m->boundary, error);
+        status = tm_assemble(&m->assembly, octree, &m->interior, &m->enclosed,
+                             &m->boundary, error);
     tm_progress_stage(progress, "projecting the layer");
     if (status == TM_OK)
         status = tm_project_layer(&m->assembly, &m->boundary, &m->feature, surface, m->at,
                                   error);
     if (status == TM_OK)
         status = tm_untangle_layer(m, octree, surface, progress, error);
+    if (status == TM_OK && surface->regions)
+        status = count_regions(m, octree, surface, error);
     if (status != TM_OK)
         return status;
     r->corners_lost = m->feature.corners_lost;
@@ -153,9 +282,11 @@ tm_status tm_octree_mesh_make_of(tm_octree_mesh *mesh, const tm_octree *octree,
 void tm_octree_mesh_free(tm_octree_mesh *mesh)
 {
     tm_interior_free(&mesh->interior);
+    tm_interior_free(&mesh->enclosed);
     tm_interior_boundary_free(&mesh->boundary);
     tm_feature_free(&mesh->feature);
     tm_assembly_free(&mesh->assembly);
+    free(mesh->region);
     free(mesh->at);
     free(mesh->off_surface);
     *mesh = (tm_octree_mesh){0};

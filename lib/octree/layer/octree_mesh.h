@@ -22,24 +22,31 @@ typedef struct tm_octree_mesh_report {
     double dropped_at[3];             /* a node of one of them */
     size_t corners_lost, curves_lost; /* of the surface */
     double feature_lost_at[3];
-    size_t off_surface; /* boundary nodes that are not on the surface */
-    size_t invalid;     /* elements with J_ENS <= 0 */
-    size_t components;  /* of the boundary */
-    int64_t euler;      /* of the boundary */
+    size_t off_surface;  /* boundary nodes that are not on the surface */
+    size_t invalid;      /* elements with J_ENS <= 0 */
+    size_t regions;      /* 0 where none is inside of another */
+    size_t regions_lost; /* shells inside of others that have none, or around such */
+    size_t components;   /* of the boundary */
+    int64_t euler;       /* of the boundary */
 } tm_octree_mesh_report;
 
 typedef struct tm_octree_mesh {
     tm_interior interior;
+    tm_interior enclosed; /* the leaves of regions inside of others; count 0: none */
     tm_interior_boundary boundary;
     tm_feature feature;
     tm_assembly assembly;
     tm_surface_point
         *at; /* [nodes of the interior boundary]: where they are on the surface */
     bool *off_surface; /* [nodes of the interior boundary]: it is not there */
+    uint32_t *region;  /* [leaves]: one more than the shell around them, 0 outside; NULL
+                          where no region is in another, and the file numbers none */
     tm_octree_mesh_report report;
 } tm_octree_mesh;
 
-/* Makes the mesh of an octree; what is lost, rounded and dropped is only said by
+/* Makes the mesh of an octree. With surface->regions a shell inside of another one bounds
+ * a region of its own, and elements on both sides of it have their faces there in common.
+ * What is lost, rounded and dropped is only said by
  * tm_octree_mesh_refine_lost(). The surface's patches are joined for a while where one of
  * its curves is too fine, and are as they were after. TM_ERROR_INPUT where no leaf is
  * inside; TM_ERROR_SYSTEM where memory or 32-bit ids are out. *mesh is to be freed, after

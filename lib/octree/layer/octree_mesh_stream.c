@@ -25,22 +25,41 @@ static tm_status nodes_to_stream(tm_octree_mesh *m, tm_stream *stream, tm_error 
     return TM_OK;
 }
 
+/* The region of its leaf, where there are some, then the level. */
+static tm_status attributes_to_stream(const tm_octree_mesh *m, const tm_octree *octree,
+                                      const tm_surface *surface, bool levels,
+                                      tm_block *mix, tm_error *error)
+{
+    const size_t k = (m->region ? 1u : 0u) + (levels ? 1u : 0u);
+    mix->attribute = tm_new(k * mix->count, sizeof *mix->attribute);
+    if (!mix->attribute)
+        return tm_fail_memory(error);
+    mix->attributes = k;
+    for (size_t l = 0; l < octree->leaves; l++)
+        for (size_t e = m->assembly.first[l]; e < m->assembly.first[l + 1]; e++) {
+            if (levels)
+                mix->attribute[k * e + k - 1] = octree->leaf[l].level;
+            if (m->region)
+                mix->attribute[k * e] =
+                    surface->region ? surface->region[m->region[l] - 1] : m->region[l];
+        }
+    return TM_OK;
+}
+
 static tm_status elements_to_stream(tm_octree_mesh *m, const tm_octree *octree,
-                                    bool levels, tm_stream *stream, tm_error *error)
+                                    const tm_surface *surface, bool levels,
+                                    tm_stream *stream, tm_error *error)
 {
     tm_block *mix = tm_stream_add(stream, ".mix");
     if (!mix)
         return tm_fail_memory(error);
     tm_mixed_mesh *mesh = &m->assembly.mesh;
     mix->count = mesh->elements;
-    if (levels) {
-        mix->attributes = 1;
-        mix->attribute = tm_new(mesh->elements, sizeof *mix->attribute);
-        if (!mix->attribute)
-            return tm_fail_memory(error);
-        for (size_t l = 0; l < octree->leaves; l++)
-            for (size_t e = m->assembly.first[l]; e < m->assembly.first[l + 1]; e++)
-                mix->attribute[e] = octree->leaf[l].level;
+    if (levels || m->region) {
+        const tm_status status =
+            attributes_to_stream(m, octree, surface, levels, mix, error);
+        if (status != TM_OK)
+            return status;
     }
     mix->start = mesh->start;
     mix->item = mesh->item;
@@ -69,18 +88,36 @@ static int32_t marker_of(const tm_octree_mesh *m, const tm_surface *surface, uns
     return surface->marker[at.triangle];
 }
 
-static void add_facet(facet_writer *w, const tm_octree_mesh *m, const tm_surface *surface,
-                      uint32_t element, unsigned k, const uint32_t *corner)
+/* The element beyond a face of which `element` is the first of those that the enclosed
+ * leaves have there: that, or the next one, which has the corners. */
+static uint32_t beyond(const tm_octree_mesh *m, uint32_t element, unsigned k,
+                       const uint32_t *corner)
 {
+    const tm_mixed_mesh *mesh = &m->assembly.mesh;
+    if (element == TM_NONE)
+        return TM_NONE;
+    unsigned common = 0;
+    for (size_t i = mesh->start[element]; i < mesh->start[element + 1]; i++)
+        for (unsigned c = 0; c < k; c++)
+            common += mesh->item[i] == m->assembly.outer + corner[c];
+    return common == k ? element : element + 1;
+}
+
+static void add_facet(facet_writer *w, const tm_octree_mesh *m, const tm_surface *surface,
+                      size_t f, uint32_t element, unsigned k, const uint32_t *corner)
+{
+    const uint32_t *across = m->assembly.layer_across;
     w->block->integer[2 * w->facets] = element;
-    w->block->integer[2 * w->facets + 1] = TM_NONE;
+    w->block->integer[2 * w->facets + 1] =
+        across ? beyond(m, across[f], k, corner) : TM_NONE;
     w->block->marker[w->facets] = marker_of(m, surface, k, corner);
     w->block->start[w->facets++] = w->items;
     for (unsigned i = 0; i < k; i++)
         w->block->item[w->items++] = m->assembly.outer + corner[i];
 }
 
-/* The boundary faces as rows of .facet: a quadrilateral, a triangle, or two triangles. */
+/* The faces of the boundary, and between regions, as rows of .facet: a quadrilateral, a
+ * triangle, or two triangles. */
 static tm_status facets_to_stream(const tm_octree_mesh *m, const tm_surface *surface,
                                   tm_stream *stream, tm_error *error)
 {
@@ -103,13 +140,13 @@ static tm_status facets_to_stream(const tm_octree_mesh *m, const tm_surface *sur
         const uint32_t *face = boundary->face[f];
         const uint32_t element = m->assembly.layer[f];
         if (boundary->cut[f] == TM_UNCUT) {
-            add_facet(&w, m, surface, element, tm_boundary_face_corners(boundary, f),
+            add_facet(&w, m, surface, f, element, tm_boundary_face_corners(boundary, f),
                       face);
             continue;
         }
         for (uint32_t t = 0; t < 2; t++) {
             const uint8_t *corner = tm_cut_triangles[boundary->cut[f]][t];
-            add_facet(&w, m, surface, element + t, 3,
+            add_facet(&w, m, surface, f, element + t, 3,
                       (uint32_t[]){face[corner[0]], face[corner[1]], face[corner[2]]});
         }
     }
@@ -149,7 +186,7 @@ tm_status tm_octree_mesh_to_stream(tm_octree_mesh *mesh, const tm_octree *octree
     if (status == TM_OK)
         status = nodes_to_stream(mesh, stream, error);
     if (status == TM_OK)
-        status = elements_to_stream(mesh, octree, levels, stream, error);
+        status = elements_to_stream(mesh, octree, surface, levels, stream, error);
     if (status == TM_OK)
         status = tm_octree_to_stream(octree, mesh->assembly.first, stream, error);
     if (status == TM_OK)

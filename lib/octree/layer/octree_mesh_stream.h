@@ -19,11 +19,11 @@ typedef enum tm_node_class {
 } tm_node_class;
 
 /* Appends .node .mix .octant .root surface.node surface.face, and, where the surface has
- * markers, .facet with the boundary faces and the marker of the closest triangle, and
- * with its names .group.
- * `levels`: elements have the level of their octant as attribute. Arrays of mesh and
- * surface are taken; both are to be freed still. *stream must be empty. TM_ERROR_SYSTEM
- * where memory is out. */
+ * markers, .facet with the faces of the boundary and between regions and the marker of
+ * the closest triangle, and with its names .group. Elements have their region, where
+ * there are some, and with `levels` the level of their octant as attributes. Arrays of
+ * mesh and surface are taken; both are to be freed still. *stream must be empty.
+ * TM_ERROR_SYSTEM where memory is out. */
 tm_status tm_octree_mesh_to_stream(tm_octree_mesh *mesh, const tm_octree *octree,
                                    tm_surface *surface, bool levels, tm_stream *stream,
                                    tm_error *error);

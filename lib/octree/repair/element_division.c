@@ -44,13 +44,16 @@ static void add_parts(small *s, const uint8_t cut[TM_ELEMENT_FACES])
     }
 }
 
-static double measure(const small *s)
+/* The worst part, and how many are below the threshold. */
+static double measure(const small *s, double threshold, size_t *low)
 {
     double worst = 1;
+    *low = 0;
     for (size_t e = 0; e < s->parts; e++) {
         const double jens = tm_jens(s->start[e + 1] - s->start[e],
                                     (const double(*)[3])s->xyz, s->item + s->start[e]);
         worst = jens < worst ? jens : worst;
+        *low += jens < threshold;
     }
     return worst;
 }
@@ -86,10 +89,11 @@ static tm_status try_cut(tm_division *parts, small *s,
 {
     add_parts(s, cut);
     const tm_status status = place_middle(s, threshold, error);
-    const double worst = measure(s);
+    size_t low;
+    const double worst = measure(s, threshold, &low);
     if (status != TM_OK || (parts->parts > 0 && worst <= parts->worst))
         return status;
-    *parts = (tm_division){.parts = s->parts, .worst = worst};
+    *parts = (tm_division){.parts = s->parts, .worst = worst, .low = low};
     memcpy(parts->start, s->start, sizeof parts->start);
     memcpy(parts->middle, s->xyz[s->k], sizeof parts->middle);
     for (size_t i = 0; i < s->start[s->parts]; i++)

@@ -20,6 +20,7 @@ typedef struct tm_division {
     uint32_t item[TM_DIVISION_ITEMS];
     double middle[3];
     double worst; /* J_ENS */
+    size_t low;   /* parts below the threshold */
 } tm_division;
 
 /* The best division of element e: quadrilaterals whose bit is set in `open` may be cut;

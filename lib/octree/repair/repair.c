@@ -2,30 +2,27 @@
 #include "repair.h"
 
 #include "../../base/array.h"
+#include "repair_shape.h"
 #include "repair_steps.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* With how much effort nodes are moved, one after the other; and by which share of the
- * threshold elements are measured that a node leaves behind that was off the surface. */
-static const unsigned efforts[] = {1, 3};
-static const double off_surface_shares[] = {0x1p-2,  0x1p-4,  0x1p-6,  0x1p-8, 0x1p-10,
-                                            0x1p-12, 0x1p-14, 0x1p-16, 0};
-enum {
-    EFFORTS = sizeof efforts / sizeof *efforts,
-    OFF_SURFACE_SHARES = sizeof off_surface_shares / sizeof *off_surface_shares
-};
+/* With how much effort nodes are moved, one after the other; what is bad after three is
+ * left. */
+static const tm_repair_effort efforts[] = {{0, TM_REPAIR_GOOD, 1, 3000, 1000000},
+                                           {1, TM_REPAIR_GOOD, 0x1p-2, 6000, 1000000},
+                                           {3, TM_REPAIR_GOOD, 0x1p-4, 12000, 1000000}};
+enum { EFFORTS = sizeof efforts / sizeof *efforts };
 
-/* Where so many nodes are off the surface and such a part of them remains so, the octree
- * is too coarse for the surface. */
-enum { FEW_OFF_SURFACE = 500 };
-static const double hopeless = 0.9;
+/* Meshes made of split octants have so many elements all in all, or a large one is made
+ * once; and no more are made after so many that were not better. */
+enum { REMADE_MOST = 300000, FAILURES = 2 };
 
-/* Elements become others only where so many are bad: each costs some milliseconds, and
- * where most are, the threshold is too high. */
-enum { FEW_BAD = 400 };
+/* A mesh that has so many times the nodes off the surface after the first effort that
+ * another one has, and some, will not be better than that. */
+enum { HELD_TIMES = 2, HELD_MORE = 10 };
 
 /* What became of a step. */
 typedef enum { NOT_BETTER, BETTER, TOO_LARGE } outcome;
@@ -36,6 +33,7 @@ typedef struct {
     const tm_repair_options *options;
     tm_repair_report *report;
     size_t elements_at_most;
+    size_t remade, remade_at_most; /* elements */
 } repair;
 
 static bool is_done(const tm_repair_score *score)
@@ -43,78 +41,94 @@ static bool is_done(const tm_repair_score *score)
     return score->bad == 0 && score->off_surface == 0;
 }
 
-/* Brings nodes to the surface that leave elements of such a share of the threshold
- * behind, and nothing below a floor. */
-static tm_status bring_some(const repair *r, tm_repair_state *state, double share,
-                            double floor, tm_repair_score *score, tm_error *error)
+static bool is_stopped(const repair *r)
 {
-    const double t = r->options->threshold;
-    const double left = fmax(fmax(share * t, TM_REPAIR_LEAST), floor);
-    tm_repair_score from = *score;
-    from.floor = fmin(from.floor, left);
-    tm_repair_score now = from;
-    const tm_status status = tm_repair_move(state, r->surface, t, left, 1, &now, error);
-    if (tm_repair_better(&now, &from))
-        *score = now;
-    return status;
+    return tm_stop_is_wanted(r->options->stop);
 }
 
-static tm_status bring_all(const repair *r, tm_repair_state *state, double floor,
-                           tm_repair_score *score, tm_error *error)
+/* Makes elements valid, whatever the threshold is: nothing else moves for it. */
+static tm_status make_valid(const repair *r, tm_repair_state *state, tm_error *error)
 {
+    tm_repair_score score = tm_repair_measure(state, 0);
     tm_status status = TM_OK;
-    for (size_t i = 0;
-         i < OFF_SURFACE_SHARES && status == TM_OK && score->off_surface > 0; i++)
-        status = bring_some(r, state, off_surface_shares[i], floor, score, error);
-    if (status != TM_OK || score->off_surface == 0)
-        return status;
-    tm_repair_free_off_surface(state);
-    return bring_some(r, state, 0, floor, score, error);
-}
-
-/* Brings nodes to the surface. Elements that they leave behind may fall below the floor,
- * as they often become better again when the next nodes come; where they do not, all is
- * done again so that they cannot. */
-static tm_status bring(const repair *r, tm_repair_state *state, double floor,
-                       tm_repair_score *score, tm_error *error)
-{
-    const tm_repair_score before = *score;
-    tm_repair_points points = {0};
-    tm_status status = tm_repair_save(&points, state, error);
-    if (status == TM_OK)
-        status = bring_all(r, state, 0, score, error);
-    if (status == TM_OK && score->worst < floor) {
-        tm_repair_restore(&points, state);
-        *score = before;
-        status = bring_all(r, state, floor, score, error);
+    for (size_t i = 0; i < EFFORTS && status == TM_OK && score.invalid > 0; i++) {
+        tm_repair_effort effort = efforts[i];
+        effort.share = 0;
+        effort.aim = TM_REPAIR_FLAT;
+        status = tm_repair_move(state, r->surface, 0, effort, &score, error);
     }
-    tm_repair_points_free(&points);
-    return status;
-}
-
-/* All that helps without other octants. */
-static tm_status mend(const repair *r, tm_repair_state *state, tm_repair_score *score,
-                      tm_error *error)
-{
-    const double t = r->options->threshold;
-    tm_status status = TM_OK;
-    const size_t off_surface = score->off_surface;
-    const double floor = score->floor; /* of all moves together */
-    for (size_t i = 0; i < EFFORTS && status == TM_OK && !is_done(score); i++) {
-        status = tm_repair_move(state, r->surface, t, t, efforts[i], score, error);
-        if (score->off_surface > FEW_OFF_SURFACE &&
-            (double)score->off_surface > hopeless * (double)off_surface)
-            return status; /* it takes long and leads to nothing */
-    }
-    if (status == TM_OK && score->off_surface > 0)
-        status = bring(r, state, floor, score, error);
-    const bool some = score->bad > 0 && score->bad <= FEW_BAD;
-    if (status == TM_OK && some)
-        status = tm_repair_sharp_corners(state, r->surface, t, score, &r->report->corners,
-                                         error);
-    if (status == TM_OK && score->bad > 0)
+    if (status == TM_OK && score.invalid > 0 && !is_stopped(r))
         status =
-            tm_repair_divide(state, r->surface, t, score, &r->report->divided, error);
+            tm_repair_divide(state, r->surface, 0, &score, &r->report->divided, error);
+    return status;
+}
+
+/* Makes elements anew, and divides them: those that are bad, and where nodes are off the
+ * surface all that are not good, to make room. */
+static tm_status make_others(const repair *r, tm_repair_state *state, double threshold,
+                             tm_repair_score *score, tm_error *error)
+{
+    const double to =
+        score->off_surface > 0 ? fmax(threshold, TM_REPAIR_GOOD) : threshold;
+    tm_status status = TM_OK;
+    *score = tm_repair_measure(state, to);
+    if (score->bad > 0 && !is_stopped(r))
+        status = tm_repair_sharp_corners(state, r->surface, to, score,
+                                         &r->report->corners, error);
+    if (status == TM_OK && score->bad > 0 && !is_stopped(r))
+        status =
+            tm_repair_divide(state, r->surface, to, score, &r->report->divided, error);
+    *score = tm_repair_measure(state, threshold);
+    return status;
+}
+
+/* All that helps without other octants, for a threshold; less of it once there are more
+ * than `held` nodes off the surface all the same. */
+static tm_status mend_to(const repair *r, tm_repair_state *state, double threshold,
+                         size_t held, tm_repair_score *score, tm_error *error)
+{
+    tm_status status = TM_OK;
+    if (score->invalid > 0) {
+        status = make_valid(r, state, error);
+        *score = tm_repair_measure(state, threshold);
+    }
+    for (size_t i = 0;
+         i < EFFORTS && status == TM_OK && !is_done(score) && !is_stopped(r); i++) {
+        if (i + 1 == EFFORTS)
+            tm_repair_free_off_surface(state);
+        status = tm_repair_move(state, r->surface, threshold, efforts[i], score, error);
+        if (held < SIZE_MAX && score->off_surface / HELD_TIMES > held + HELD_MORE)
+            return status;
+        if (status == TM_OK && i > 0 && !is_done(score) && score->off_surface <= held)
+            status = make_others(r, state, threshold, score, error);
+    }
+    return status;
+}
+
+/* The same for the threshold of the options. Where elements are invalid, first all is
+ * done that would be without one, so that it never leaves more of them; if in the end
+ * nothing is better, it begins again from what there was. */
+static tm_status mend(const repair *r, tm_repair_state *state, size_t held,
+                      tm_repair_score *score, tm_error *error)
+{
+    const double t = r->options->threshold;
+    if (t == 0 || score->invalid == 0)
+        return mend_to(r, state, t, held, score, error);
+    tm_repair_state before = {0};
+    tm_repair_score now = tm_repair_measure(state, 0);
+    tm_status status = tm_repair_copy_mesh(&before, state, error);
+    if (status == TM_OK)
+        status = mend_to(r, state, 0, held, &now, error);
+    now = tm_repair_measure(state, t);
+    if (status == TM_OK)
+        status = mend_to(r, state, t, held, &now, error);
+    if (status == TM_OK && !tm_repair_better(&now, score)) {
+        tm_repair_take_mesh(state, &before);
+        status = mend_to(r, state, t, held, score, error);
+    } else {
+        *score = now;
+    }
+    tm_repair_state_free(&before);
     return status;
 }
 
@@ -125,30 +139,50 @@ static void replace(tm_repair_state *state, tm_repair_state *by)
     *by = (tm_repair_state){0};
 }
 
-/* Splits octants and keeps what that makes if it is better; *large says that there would
- * be more elements than allowed. */
-static tm_status refine(const repair *r, const uint32_t *octant, size_t count,
-                        outcome *became, tm_error *error)
+/* Whether a state that was made anew is to be kept: also of the surface it has to keep
+ * what there was. */
+static tm_status compare(const repair *r, const tm_repair_state *made,
+                         const tm_repair_score *now, bool *better, tm_error *error)
+{
+    tm_repair_shape was, is;
+    *better = tm_repair_better(now, &r->report->after);
+    if (!*better)
+        return TM_OK;
+    tm_status status = tm_repair_shape_measure(&was, r->state, r->surface, error);
+    if (status == TM_OK)
+        status = tm_repair_shape_measure(&is, made, r->surface, error);
+    *better = status == TM_OK && tm_repair_shape_keeps(&is, &was, r->surface);
+    return status;
+}
+
+/* Splits octants and keeps what that makes if it is better. *elements is how many it
+ * makes. */
+static tm_status refine(repair *r, const uint32_t *octant, size_t count, outcome *became,
+                        size_t *elements, tm_error *error)
 {
     tm_repair_state made = {0};
-    tm_repair_score *score = &r->report->after;
     *became = NOT_BETTER;
     r->report->iterations++;
     tm_status status =
         tm_repair_remake(&made, r->state, r->surface, octant, count, error);
     if (status == TM_ERROR_INPUT) { /* too deep: there is no such octree */
         tm_repair_state_free(&made);
+        r->remade = r->remade_at_most;
         return TM_OK;
     }
-    if (status == TM_OK && made.mesh.elements > r->elements_at_most)
+    *elements = made.mesh.elements;
+    r->remade += *elements;
+    if (status == TM_OK && *elements > r->elements_at_most)
         *became = TOO_LARGE;
     if (status == TM_OK && *became != TOO_LARGE) {
+        bool better;
         tm_repair_score now = tm_repair_measure(&made, r->options->threshold);
-        status = mend(r, &made, &now, error);
-        if (status == TM_OK && made.mesh.elements <= r->elements_at_most &&
-            tm_repair_better(&now, score)) {
+        status = mend(r, &made, r->report->after.off_surface, &now, error);
+        if (status == TM_OK)
+            status = compare(r, &made, &now, &better, error);
+        if (status == TM_OK && made.mesh.elements <= r->elements_at_most && better) {
             *became = BETTER;
-            *score = now;
+            r->report->after = now;
             replace(r->state, &made);
         }
     }
@@ -156,24 +190,33 @@ static tm_status refine(const repair *r, const uint32_t *octant, size_t count,
     return status;
 }
 
-/* Splits some of the octants that hold bad elements: all of them, or, in Z order, the
- * first part of them where all are too many. With `wide` also those around them. */
-static tm_status refine_some(const repair *r, bool wide, bool *better, tm_error *error)
+static bool may_refine(const repair *r)
 {
-    enum { HALVINGS = 5 };
-    const int halvings = r->report->after.off_surface > FEW_OFF_SURFACE ? 1 : HALVINGS;
+    return r->report->iterations < r->options->iterations &&
+           r->remade + r->state->mesh.elements <= r->remade_at_most && !is_stopped(r);
+}
+
+/* Splits some of the octants that hold bad elements, or, where some are not valid, such:
+ * all of them, or, in Z order, the first part of them where all are too many. With `wide`
+ * also those around them. */
+static tm_status refine_some(repair *r, bool wide, bool *better, tm_error *error)
+{
+    const double share = 0.8; /* of what would just not be too many */
+    const size_t old = r->state->mesh.elements;
     uint32_t *octant;
-    size_t count;
+    size_t count, elements = 0;
     outcome became = TOO_LARGE;
-    tm_status status = tm_repair_bad_octants(r->state, r->options->threshold, true,
-                                             &octant, &count, error);
+    tm_status status = tm_repair_bad_octants(
+        r->state, r->report->after.invalid > 0 ? 0 : r->options->threshold,
+        r->report->after.invalid == 0, &octant, &count, error);
     if (status == TM_OK && wide)
         status = tm_repair_widen(r->state, &octant, &count, error);
-    for (int i = 0; status == TM_OK && became == TOO_LARGE && count > 0 && i < halvings &&
-                    r->report->iterations < r->options->iterations;
-         i++) {
-        status = refine(r, octant, count, &became, error);
-        count /= 2;
+    while (status == TM_OK && became == TOO_LARGE && count > 0 && may_refine(r)) {
+        status = refine(r, octant, count, &became, &elements, error);
+        if (status == TM_OK && became == TOO_LARGE)
+            count = (size_t)(share * (double)count *
+                             ((double)r->elements_at_most - (double)old) /
+                             ((double)elements - (double)old));
     }
     *better = became == BETTER;
     free(octant);
@@ -193,23 +236,23 @@ static tm_status show(const repair *r, bool off_surface, size_t *count, tm_error
     return status;
 }
 
-static tm_status run_full(const repair *r, tm_error *error)
+static tm_status run_full(repair *r, tm_error *error)
 {
     tm_repair_score *score = &r->report->after;
     size_t count;
+    bool wide = false;
     tm_status status = show(r, true, &count, error);
     if (status == TM_OK && !is_done(score))
-        status = mend(r, r->state, score, error);
-    for (bool wide = false; status == TM_OK && !is_done(score) &&
-                            r->state->octree.leaves > 0 &&
-                            r->report->iterations < r->options->iterations;) {
+        status = mend(r, r->state, SIZE_MAX, score, error);
+    for (int failures = 0; status == TM_OK && !is_done(score) &&
+                           r->state->octree.leaves > 0 && failures < FAILURES &&
+                           may_refine(r);) {
         bool better;
         status = refine_some(r, wide, &better, error);
         if (status == TM_OK && better)
             status = show(r, true, &count, error);
-        if (!better && wide)
-            break;
-        wide = !better;
+        failures = better ? 0 : failures + 1;
+        wide = !better && !wide;
     }
     return status;
 }
@@ -268,6 +311,7 @@ tm_status tm_repair(tm_repair_state *state, tm_surface *surface,
     *report = (tm_repair_report){.before = tm_repair_measure(state, options->threshold)};
     report->after = report->before;
     state->progress = options->progress;
+    state->stop = options->stop;
     repair r = {.state = state, .surface = surface, .options = options, .report = report};
     const bool refine = options->method == TM_REPAIR_REFINE;
     if (state->octree.leaves == 0 &&
@@ -279,5 +323,7 @@ tm_status tm_repair(tm_repair_state *state, tm_surface *surface,
             return status;
     }
     r.elements_at_most = (size_t)(options->growth * (double)state->mesh.elements);
+    r.remade_at_most =
+        state->mesh.elements > REMADE_MOST ? state->mesh.elements : REMADE_MOST;
     return refine ? run_refine(&r, error) : run_full(&r, error);
 }

@@ -31,6 +31,7 @@ typedef struct tm_repair_options {
                        const uint32_t *bad, size_t count, tm_error *error);
     void *context;
     const tm_progress *progress;
+    const tm_stop *stop; /* the state that is best until then counts */
 } tm_repair_options;
 
 typedef struct tm_repair_report {

@@ -48,8 +48,11 @@ static tm_status add_division(divider *d, size_t e, double jens, unsigned open,
     division *here = &grown[d->divisions];
     here->element = (uint32_t)e;
     const tm_status status = tm_division_find(&here->parts, &d->state->mesh, e, open,
-                                              fmax(d->threshold, TM_REPAIR_LEAST), error);
-    d->divisions += here->parts.worst > tm_repair_quality(&d->state->mesh, e, jens);
+                                              fmax(d->threshold, TM_REPAIR_FLAT), error);
+    const double quality = tm_repair_quality(&d->state->mesh, e, jens);
+    d->divisions += here->parts.worst > quality &&
+                    here->parts.worst >= fmin(jens, TM_REPAIR_FLAT) &&
+                    (here->parts.low <= 1 || quality < TM_REPAIR_LEAST);
     return status;
 }
 
@@ -58,28 +61,15 @@ static tm_status find_divisions(divider *d, tm_error *error)
     const tm_mixed_mesh *mesh = &d->state->mesh;
     size_t next = 0;
     tm_status status = tm_mixed_boundary_faces(mesh, &d->face, &d->faces, error);
-    for (size_t e = 0; status == TM_OK && e < mesh->elements; e++) {
+    for (size_t e = 0;
+         status == TM_OK && e < mesh->elements && !tm_stop_is_wanted(d->state->stop);
+         e++) {
         const double jens = tm_mixed_jens(mesh, e);
         if (mesh->start[e + 1] - mesh->start[e] > TM_TET_NODES &&
             tm_repair_is_bad(mesh, e, jens, d->threshold))
             status = add_division(d, e, jens, find_open(d, e, &next), error);
     }
     return status;
-}
-
-static tm_status allocate(tm_repair_state *to, size_t items, tm_error *error)
-{
-    to->mesh.xyz = tm_new(to->mesh.nodes, sizeof *to->mesh.xyz);
-    to->rule = tm_new(to->mesh.nodes, sizeof *to->rule);
-    to->on = tm_new(to->mesh.nodes, sizeof *to->on);
-    to->mesh.start = tm_new(to->mesh.elements + 1, sizeof *to->mesh.start);
-    to->mesh.item = tm_new(items, sizeof *to->mesh.item);
-    to->octant = tm_new(to->mesh.elements, sizeof *to->octant);
-    to->origin = tm_new(to->mesh.elements, sizeof *to->origin);
-    return to->mesh.xyz && to->rule && to->on && to->mesh.start && to->mesh.item &&
-                   to->octant && to->origin
-               ? TM_OK
-               : tm_fail_memory(error);
 }
 
 static void add_element(tm_repair_state *to, size_t k, const uint32_t *item,
@@ -108,7 +98,7 @@ static tm_status apply(const divider *d, tm_repair_state *to, tm_error *error)
     }
     if (to->mesh.nodes >= TM_NONE || to->mesh.elements >= TM_NONE)
         return tm_fail(error, TM_ERROR_SYSTEM, "the mesh has too many elements");
-    const tm_status status = allocate(to, items, error);
+    const tm_status status = tm_repair_allocate(to, items, error);
     if (status != TM_OK)
         return status;
     memcpy(to->mesh.xyz, mesh->xyz, mesh->nodes * sizeof *mesh->xyz);
@@ -134,37 +124,25 @@ static tm_status apply(const divider *d, tm_repair_state *to, tm_error *error)
     return TM_OK;
 }
 
-/* Takes the mesh of another state. */
-static void take(tm_repair_state *state, tm_repair_state *by)
-{
-    by->octree = state->octree;
-    by->row = state->row;
-    by->remade = state->remade;
-    by->divided = true;
-    state->octree = (tm_octree){.leaves = 0};
-    state->row = NULL;
-    tm_repair_state_free(state);
-    *state = *by;
-    *by = (tm_repair_state){0};
-}
-
 tm_status tm_repair_divide(tm_repair_state *state, const tm_surface *surface,
                            double threshold, tm_repair_score *score, size_t *divided,
                            tm_error *error)
 {
+    const tm_repair_effort effort = {1, TM_REPAIR_FLAT, 1, 4000, 200000};
     divider d = {.state = state, .threshold = threshold};
-    tm_repair_state made = {.progress = state->progress};
+    tm_repair_state made = {.progress = state->progress, .stop = state->stop};
     tm_progress_stage(state->progress, "dividing elements");
     tm_status status = find_divisions(&d, error);
     if (status == TM_OK && d.divisions > 0)
         status = apply(&d, &made, error);
     if (status == TM_OK && d.divisions > 0) {
         tm_repair_score now = tm_repair_measure(&made, threshold);
-        status = tm_repair_move(&made, surface, threshold, threshold, 1, &now, error);
+        status = tm_repair_move(&made, surface, threshold, effort, &now, error);
         if (status == TM_OK && tm_repair_better(&now, score)) {
             *score = now;
             *divided += d.divisions;
-            take(state, &made);
+            made.divided = true;
+            tm_repair_take_mesh(state, &made);
         }
     }
     tm_repair_state_free(&made);

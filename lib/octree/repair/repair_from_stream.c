@@ -103,6 +103,49 @@ static bool are_places(const tm_block *node, const bool *where)
     return true;
 }
 
+/* Marks the nodes of elements of several regions, which the first attribute is. */
+static tm_status find_interfaces(const tm_mixed_mesh *mesh, const tm_block *mix,
+                                 bool *where, tm_error *error)
+{
+    const size_t k = mix->attributes;
+    uint32_t *first = tm_new(mesh->nodes, sizeof *first);
+    if (!first)
+        return tm_fail_memory(error);
+    for (size_t v = 0; v < mesh->nodes; v++)
+        first[v] = TM_NONE;
+    for (size_t e = 0; e < mesh->elements; e++)
+        for (size_t i = mesh->start[e]; i < mesh->start[e + 1]; i++) {
+            uint32_t *f = &first[mesh->item[i]];
+            if (*f == TM_NONE)
+                *f = (uint32_t)e;
+            where[mesh->item[i]] |= mix->attribute[k * e] != mix->attribute[k * *f];
+        }
+    free(first);
+    return TM_OK;
+}
+
+/* Whether the attribute of .node is the place of nodes that are marked; or it is if those
+ * between regions are, too. */
+static tm_status find_places(const tm_repair_state *state, const tm_block *node,
+                             const tm_block *mix, bool *where, tm_repair_notes *notes,
+                             tm_error *error)
+{
+    notes->attributed = are_places(node, where);
+    if (notes->attributed || mix->attributes == 0)
+        return TM_OK;
+    bool *both = tm_new(state->mesh.nodes, sizeof *both);
+    if (!both)
+        return tm_fail_memory(error);
+    memcpy(both, where, state->mesh.nodes * sizeof *both);
+    const tm_status status = find_interfaces(&state->mesh, mix, both, error);
+    if (status == TM_OK && are_places(node, both)) {
+        notes->attributed = notes->regions = true;
+        memcpy(where, both, state->mesh.nodes * sizeof *both);
+    }
+    free(both);
+    return status;
+}
+
 static void hold_all(tm_repair_state *state, const bool *where)
 {
     for (size_t v = 0; v < state->mesh.nodes; v++) {
@@ -112,22 +155,24 @@ static void hold_all(tm_repair_state *state, const bool *where)
     }
 }
 
-static tm_status find_rules(tm_repair_state *state, const tm_block *node,
+static tm_status find_rules(tm_repair_state *state, const tm_stream *stream,
                             const tm_surface *surface, tm_repair_notes *notes,
                             tm_error *error)
 {
+    const tm_block *node = tm_stream_find(stream, ".node");
+    const tm_block *mix = tm_stream_find(stream, ".mix");
     bool *where = calloc(state->mesh.nodes + 1, sizeof *where);
     if (!where)
         return tm_fail_memory(error);
     tm_status status = find_boundary(&state->mesh, where, error);
     if (status == TM_OK)
-        notes->attributed = are_places(node, where);
+        status = find_places(state, node, mix, where, notes, error);
     if (status == TM_OK && surface)
         status = tm_repair_find_rules(surface, state->mesh.nodes,
                                       (const double(*)[3])state->mesh.xyz,
                                       notes->attributed ? node->attribute : NULL, where,
                                       state->rule, state->on, error);
-    else
+    else if (status == TM_OK)
         hold_all(state, where);
     free(where);
     return status;
@@ -174,8 +219,13 @@ tm_status tm_repair_prepare(tm_repair_state *state, const tm_stream *stream,
                             tm_error *error)
 {
     *notes = (tm_repair_notes){0};
-    const tm_status status = find_octree(state, stream, surface, notes, error);
-    if (status != TM_OK)
+    tm_status status = find_octree(state, stream, surface, notes, error);
+    if (status == TM_OK)
+        status = find_rules(state, stream, surface, notes, error);
+    if (status != TM_OK || !notes->regions)
         return status;
-    return find_rules(state, tm_stream_find(stream, ".node"), surface, notes, error);
+    tm_octree_free(&state->octree);
+    tm_fail(&notes->no_octree, TM_ERROR_INPUT,
+            "octants of several regions cannot be split");
+    return TM_OK;
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "repair_steps.h"
+#include "repair_trial.h"
 
 #include "../../base/array.h"
 #include "../../optimise/optimise_surface.h"
@@ -7,68 +8,154 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* How often elements that became uncertified are worked on, and how much better their
- * corners have to be. */
+/* How often elements that are not certified are worked on, and how much better their
+ * corners have to be each time. */
 enum { ROUNDS = 3 };
+
+/* Nodes move so many elements away from what is bad, and those behind are needed; the
+ * whole mesh is taken unless so many times less is bad. */
+enum { PART_RINGS = 4, PART_LESS = 100 };
+
 static const double certified_step = 0.05;
 
 /* What each element has to be: an element that is not certified has to be better than it
- * is. */
-static void set_thresholds(const tm_repair_state *state, double threshold, double *to)
+ * is. Returns how many those are. */
+static size_t set_thresholds(const tm_repair_state *state, double threshold, double *to)
 {
     const tm_mixed_mesh *mesh = &state->mesh;
-    const double least = fmax(threshold, TM_REPAIR_LEAST);
+    size_t count = 0;
     for (size_t e = 0; e < mesh->elements; e++) {
         const double jens = tm_mixed_jens(mesh, e);
-        const bool uncertified = jens >= least && tm_repair_is_bad(mesh, e, jens, 0);
-        to[e] = uncertified ? jens + certified_step : least;
+        const bool uncertified = jens >= threshold && tm_repair_is_bad(mesh, e, jens, 0);
+        to[e] = uncertified ? jens + certified_step : threshold;
+        count += uncertified;
     }
+    return count;
 }
 
-static tm_status move(tm_repair_state *state, const tm_boundary *boundary,
-                      const tm_optimise_options *options, tm_error *error)
+typedef struct {
+    tm_repair_state *state;
+    const tm_boundary *boundary; /* NULL: nodes of it do not move */
+    double *thresholds;          /* [elements] */
+    tm_optimise_options options;
+} mover;
+
+/* Moves so many times, as long as there are uncertified elements, then takes back what is
+ * not better. */
+static tm_status move(mover *m, int rounds, double threshold, tm_repair_score *score,
+                      tm_error *error)
 {
-    tm_optimise_report report;
-    return tm_mixed_optimise(&state->mesh, state->rule, boundary, options, &report,
-                             error);
+    tm_repair_points before = {0};
+    bool changed = false;
+    tm_status status = tm_repair_save(&before, m->state, error);
+    for (int round = 0; status == TM_OK && round < rounds; round++) {
+        tm_optimise_report report;
+        const size_t uncertified =
+            set_thresholds(m->state, m->options.threshold, m->thresholds);
+        if (tm_stop_is_wanted(m->options.stop) || (rounds > 1 && uncertified == 0))
+            break;
+        status = tm_mixed_optimise(&m->state->mesh, m->state->rule, m->boundary,
+                                   &m->options, &report, error);
+        changed |=
+            report.moved > 0 || report.off_surface_after != report.off_surface_before;
+    }
+    if (status == TM_OK && changed)
+        status = tm_repair_take_back(m->state, &before, threshold, score->least, error);
+    if (status == TM_OK && changed)
+        *score = tm_repair_measure(m->state, threshold);
+    tm_repair_points_free(&before);
+    return status;
 }
 
-tm_status tm_repair_move(tm_repair_state *state, const tm_surface *surface,
-                         double threshold, double off_surface_threshold, unsigned effort,
-                         tm_repair_score *score, tm_error *error)
+/* Moves nodes of a mesh, all of it or a part: `least` is that of the whole. */
+static tm_status move_in(tm_repair_state *state, const tm_surface *surface,
+                         double threshold, tm_repair_effort effort, double least,
+                         tm_error *error)
 {
     tm_boundary boundary = {0};
     if (surface)
         boundary = tm_boundary_of_surface(surface);
-    tm_repair_points best = {0};
-    double *thresholds = tm_new(state->mesh.elements, sizeof *thresholds);
-    tm_status status =
-        thresholds ? tm_repair_save(&best, state, error) : tm_fail_memory(error);
-    tm_optimise_options options = {.thresholds = thresholds,
-                                   .threshold = threshold,
-                                   .off_surface_threshold =
-                                       fmax(off_surface_threshold, TM_REPAIR_LEAST),
-                                   .effort = effort,
-                                   .progress = state->progress};
-    bool is_best = true;
-    for (int round = 0; status == TM_OK && round < ROUNDS; round++) {
-        set_thresholds(state, threshold, thresholds);
-        status = move(state, surface ? &boundary : NULL, &options, error);
-        if (status != TM_OK)
-            break;
-        const tm_repair_score now = tm_repair_measure(state, threshold);
-        is_best = tm_repair_better(&now, score);
-        if (is_best) {
-            *score = now;
-            tm_repair_points_free(&best);
-            status = tm_repair_save(&best, state, error);
-        }
-        if (now.invalid == 0)
-            break;
+    tm_repair_score score = tm_repair_measure(state, threshold);
+    score.least = least;
+    const double aim = fmax(threshold, effort.aim);
+    mover m = {
+        .state = state,
+        .boundary = surface ? &boundary : NULL,
+        .thresholds = tm_new(state->mesh.elements, sizeof *m.thresholds),
+        .options = {.threshold = aim,
+                    .off_surface_threshold =
+                        effort.share > 0 ? fmax(effort.share * aim, TM_REPAIR_FLAT) : 0,
+                    .effort = effort.effort,
+                    .most_measured = effort.at_least +
+                                     effort.measured * (score.bad + score.off_surface),
+                    .progress = state->progress,
+                    .stop = state->stop}};
+    if (!m.thresholds)
+        return tm_fail_memory(error);
+    m.options.thresholds = m.thresholds;
+    tm_status status = move(&m, 1, threshold, &score, error);
+    m.options.off_surface_threshold = 0;
+    if (status == TM_OK && score.invalid > 0)
+        status = move(&m, ROUNDS, threshold, &score, error);
+    free(m.thresholds);
+    return status;
+}
+
+/* The elements that are to become better, and those at nodes off the surface; malloc'ed.
+ */
+static uint32_t *find_core(const tm_repair_state *state, double threshold, size_t *count)
+{
+    const tm_mixed_mesh *mesh = &state->mesh;
+    uint32_t *core = tm_new(mesh->elements, sizeof *core);
+    *count = 0;
+    for (uint32_t e = 0; core && e < mesh->elements; e++) {
+        bool is = tm_repair_is_bad(mesh, e, tm_mixed_jens(mesh, e), threshold);
+        for (size_t i = mesh->start[e]; i < mesh->start[e + 1]; i++)
+            is |= state->rule[mesh->item[i]].off_surface;
+        if (is)
+            core[(*count)++] = e;
     }
-    if (status == TM_OK && !is_best)
-        tm_repair_restore(&best, state);
-    tm_repair_points_free(&best);
-    free(thresholds);
+    return core;
+}
+
+/* Where little is bad the mesh around it is enough. */
+static tm_status move_part(tm_repair_state *state, const tm_surface *surface,
+                           double threshold, tm_repair_effort effort,
+                           const uint32_t *core, size_t cores, double least,
+                           tm_error *error)
+{
+    tm_node_elements around = {0};
+    tm_trial trial = {.whole = state, .around = &around};
+    tm_status status = tm_node_elements_find(&around, &state->mesh, error);
+    if (status == TM_OK)
+        status = tm_trial_gather(&trial, core, cores, PART_RINGS, error);
+    trial.part.progress = state->progress;
+    trial.part.stop = state->stop;
+    if (status == TM_OK)
+        status = move_in(&trial.part, surface, threshold, effort, least, error);
+    if (status == TM_OK)
+        tm_trial_commit(&trial);
+    tm_trial_free(&trial);
+    tm_node_elements_free(&around);
+    return status;
+}
+
+tm_status tm_repair_move(tm_repair_state *state, const tm_surface *surface,
+                         double threshold, tm_repair_effort effort,
+                         tm_repair_score *score, tm_error *error)
+{
+    size_t cores;
+    uint32_t *core = find_core(state, fmax(threshold, effort.aim), &cores);
+    if (!core)
+        return tm_fail_memory(error);
+    tm_status status = TM_OK;
+    if (cores > 0 && cores < state->mesh.elements / PART_LESS)
+        status = move_part(state, surface, threshold, effort, core, cores, score->least,
+                           error);
+    else if (cores > 0)
+        status = move_in(state, surface, threshold, effort, score->least, error);
+    free(core);
+    if (status == TM_OK && cores > 0)
+        *score = tm_repair_measure(state, threshold);
     return status;
 }

@@ -10,17 +10,56 @@
 #include <stdlib.h>
 #include <string.h>
 
-static tm_status split(tm_octree *octree, const uint32_t *row, const tm_surface *surface,
-                       const uint32_t *octant, size_t count, tm_error *error)
+/* How many leaves the layer of elements spans, at most: a corner of the surface is that
+ * far from the leaves inside. */
+enum { LAYER = 4 };
+
+/* Marks leaves with surface but no element as well, as far as the layer goes from those
+ * that are marked: else the leaves inside get smaller, and what of the surface they reach
+ * with them, but not closer to it, and corners and sharp edges are lost. */
+static tm_status mark_layer(const tm_octree *octree, const bool *filled, uint8_t *marked,
+                            tm_error *error)
+{
+    bool *near = calloc(octree->nodes + 1, sizeof *near);
+    if (!near)
+        return tm_fail_memory(error);
+    for (int ring = 0; ring <= LAYER; ring++) {
+        for (size_t l = 0; ring > 0 && l < octree->leaves; l++)
+            for (int p = 0; octree->leaf[l].crossed && !filled[l] && p < TM_LEAF_NODES;
+                 p++)
+                marked[l] |= octree->node[l][p] != TM_NONE && near[octree->node[l][p]];
+        for (size_t l = 0; l < octree->leaves; l++)
+            for (int p = 0; marked[l] && p < TM_LEAF_NODES; p++)
+                if (octree->node[l][p] != TM_NONE)
+                    near[octree->node[l][p]] = true;
+    }
+    free(near);
+    return TM_OK;
+}
+
+static tm_status split(tm_octree *octree, const tm_repair_state *from,
+                       const tm_surface *surface, const uint32_t *octant, size_t count,
+                       tm_error *error)
 {
     uint8_t *marked = calloc(octree->leaves + 1, 1);
-    if (!marked)
-        return tm_fail_memory(error);
-    for (size_t l = 0; l < octree->leaves; l++)
-        marked[l] = count > 0 && bsearch(&row[l], octant, count, sizeof *octant,
+    bool *filled = calloc(octree->leaves + 1, sizeof *filled);
+    bool *by_row = calloc(octree->leaves + 1, sizeof *by_row);
+    tm_status status = marked && filled && by_row ? TM_OK : tm_fail_memory(error);
+    for (size_t e = 0; status == TM_OK && e < from->mesh.elements; e++)
+        if (from->octant[e] != TM_NONE)
+            by_row[from->octant[e]] = true;
+    for (size_t l = 0; status == TM_OK && l < octree->leaves; l++) {
+        filled[l] = from->row[l] != TM_NONE && by_row[from->row[l]];
+        marked[l] = count > 0 && bsearch(&from->row[l], octant, count, sizeof *octant,
                                          tm_repair_compare_octants) != NULL;
-    const tm_status status = tm_octree_refine(octree, surface, marked, error);
+    }
+    if (status == TM_OK)
+        status = mark_layer(octree, filled, marked, error);
+    if (status == TM_OK)
+        status = tm_octree_refine(octree, surface, marked, error);
     free(marked);
+    free(filled);
+    free(by_row);
     return status;
 }
 
@@ -65,12 +104,13 @@ tm_status tm_repair_remake(tm_repair_state *to, const tm_repair_state *from,
     tm_octree_mesh made = {0};
     to->remade = true;
     to->progress = from->progress;
+    to->stop = from->stop;
     tm_progress_within within;
     const tm_progress *inner =
         tm_progress_begin_within(&within, to->progress, "splitting octants");
     tm_status status = tm_octree_copy(&to->octree, &from->octree, error);
     if (status == TM_OK)
-        status = split(&to->octree, from->row, surface, octant, count, error);
+        status = split(&to->octree, from, surface, octant, count, error);
     if (status != TM_OK)
         return status;
     status = tm_octree_mesh_make(&made, &to->octree, surface, inner, error);

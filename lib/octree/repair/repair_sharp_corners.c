@@ -10,7 +10,8 @@
 #include <string.h>
 
 /* How far around a tip nodes may move, and how many elements are at the middle. */
-enum { RINGS = 2, CORE_MOST = 24, EFFORT = 1 };
+enum { RINGS = 2, CORE_MOST = 24 };
+static const tm_repair_effort effort = {1, TM_REPAIR_FLAT, 1, 10000, 0};
 
 /* What comes in the place of one element, with nodes of the whole mesh. */
 typedef struct {
@@ -292,8 +293,7 @@ static tm_status try_sharp_corner(corners *t, uint32_t corner, uint32_t middle,
     const tm_repair_score before = tm_repair_measure(part, t->threshold);
     replace_first(&part->mesh, cores, &parts);
     tm_repair_score after = tm_repair_measure(part, t->threshold);
-    status = tm_repair_move(part, t->surface, t->threshold, t->threshold, EFFORT, &after,
-                            error);
+    status = tm_repair_move(part, t->surface, t->threshold, effort, &after, error);
     if (status != TM_OK || !tm_repair_better(&after, &before))
         return status;
     tm_trial_commit(&t->trial);
@@ -309,7 +309,9 @@ tm_status tm_repair_sharp_corners(tm_repair_state *state, const tm_surface *surf
     const size_t old = *count;
     tm_progress_at at = {.what = "making sharp tips anew", .of = state->mesh.nodes};
     tm_status status = begin(&t, error);
-    for (uint32_t v = 0; status == TM_OK && v < state->mesh.nodes; v++) {
+    for (uint32_t v = 0;
+         status == TM_OK && v < state->mesh.nodes && !tm_stop_is_wanted(state->stop);
+         v++) {
         tm_progress_step(state->progress, &at, v);
         if (state->on[v] == 0 || !is_bad_at(&t, v))
             continue;

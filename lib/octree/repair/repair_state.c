@@ -29,7 +29,8 @@ double tm_repair_quality(const tm_mixed_mesh *mesh, size_t e, double jens)
 tm_repair_score tm_repair_measure(const tm_repair_state *state, double threshold)
 {
     const tm_mixed_mesh *mesh = &state->mesh;
-    tm_repair_score score = {.worst = 1, .floor = fmax(threshold, TM_REPAIR_LEAST)};
+    tm_repair_score score = {
+        .worst = 1, .least = 1, .good = fmax(threshold, TM_REPAIR_GOOD)};
     double sum = 0;
     for (size_t v = 0; v < mesh->nodes; v++)
         score.off_surface += state->rule[v].off_surface;
@@ -40,7 +41,7 @@ tm_repair_score tm_repair_measure(const tm_repair_state *state, double threshold
         score.invalid += invalid;
         score.bad += invalid || jens < threshold;
         score.worst = fmin(score.worst, jens);
-        score.floor = fmin(score.floor, quality);
+        score.least = fmin(score.least, quality);
         sum += jens;
     }
     if (mesh->elements > 0)
@@ -50,15 +51,13 @@ tm_repair_score tm_repair_measure(const tm_repair_state *state, double threshold
 
 bool tm_repair_better(const tm_repair_score *a, const tm_repair_score *b)
 {
-    if (a->worst < b->floor)
+    const double good = a->invalid < b->invalid ? TM_REPAIR_FLAT : b->good;
+    if (a->invalid > b->invalid || a->off_surface > b->off_surface ||
+        (a->bad > b->bad && a->invalid == b->invalid) ||
+        a->least < fmin(b->least, good) || a->worst < fmin(b->worst, good))
         return false;
-    if (a->invalid != b->invalid)
-        return a->invalid < b->invalid;
-    if (a->off_surface != b->off_surface)
-        return a->off_surface < b->off_surface;
-    if (a->bad != b->bad)
-        return a->bad < b->bad;
-    return a->worst > b->worst;
+    return a->invalid < b->invalid || a->off_surface < b->off_surface ||
+           a->bad < b->bad || a->least > b->least;
 }
 
 int tm_repair_compare_octants(const void *a, const void *b)

@@ -14,6 +14,11 @@ TM_EXTERN_C_BEGIN
  * be so in other programs too. */
 #define TM_REPAIR_LEAST 1e-6
 
+/* No step makes an element that was above fall below; and one of which all elements are
+ * as good as the second, or the threshold, may cost a little of the worst. */
+#define TM_REPAIR_FLAT 0.02
+#define TM_REPAIR_GOOD 0.2
+
 /* Numbers of octants are those of rows of .octant. */
 typedef struct tm_repair_state {
     tm_mixed_mesh mesh;
@@ -27,6 +32,7 @@ typedef struct tm_repair_state {
     bool divided;       /* some elements are parts of what they were; nodes were added */
     bool remade;        /* from another octree: all of it is new */
     const tm_progress *progress; /* of the repair; NULL in trials */
+    const tm_stop *stop;         /* the same */
 } tm_repair_state;
 
 /* How good it is. */
@@ -36,8 +42,8 @@ typedef struct tm_repair_score {
         invalid; /* elements with J_ENS < TM_REPAIR_LEAST, or not certified (certify.h) */
     size_t bad;  /* these and all below the threshold */
     double worst;   /* J_ENS; 1 of no elements */
-    double floor;   /* what `worst` must reach after any step: the least of the threshold
-                       and of the quality of all elements */
+    double least;   /* the same of tm_repair_quality() */
+    double good;    /* the larger of the threshold and TM_REPAIR_GOOD */
     double average; /* of J_ENS; 0 of no elements */
 } tm_repair_score;
 
@@ -51,9 +57,10 @@ double tm_repair_quality(const tm_mixed_mesh *mesh, size_t e, double jens);
 /* Measures all elements. O(elements). */
 tm_repair_score tm_repair_measure(const tm_repair_state *state, double threshold);
 
-/* The rule of all steps: whether `a`, made from `b`, is to be kept. Its worst element has
- * to reach the floor of `b`; and it has fewer invalid elements, else fewer nodes that are
- * off the surface, else fewer bad elements, else a better worst one. */
+/* The rule of all steps: whether `a`, made from `b`, is to be kept. It must not have more
+ * invalid elements; nor more nodes that are off the surface; nor more bad elements,
+ * unless fewer are invalid; nor a lower least, unless that is good still; and one of
+ * these must be better. */
 bool tm_repair_better(const tm_repair_score *a, const tm_repair_score *b);
 
 /* The octants that hold a bad element, or, with `off_surface`, one at a node that is off
@@ -72,8 +79,8 @@ void tm_repair_free_off_surface(tm_repair_state *state);
 /* For qsort() and bsearch(). */
 int tm_repair_compare_octants(const void *a, const void *b);
 
-/* A copy without the octree: what tm_repair_restore() needs to take back moves of nodes,
- * as long as there are the same. */
+/* Where nodes are, and their rules: what is needed to take back moves of nodes, as long
+ * as there are the same. */
 typedef struct tm_repair_points {
     double (*xyz)[3];
     tm_node_rule *rule;

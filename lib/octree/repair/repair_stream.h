@@ -13,6 +13,7 @@ TM_EXTERN_C_BEGIN
 /* What of the stream could be used, and what was left out. */
 typedef struct tm_repair_notes {
     bool attributed;    /* the attribute of .node says where nodes are */
+    bool regions;       /* nodes between regions have places, too: no octree is found */
     tm_error no_octree; /* why there is none; its message is empty where there is one */
     char dropped[256];  /* blocks that were removed, with blanks between */
 } tm_repair_notes;
@@ -31,7 +32,8 @@ bool tm_repair_is_needed(const tm_repair_state *state, const tm_stream *stream,
 
 /* Finds what nodes may do, and the octree. The place of a node is that of the only
  * attribute of .node, as tm_octree_mesh_to_stream() writes it, if the nodes of the
- * boundary, and no others, have one; else it is found. With surface NULL nodes of the
+ * boundary, or these and those between regions of .mix, and no others, have one; else it
+ * is found. With surface NULL nodes of the
  * boundary do not move, and there is no octree. *notes need not be initialised.
  * TM_ERROR_SYSTEM where memory is out. */
 tm_status tm_repair_prepare(tm_repair_state *state, const tm_stream *stream,

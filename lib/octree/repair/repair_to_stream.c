@@ -124,18 +124,18 @@ static bool goes(const tm_block *block, const void *remade)
     return !stays(block, *(const bool *)remade);
 }
 
-static void note_dropped(tm_repair_notes *notes, const tm_block *block)
+static void note_dropped(tm_repair_notes *notes, const char *name)
 {
     const size_t used = strlen(notes->dropped);
     snprintf(notes->dropped + used, sizeof notes->dropped - used, "%s%s",
-             used > 0 ? " " : "", block->name);
+             used > 0 ? " " : "", name);
 }
 
 static void remove_others(tm_stream *stream, bool remade, tm_repair_notes *notes)
 {
     for (size_t b = stream->blocks; b-- > 0;)
         if (!stays(&stream->block[b], remade))
-            note_dropped(notes, &stream->block[b]);
+            note_dropped(notes, stream->block[b].name);
     tm_stream_remove_if(stream, goes, &remade);
 }
 
@@ -257,8 +257,10 @@ static tm_status give_remade(tm_repair_state *state, tm_stream *stream,
     remove_others(stream, true, notes);
     tm_block *node = tm_stream_find(stream, ".node");
     tm_block *mix = tm_stream_find(stream, ".mix");
-    tm_status status = give_levels(
-        state, mix, has_levels(mix, tm_stream_find(stream, ".octant")), error);
+    const bool levels = has_levels(mix, tm_stream_find(stream, ".octant"));
+    if (!levels && mix->attributes > 0)
+        note_dropped(notes, "attributes of .mix");
+    tm_status status = give_levels(state, mix, levels, error);
     node->attributes = 1;
     node->markers = false;
     free(node->marker);
@@ -272,7 +274,7 @@ static tm_status give_remade(tm_repair_state *state, tm_stream *stream,
     if (status != TM_OK || !facet)
         return status;
     if (!surface->marker || !facet->markers || !is_boundary(facet)) {
-        note_dropped(notes, facet);
+        note_dropped(notes, facet->name);
         tm_stream_remove(stream, facet);
         return TM_OK;
     }
