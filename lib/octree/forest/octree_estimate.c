@@ -3,6 +3,7 @@
 
 #include "../../base/array.h"
 #include "../../geom/vector.h"
+#include "brick.h"
 #include "octree_parts.h"
 
 #include <math.h>
