@@ -61,6 +61,7 @@
 #include "examine/jens_statistics.h"
 #include "examine/poly/poly_boundary.h"
 #include "examine/poly/poly_examine.h"
+#include "examine/poly/poly_finite_volume.h"
 #include "examine/poly/poly_statistics.h"
 #include "examine/tet_statistics.h"
 
