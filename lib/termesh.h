@@ -51,6 +51,7 @@
 /* surface: triangulated surfaces */
 #include "surface/polygon_surface.h"
 #include "surface/surface.h"
+#include "surface/surface_curvature.h"
 #include "surface/surface_defects.h"
 #include "surface/surface_distance.h"
 
@@ -88,6 +89,7 @@
 /* octree: octrees, and the elements made of them */
 #include "octree/forest/octree.h"
 #include "octree/forest/octree_build.h"
+#include "octree/forest/octree_estimate.h"
 #include "octree/forest/rule_files.h"
 #include "octree/transition/transition.h"
 #include "octree/layer/adaptive_refinement.h"
