@@ -73,7 +73,9 @@ static const char own_help[] =
     "                      50000000)\n"
     "      --resolve N     up to N levels more where a thin part or a gap of the "
     "surface\n"
-    "                      would be lost (default 1)\n"
+    "                      would be lost (default 1); where it is given, also "
+    "where\n"
+    "                      the surface is closer to itself than two octants\n"
     "      --cavities      a surface inside of another one bounds a hole, not a region\n"
     "      --lenient       take surfaces that are open or cross themselves\n";
 
@@ -83,9 +85,9 @@ static const double pi = 3.14159265358979323846;
 typedef struct {
     octree_rules rules;
     tm_surface_options surface;
-    unsigned resolve;
-    double most;      /* elements */
-    double curvature; /* degrees; 0: not asked */
+    unsigned resolve, deeper; /* deeper: what --resolve gives, 0 without it */
+    double most;              /* elements */
+    double curvature;         /* degrees; 0: not asked */
     bool levels;
 } settings;
 
@@ -121,7 +123,7 @@ static settings read_options(filter *f)
                                      .lenient = o.surface.lenient,
                                      .regions = o.surface.regions};
         else if (c == RESOLVE)
-            o.resolve =
+            o.resolve = o.deeper =
                 (unsigned)filter_integer(f, "--resolve", optarg, 0, TM_OCTREE_LEVEL_MAX);
         else if (c == CAVITIES)
             o.surface.regions = false;
@@ -140,6 +142,9 @@ static settings read_options(filter *f)
     }
     if (o.rules.rules.count == 0)
         octree_rules_add_level(f, &o.rules, TM_RULE_SURFACE, default_level);
+    for (size_t r = 0; r < o.rules.rules.count; r++)
+        o.rules.rules.rule[r].deeper =
+            o.rules.rules.rule[r].kind == TM_RULE_SURFACE ? o.deeper : 0;
     return o;
 }
 
@@ -300,6 +305,24 @@ static void note_losses(const filter *f, const tm_surface *s,
         filter_note(f, "%zu elements are inverted", r->invalid);
 }
 
+/* The deepest level of an octree that rules ask for, without what --resolve adds. */
+static unsigned level_of(const settings *o, const tm_octree *octree, const tm_surface *s)
+{
+    unsigned asked = 0, deepest = 0;
+    for (size_t l = 0; l < octree->leaves; l++)
+        if (octree->leaf[l].level > deepest)
+            deepest = octree->leaf[l].level;
+    for (size_t r = 0; r < o->rules.rules.count; r++) {
+        const tm_octree_rule *rule = &o->rules.rules.rule[r];
+        const double halved = rule->size > 0 ? log2(octree->side / rule->size) : 0;
+        const unsigned level =
+            rule->size > 0 ? (unsigned)fmax(0, ceil(halved - 1e-9)) : rule->level;
+        if (level > asked && tm_octree_rule_reaches(rule, s))
+            asked = level;
+    }
+    return o->deeper > 0 && asked < deepest ? asked : deepest;
+}
+
 static double smallest_side(const tm_octree *octree)
 {
     double side = octree->side;
@@ -372,7 +395,8 @@ int main(int argc, char **argv)
     filter_stage(&f, "splitting octants");
     if (tm_octree_build(&octree, &surface, o.rules.rules.rule, o.rules.rules.count,
                         &error) != TM_OK ||
-        tm_octree_mesh_refine_lost(&mesh, &octree, &surface, o.resolve,
+        tm_octree_mesh_refine_lost(&mesh, &octree, &surface,
+                                   level_of(&o, &octree, &surface), o.resolve,
                                    filter_progress(&f), &error) != TM_OK)
         filter_fail(&f, &error);
     octree_rules_free(&o.rules);

@@ -52,6 +52,7 @@
 /* surface: triangulated surfaces */
 #include "surface/polygon_surface.h"
 #include "surface/surface.h"
+#include "surface/surface_curvature.h"
 #include "surface/surface_defects.h"
 #include "surface/surface_distance.h"
 

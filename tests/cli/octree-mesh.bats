@@ -374,6 +374,16 @@ END
     [ "$(json count.json lost_edges)" -gt 0 ]
     [ "$(json count.json held_back)" = 0 ]
     judge mesh.tm
+    # smaller octants where it is thinner than two of them: the more, the more of it is
+    # there; its volume is 0.0698 / 16
+    for levels in 0 1 2 3; do
+        octree-mesh -q -s 4 --resolve $levels -o mesh.tm slit.off
+        mesh-check --json $levels.json mesh.tm >/dev/null
+    done
+    python3 -c '
+import json
+lost = [abs(json.load(open("%d.json" % n))["volume"] - 1 + 0.0698 / 8) for n in range(4)]
+assert lost[0] > 3 * lost[1] > 9 * lost[2] and lost[3] < 4e-4, lost'
 }
 
 @test "--most: what would be too much is refused, with what fits" {

@@ -251,6 +251,15 @@ static bool has_solid(const tm_octree *octree, const tm_surface *surface)
     return has;
 }
 
+static unsigned deepest_level(const tm_octree *octree)
+{
+    unsigned deepest = 0;
+    for (size_t l = 0; l < octree->leaves; l++)
+        if (octree->leaf[l].level > deepest)
+            deepest = octree->leaf[l].level;
+    return deepest;
+}
+
 static void test_random(void **state)
 {
     (void)state;
@@ -266,8 +275,9 @@ static void test_random(void **state)
         printf("round %d (TM_SEED=%" PRIu64 "): %zu leaves\n", round, seed,
                octree.leaves);
         const size_t patches = surface.patches;
-        const tm_status status = tm_octree_mesh_refine_lost(
-            &mesh, &octree, &surface, random_below(2), NULL, &error);
+        const tm_status status =
+            tm_octree_mesh_refine_lost(&mesh, &octree, &surface, deepest_level(&octree),
+                                       random_below(2), NULL, &error);
         assert_int_equal(status, has_solid(&octree, &surface) ? TM_OK : TM_ERROR_INPUT);
         if (status == TM_OK) {
             check_elements(&mesh);
@@ -302,15 +312,6 @@ static void make_hollow_cube(tm_surface *surface)
     tm_polygon_surface_free(&p);
 }
 
-static unsigned deepest_level(const tm_octree *octree)
-{
-    unsigned deepest = 0;
-    for (size_t l = 0; l < octree->leaves; l++)
-        if (octree->leaf[l].level > deepest)
-            deepest = octree->leaf[l].level;
-    return deepest;
-}
-
 /* Leaves in which a part of the surface is lost. */
 static size_t count_lost(const tm_octree *octree, const tm_surface *surface)
 {
@@ -337,8 +338,8 @@ static void test_resolve(void **state)
         tm_octree octree;
         tm_octree_mesh mesh;
         assert_ok(tm_octree_build(&octree, &surface, &rule, 1, &error), &error);
-        const tm_status status =
-            tm_octree_mesh_refine_lost(&mesh, &octree, &surface, more, NULL, &error);
+        const tm_status status = tm_octree_mesh_refine_lost(&mesh, &octree, &surface,
+                                                            LEVEL, more, NULL, &error);
         assert_int_equal(deepest_level(&octree), LEVEL + (more < NEEDED ? more : NEEDED));
         if (more < NEEDED) {
             assert_int_equal(status, TM_ERROR_INPUT);

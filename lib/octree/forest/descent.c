@@ -102,23 +102,34 @@ static bool meets_box(const octant *o, const tm_octree_rule *box)
     return true;
 }
 
+/* Whether an octant has more of the surface than it can hold; what is in one that has
+ * gets more levels, as far as those of its rule go. */
+static bool is_crowded(const descent *d, octant *o, bool deep)
+{
+    const part *own = &o->part[0];
+    const source *from = &d->source[0];
+    if (tm_octant_is_crowded(from->surface, d->is_corner, from->triangle + own->start,
+                             own->count, o->low, o->high[0] - o->low[0]))
+        o->crowded = deep ? 1 : SPACE;
+    return o->crowded > 0;
+}
+
 /* Whether an octant is too large for a triangle that it meets, or for all together. */
 static bool is_large(const descent *d, octant *o, const tm_octree_rule *rule)
 {
     const part *own = &o->part[0];
     const unsigned level = TM_OCTREE_FINEST - o->shift;
-    if (!rule->largest || own->count == 0)
-        return own->count > 0;
-    const source *from = &d->source[0];
-    const uint32_t *met = from->triangle + own->start;
-    if (level + rule->spread + SPACE > rule->level &&
-        tm_octant_is_crowded(from->surface, d->is_corner, met, own->count, o->low,
-                             o->high[0] - o->low[0]))
-        o->crowded = SPACE;
-    if (o->crowded > 0 || level + rule->spread < rule->level)
+    if (own->count == 0)
+        return false;
+    if (level >= rule->level)
+        return is_crowded(d, o, true);
+    if (!rule->largest)
+        return true;
+    if ((level + rule->spread + SPACE > rule->level && is_crowded(d, o, false)) ||
+        level + rule->spread < rule->level)
         return true;
     for (size_t i = 0; i < own->count; i++)
-        if (o->high[0] - o->low[0] > rule->largest[met[i]])
+        if (o->high[0] - o->low[0] > rule->largest[d->source[0].triangle[own->start + i]])
             return true;
     return false;
 }
@@ -145,7 +156,7 @@ static bool rules_split(const descent *d, octant *o)
         return false;
     const unsigned level = TM_OCTREE_FINEST - o->shift;
     for (size_t r = 0; r < d->rules; r++)
-        if (level < d->rule[r].level && holds(d, o, r))
+        if (level < d->rule[r].level + d->rule[r].deeper && holds(d, o, r))
             return meets_or_inside(d, o, 0);
     return false;
 }
@@ -228,8 +239,11 @@ static tm_status start_rule(descent *d, size_t r)
     if (rule->level > TM_OCTREE_LEVEL_MAX)
         return tm_fail(d->error, TM_ERROR_INPUT, "level %u is too deep (0..%d)",
                        rule->level, TM_OCTREE_LEVEL_MAX);
-    if (TM_OCTREE_FINEST - rule->level < d->shift)
-        d->shift = TM_OCTREE_FINEST - rule->level;
+    const unsigned deepest = rule->level + rule->deeper < TM_OCTREE_LEVEL_MAX
+                                 ? rule->level + rule->deeper
+                                 : TM_OCTREE_LEVEL_MAX;
+    if (TM_OCTREE_FINEST - deepest < d->shift)
+        d->shift = TM_OCTREE_FINEST - deepest;
     if (rule->kind != TM_RULE_REGION)
         return TM_OK;
     return start_source(d, rule->region, &d->source_of[r]);

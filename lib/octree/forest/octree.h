@@ -91,12 +91,14 @@ typedef enum tm_octree_rule_kind {
 
 typedef struct tm_octree_rule {
     tm_octree_rule_kind kind;
-    unsigned level;         /* at most TM_OCTREE_LEVEL_MAX; unused for TM_RULE_LEAVES */
-    double size;            /* above 0: the largest side of leaves, in place of a level */
-    const double *largest;  /* TM_RULE_SURFACE: [triangles of the surface]: the largest
-                               side of leaves that they meet; NULL: as level says */
-    unsigned spread;        /* such leaves are so many levels below it, at most */
-    double low[3], high[3]; /* TM_RULE_BOX */
+    unsigned level;        /* at most TM_OCTREE_LEVEL_MAX; unused for TM_RULE_LEAVES */
+    double size;           /* above 0: the largest side of leaves, in place of a level */
+    const double *largest; /* TM_RULE_SURFACE: [triangles of the surface]: the largest
+                              side of leaves that they meet; NULL: as level says */
+    unsigned deeper; /* TM_RULE_SURFACE: so many levels more where the surface is closer
+                        to itself than two sides of the leaf */
+    unsigned spread; /* such leaves are so many levels below it, at most */
+    double low[3], high[3];   /* TM_RULE_BOX */
     const tm_surface *region; /* TM_RULE_REGION */
     const uint32_t *leaf;     /* TM_RULE_LEAVES: [leaves], numbers of leaves of the octree
                                  that the other rules and the balance give */

@@ -126,16 +126,11 @@ static tm_status try_split(tm_octree_mesh *mesh, tm_octree *octree, tm_surface *
 }
 
 tm_status tm_octree_mesh_refine_lost(tm_octree_mesh *mesh, tm_octree *octree,
-                                     tm_surface *surface, unsigned levels,
+                                     tm_surface *surface, unsigned level, unsigned levels,
                                      const tm_progress *progress, tm_error *error)
 {
-    unsigned deepest = 0;
+    unsigned deepest = level + levels;
     *mesh = (tm_octree_mesh){0};
-    for (size_t l = 0; l < octree->leaves; l++)
-        if (octree->leaf[l].level > deepest)
-            deepest = octree->leaf[l].level;
-    const unsigned level = deepest;
-    deepest += levels;
     if (deepest > TM_OCTREE_LEVEL_MAX)
         deepest = TM_OCTREE_LEVEL_MAX;
     tm_status status =
