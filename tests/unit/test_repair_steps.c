@@ -2,6 +2,7 @@
 /* Each step of the repair alone, on random solids: all that it promises, before and
  * after; and the rule that decides what is kept. */
 #include "../../lib/octree/repair/repair_faces.h"
+#include "../../lib/octree/repair/repair_shape.h"
 #include "../../lib/octree/repair/repair_steps.h"
 #include "../../lib/octree/repair/element_division.h"
 #include "../../lib/octree/forest/mpi_start.h"
@@ -88,6 +89,91 @@ static void test_move(void **unused)
     }
     assert_true(mended > 0);
     assert_true(brought > 0);
+}
+
+/* Two places of a mesh of a cube: in one a node is off its place, and comes to it; in the
+ * other one leaves it. */
+static void test_take_back(void **unused)
+{
+    (void)unused;
+    tm_error error;
+    tm_polygon_surface p;
+    repair_case c;
+    tm_polygon_surface_init(&p);
+    add_cube(&p, 0, 0, 0, 1);
+    start_case(&c, &p, 4);
+    tm_repair_state *s = &c.state;
+    size_t first = 0, second = s->mesh.nodes - 1;
+    while (s->rule[first].freedom != TM_MOVES_FREELY)
+        first++;
+    while (s->rule[second].freedom != TM_MOVES_FREELY ||
+           tm_distance2(s->mesh.xyz[first], s->mesh.xyz[second]) < 0.1)
+        second--;
+    double place[2][3];
+    memcpy(place[0], s->mesh.xyz[first], sizeof place[0]);
+    memcpy(place[1], s->mesh.xyz[second], sizeof place[1]);
+    const double off = random_between(0.03, 0.05);
+    s->mesh.xyz[first][0] += off;
+    const tm_repair_score before = measured(s, 0.2);
+    tm_repair_points points = {0};
+    assert_ok(tm_repair_save(&points, s, &error), &error);
+    memcpy(s->mesh.xyz[first], place[0], sizeof place[0]);
+    s->mesh.xyz[second][1] += off;
+    assert_ok(tm_repair_take_back(s, &points, 0.2, before.least, &error), &error);
+    assert_memory_equal(s->mesh.xyz[first], place[0], sizeof place[0]);
+    assert_memory_equal(s->mesh.xyz[second], place[1], sizeof place[1]);
+    const tm_repair_score after = measured(s, 0.2);
+    assert_true(tm_repair_better(&after, &before));
+    tm_repair_points_free(&points);
+    end_case(&c);
+}
+
+/* What a mesh keeps of its surface. */
+static void test_shape(void **unused)
+{
+    (void)unused;
+    tm_error error;
+    tm_polygon_surface p;
+    repair_case c;
+    tm_repair_shape whole, less;
+    tm_polygon_surface_init(&p);
+    const double side = random_between(0.5, 2), low[3] = {0, 0, 0},
+                 high[3] = {side, side, side};
+    add_box(&p, low, high, false);
+    start_case(&c, &p, 3);
+    assert_ok(tm_repair_shape_measure(&whole, &c.state, &c.surface, &error), &error);
+    assert_int_equal(whole.corners, 8);
+    assert_true(fabs(whole.curves - 12 * side) < 1e-9);
+    assert_true(fabs(whole.volume - side * side * side) < 1e-9);
+    assert_int_equal(whole.defects, 0);
+    assert_int_equal(whole.components, 1);
+    assert_int_equal(whole.euler, 2);
+    tm_surface_comparison apart;
+    assert_ok(tm_repair_shape_compare(&apart, &c.state, &c.surface, 40, &error), &error);
+    for (int way = 0; way < TM_WAYS; way++) {
+        assert_true(apart.surface[way].most < 1e-9);
+        assert_true(apart.curve[way].most < 1e-9);
+        assert_int_equal(apart.corner[way].parts, 8);
+    }
+    assert_true(tm_repair_shape_keeps(&whole, &whole, &c.surface));
+    for (int what = 0; what < 6; what++) {
+        less = whole;
+        less.corners -= what == 0;
+        less.curves *= what == 1 ? 0.98 : 1;
+        less.defects += what == 2;
+        less.components += what == 3;
+        less.euler -= what == 4 ? 2 : 0;
+        less.volume *= what == 5 ? 0.99 : 1;
+        assert_false(tm_repair_shape_keeps(&less, &whole, &c.surface));
+        assert_true(tm_repair_shape_keeps(&whole, &less, &c.surface));
+    }
+    /* A node of a sharp edge that is off it. */
+    for (size_t v = 0, done = 0; v < c.state.mesh.nodes && !done; v++)
+        if (c.state.on[v] == TM_NODE_ON_CURVE)
+            done = c.state.rule[v].off_surface = true;
+    assert_ok(tm_repair_shape_measure(&less, &c.state, &c.surface, &error), &error);
+    assert_true(less.curves < whole.curves);
+    end_case(&c);
 }
 
 /* Sharp corners: none lost, the solid is the same, and the worst is no worse. */
@@ -552,6 +638,7 @@ int main(void)
         cmocka_unit_test(test_better),      cmocka_unit_test(test_star),
         cmocka_unit_test(test_rules),       cmocka_unit_test(test_move),
         cmocka_unit_test(test_divide),      cmocka_unit_test(test_sharp_corners),
+        cmocka_unit_test(test_take_back),   cmocka_unit_test(test_shape),
         cmocka_unit_test(test_octants),     cmocka_unit_test(test_remake),
         cmocka_unit_test(test_remake_tips),
     };

@@ -54,7 +54,6 @@ static tm_status make_valid(const repair *r, tm_repair_state *state, tm_error *e
     for (size_t i = 0; i < EFFORTS && status == TM_OK && score.invalid > 0; i++) {
         tm_repair_effort effort = efforts[i];
         effort.share = 0;
-        effort.aim = TM_REPAIR_FLAT;
         status = tm_repair_move(state, r->surface, 0, effort, &score, error);
     }
     if (status == TM_OK && score.invalid > 0 && !is_stopped(r))
@@ -105,9 +104,9 @@ static tm_status mend_to(const repair *r, tm_repair_state *state, double thresho
     return status;
 }
 
-/* The same for the threshold of the options. Where elements are invalid, first all is done
- * that would be without one, so that it never leaves more of them; if in the end nothing
- * is better, it begins again from what there was. */
+/* The same for the threshold of the options. Where elements are invalid, first all is
+ * done that would be without one, so that it never leaves more of them; if in the end
+ * nothing is better, it begins again from what there was. */
 static tm_status mend(const repair *r, tm_repair_state *state, size_t held,
                       tm_repair_score *score, tm_error *error)
 {

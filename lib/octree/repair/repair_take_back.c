@@ -5,6 +5,7 @@
 
 #include "../../base/array.h"
 #include "../../base/disjoint_sets.h"
+#include "../../geom/vector.h"
 #include "../../stream/stream.h"
 
 #include <math.h>
