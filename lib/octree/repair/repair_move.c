@@ -72,7 +72,7 @@ static tm_status move(mover *m, int rounds, double threshold, tm_repair_score *s
 static size_t most_measured(const tm_repair_state *state, const tm_repair_effort *effort,
                             size_t bad)
 {
-    const size_t most = 4000000 + 40 * state->mesh.elements;
+    const size_t most = 2500000 + 40 * state->mesh.elements;
     const size_t wanted = effort->at_least + effort->measured * bad;
     return wanted < most ? wanted : most;
 }

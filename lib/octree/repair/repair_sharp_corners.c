@@ -15,8 +15,8 @@ enum { RINGS = 2, CORE_MOST = 24 };
 
 /* Elements at a tip that are as good are not made anew, whatever the threshold is: it is
  * not sharp. */
-static const double not_sharp = 0.5;
-static const tm_repair_effort effort = {1, TM_REPAIR_FLAT, 1, 0, 100000};
+static const double not_sharp = 0.3;
+static const tm_repair_effort effort = {1, TM_REPAIR_FLAT, 1, 0, 60000};
 
 /* What comes in the place of one element, with nodes of the whole mesh. */
 typedef struct {
