@@ -11,6 +11,7 @@
 #include "../lib/format/oct.h"
 #include "../lib/format/vtk/vtk.h"
 #include "../lib/octree/repair/repair.h"
+#include "../lib/octree/repair/repair_forced.h"
 #include "../lib/octree/repair/repair_shape.h"
 #include "../lib/octree/repair/repair_stream.h"
 #include "../lib/octree/repair/repair_trace.h"
@@ -238,6 +239,7 @@ static tm_status visit(void *context, unsigned iteration, const tm_repair_state 
 /* Before the repair, or after it. */
 typedef struct {
     tm_repair_score score;
+    size_t forced; /* of those that are bad by the score: repair_forced.h */
     size_t elements, octants;
     tm_repair_shape shape;
     tm_surface_comparison apart;
@@ -249,13 +251,28 @@ typedef struct {
     size_t octants;
 } remainder_list;
 
+/* Marks elements that are below the threshold only because the surface is as sharp;
+ * malloc'ed. */
+static bool *find_forced(const program *p, const tm_repair_state *state, size_t *count)
+{
+    tm_error error;
+    bool *forced = calloc(state->mesh.elements + 1, sizeof *forced);
+    if ((forced ? tm_repair_find_forced(state, p->repair.threshold, forced, count, &error)
+                : tm_fail_memory(&error)) != TM_OK)
+        filter_fail(&p->f, &error);
+    return forced;
+}
+
 static remainder_list find_left(const program *p, const tm_repair_state *state)
 {
     tm_error error;
     remainder_list left;
-    if (tm_repair_bad_octants(state, p->repair.threshold, true, &left.octant,
+    size_t count;
+    bool *forced = find_forced(p, state, &count);
+    if (tm_repair_bad_octants(state, p->repair.threshold, true, forced, &left.octant,
                               &left.octants, &error) != TM_OK)
         filter_fail(&p->f, &error);
+    free(forced);
     return left;
 }
 
@@ -286,6 +303,9 @@ static mesh_state state_of(const program *p, const tm_repair_state *state,
     mesh_state m = {
         .score = *score, .elements = state->mesh.elements, .octants = octants};
     tm_error error;
+    if (score->bad > 0)
+        free(find_forced(p, state, &m.forced));
+    m.score.bad -= m.forced;
     if (!p->f.json || !p->has_surface)
         return m;
     filter_stage(&p->f, "measuring");
@@ -311,7 +331,7 @@ static void write_json(program *p, const mesh_state *before, const mesh_state *a
 {
 #define ROW(key, member) TM_REPORT_ROW(key, NULL, NULL, mesh_state, member)
 #define SCORE_ROWS                                                                       \
-    ROW("bad", score.bad), ROW("invalid", score.invalid),                                \
+    ROW("bad", score.bad), ROW("forced", forced), ROW("invalid", score.invalid),         \
         ROW("held", score.off_surface), ROW("worst", score.worst),                       \
         ROW("average", score.average), ROW("elements", elements),                        \
         ROW("octants", octants)
@@ -345,9 +365,9 @@ static void write_json(program *p, const mesh_state *before, const mesh_state *a
     filter_json_end(&p->f);
 }
 
-static bool is_done(const tm_repair_report *report)
+static bool is_done(const mesh_state *m)
 {
-    return report->after.bad == 0 && report->after.off_surface == 0;
+    return m->score.bad == 0 && m->score.off_surface == 0;
 }
 
 /* Finds the surface, what nodes may do, and the octree. */
@@ -385,10 +405,15 @@ static void repair(program *p, const tm_stream *stream, tm_repair_state *state,
                   &error) != TM_OK)
         fail(p, &error);
     early_end_finish();
-    if (early_end_by_signal() || (early_end_by_time() && !is_done(report)))
+    *after = state_of(p, state, stream, &report->after);
+    if (early_end_by_signal() || (early_end_by_time() && !is_done(after)))
         filter_note(&p->f, "ended early, by %s: the mesh is the best until then",
                     early_end_by_signal() ? "a signal" : "--time");
-    *after = state_of(p, state, stream, &report->after);
+    if (after->forced > 0)
+        filter_note(&p->f,
+                    "%zu elements are below the threshold because the surface is as "
+                    "sharp there: they are not bad",
+                    after->forced);
 }
 
 /* Repairs the mesh in the stream; returns whether nothing is left to do. */
@@ -408,9 +433,9 @@ static bool run(program *p, tm_stream *stream)
         prepare(p, stream, &state, &notes);
     repair(p, stream, &state, &report, &before, &after);
     remainder_list left = find_left(p, &state);
-    const bool done = is_done(&report) && !early_end_by_signal();
-    if (!is_done(&report))
-        note_left(p, &left, &report.after, stream->base);
+    const bool done = is_done(&after) && !early_end_by_signal();
+    if (!is_done(&after))
+        note_left(p, &left, &after.score, stream->base);
     const unsigned base = stream->base;
     if (tm_repair_to_stream(&state, stream, p->has_surface ? &p->boundary : NULL, &notes,
                             &error) != TM_OK)
@@ -422,7 +447,7 @@ static bool run(program *p, tm_stream *stream)
                (double)(clock() - start) / CLOCKS_PER_SEC);
     free(left.octant);
     filter_write(&p->f, stream, "%zu elements of %zu, bad %zu of %zu", after.elements,
-                 before.elements, report.after.bad, report.before.bad);
+                 before.elements, after.score.bad, before.score.bad);
     tm_repair_state_free(&state);
     return done;
 }

@@ -159,6 +159,31 @@ END
     [ "$left" -eq $((named + more)) ]
 }
 
+@test "what the surface is too sharp for is forced, and not bad" {
+    cat >pyramid.off <<'END'
+OFF
+5 5 0
+0 0 0
+1 0 0
+1 1 0
+0 1 0
+0.5 0.5 3
+4 0 3 2 1
+3 0 1 4
+3 1 2 4
+3 2 3 4
+3 3 0 4
+END
+    octree-mesh -q --no-history --resolve 0 -s 2 pyramid.off >pyramid.tm
+    run -0 --separate-stderr octree-repair -t 0.2 --json report.json -o sharp.tm pyramid.tm
+    [[ "$stderr" == *": 1 elements are below the threshold because the surface is as sharp"* ]]
+    [ "$(report forced)" -eq 1 ]
+    [ "$(report bad)" -eq 0 ]
+    grep -q '"left": \[\]' report.json
+    # 3 / 6.75^1.5 between three sloping edges of the tip, over that of the best pyramid.
+    jens-stats sharp.tm | awk '/^worst quality/ { exit !(($3 - 0.188) ^ 2 < 1e-6) }'
+}
+
 @test "ended by --time or a signal it writes the best so far, exit 1" {
     run -1 --separate-stderr octree-repair -t 1 --time 1e-9 -o early.tm good.tm
     [[ "$stderr" == *"ended early, by --time: "* ]]

@@ -215,7 +215,7 @@ static tm_status refine_some(repair *r, bool wide, bool *better, tm_error *error
     outcome became = TOO_LARGE;
     tm_status status = tm_repair_bad_octants(
         r->state, r->report->after.invalid > 0 ? 0 : r->options->threshold,
-        r->report->after.invalid == 0, &octant, &count, error);
+        r->report->after.invalid == 0, NULL, &octant, &count, error);
     if (status == TM_OK && wide)
         status = tm_repair_widen(r->state, &octant, &count, error);
     while (status == TM_OK && became == TOO_LARGE && count > 0 && may_refine(r)) {
@@ -235,7 +235,7 @@ static tm_status show(const repair *r, bool off_surface, size_t *count, tm_error
 {
     uint32_t *octant;
     tm_status status = tm_repair_bad_octants(r->state, r->options->threshold, off_surface,
-                                             &octant, count, error);
+                                             NULL, &octant, count, error);
     if (status == TM_OK && r->options->visit)
         status = r->options->visit(r->options->context, r->report->iterations, r->state,
                                    octant, *count, error);
@@ -273,8 +273,8 @@ static tm_status run_refine(const repair *r, tm_error *error)
     while (status == TM_OK && count > 0 && r->report->iterations < o->iterations) {
         uint32_t *octant;
         tm_repair_state made = {0};
-        status =
-            tm_repair_bad_octants(r->state, o->threshold, false, &octant, &count, error);
+        status = tm_repair_bad_octants(r->state, o->threshold, false, NULL, &octant,
+                                       &count, error);
         if (status == TM_OK)
             status = tm_repair_remake(&made, r->state, r->surface, octant, count, error);
         if (status == TM_OK)
