@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Each step of the repair alone, on random solids: all that it promises, before and
  * after; and the rule that decides what is kept. */
-#include "../../lib/octree/repair/repair_faces.h"
+#include "../../lib/mesh/mixed_boundary.h"
 #include "../../lib/octree/repair/repair_forced.h"
 #include "../../lib/octree/repair/repair_shape.h"
 #include "../../lib/octree/repair/repair_steps.h"

@@ -4,7 +4,7 @@
 #include "../../base/array.h"
 #include "../../element/shape.h"
 #include "../../stream/stream.h"
-#include "repair_faces.h"
+#include "../../mesh/mixed_boundary.h"
 #include "element_division.h"
 
 #include <math.h>

@@ -5,7 +5,7 @@
 #include "../../element/shape.h"
 #include "../../geom/vector.h"
 #include "../layer/octree_mesh_stream.h"
-#include "repair_faces.h"
+#include "../../mesh/mixed_boundary.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -8,7 +8,7 @@
 #include "../../geom/vector.h"
 #include "../../stream/stream.h"
 #include "../layer/octree_mesh_stream.h"
-#include "repair_faces.h"
+#include "../../mesh/mixed_boundary.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -17,7 +17,7 @@
  * what of all curves, and of the volume, may be missing. */
 static const double along = 0.1, curves_less = 0.01, volume_off = 1e-3;
 
-/* The boundary: faces of elements, as numbers of repair_faces.h. */
+/* The boundary: faces of elements, as numbers of mixed_boundary.h. */
 typedef struct {
     const tm_repair_state *state;
     const tm_surface *surface;

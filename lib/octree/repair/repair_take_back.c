@@ -23,8 +23,7 @@ typedef struct {
 
 static bool has_moved(const judge *j, size_t v)
 {
-    return memcmp(j->before->xyz[v], j->state->mesh.xyz[v], sizeof *j->before->xyz) !=
-               0 ||
+    return tm_distance2(j->before->xyz[v], j->state->mesh.xyz[v]) > 0 ||
            j->before->rule[v].off_surface != j->state->rule[v].off_surface ||
            j->before->rule[v].where != j->state->rule[v].where;
 }
