@@ -4,6 +4,7 @@
 #include "common/input/mesh_input.h"
 #include "common/input/octant_list.h"
 #include "common/input/surface_input.h"
+#include "common/process/early_end.h"
 #include "common/process/mpi_environment.h"
 
 #include "../lib/examine/jens_statistics.h"
@@ -11,13 +12,15 @@
 #include "../lib/format/oct.h"
 #include "../lib/format/vtk/vtk.h"
 #include "../lib/octree/repair/repair.h"
+#include "../lib/octree/repair/repair_forced.h"
+#include "../lib/octree/repair/repair_shape.h"
 #include "../lib/octree/repair/repair_stream.h"
 #include "../lib/octree/repair/repair_trace.h"
 
 #include <stdlib.h>
 #include <time.h>
 
-enum { METHOD = FILTER_OWN, MAX_GROWTH, OCTANTS, TRACE, FEATURE_ANGLE };
+enum { METHOD = FILTER_OWN, MAX_GROWTH, OCTANTS, TIME, TRACE, FEATURE_ANGLE };
 
 static const struct option long_options[] = {
     {"threshold", required_argument, NULL, 't'},
@@ -25,13 +28,15 @@ static const struct option long_options[] = {
     {"method", required_argument, NULL, METHOD},
     {"max-growth", required_argument, NULL, MAX_GROWTH},
     {"octants", required_argument, NULL, OCTANTS},
+    {"time", required_argument, NULL, TIME},
     {"trace", required_argument, NULL, TRACE},
     {"feature-angle", required_argument, NULL, FEATURE_ANGLE},
     FILTER_OPTIONS};
 
-static const char synopsis[] = "[-t THRESHOLD] [-i MAX] [--method refine|full] "
-                               "[--max-growth R] [--octants FILE.ref] [--trace BASE] "
-                               "[--feature-angle DEG] [FILE]";
+static const char synopsis[] =
+    "[-t THRESHOLD] [-i MAX] [--method refine|full] "
+    "[--max-growth R] [--octants FILE.ref] [--time S] [--trace BASE] "
+    "[--feature-angle DEG] [FILE]";
 
 static const char own_help[] =
     "  -t, --threshold T   elements whose J_ENS is below T are bad, as are those that\n"
@@ -45,19 +50,23 @@ static const char own_help[] =
     "      --octants FILE.ref\n"
     "                      first split the octants with these ids once and mesh again:\n"
     "                      one of the N iterations\n"
+    "      --time S        begin nothing more after S seconds, and write what is best\n"
+    "                      then, as after SIGINT or SIGTERM\n"
     "      --trace BASE    write BASE_i.histo, .ref, .oct, .m3d and .vtk of each\n"
     "                      iteration\n"
     "      --feature-angle DEG\n"
     "                      an edge is kept where it is sharper: as for octree-mesh\n"
     "                      (default 40, and none if the surface is rough all over)\n";
 
-static const double default_growth = 1.1, most_growth = 1000, straight_angle = 180;
+static const double default_growth = 1.1, most_growth = 1000, most_time = 1e9,
+                    straight_angle = 180;
 enum { DEFAULT_ITERATIONS = 100, MOST_ITERATIONS = 1000000 };
 
 typedef struct {
     filter f;
     tm_repair_options repair;
     tm_surface_options surface;
+    double time; /* seconds; 0: no limit */
     const char *trace;
     const char *octants; /* the file, and the rows that it lists */
     uint32_t *listed;
@@ -86,6 +95,9 @@ static void read_option(program *p, int c)
         break;
     case OCTANTS:
         p->octants = optarg;
+        break;
+    case TIME:
+        p->time = filter_number(&p->f, "--time", optarg, 0, most_time);
         break;
     case TRACE:
         p->trace = optarg;
@@ -242,62 +254,138 @@ static tm_status visit(void *context, unsigned iteration, const tm_repair_state 
     return p->trace ? write_trace(p, iteration, state, bad, count, error) : TM_OK;
 }
 
-/* What is left to do: a line for each octant, and one for all. */
-static void note_left(const program *p, const tm_repair_state *state,
-                      const tm_repair_score *left, unsigned base)
+/* Before the repair, or after it. */
+typedef struct {
+    tm_repair_score score;
+    size_t forced; /* of those that are bad by the score: repair_forced.h */
+    size_t elements, octants;
+    tm_repair_shape shape;
+    tm_surface_comparison apart;
+} mesh_state;
+
+/* What is left to do. */
+typedef struct {
+    uint32_t *octant; /* ascending */
+    size_t octants;
+} remainder_list;
+
+/* Marks elements that are below the threshold only because the surface is as sharp;
+ * malloc'ed. */
+static bool *find_forced(const program *p, const tm_repair_state *state, size_t *count)
 {
     tm_error error;
-    uint32_t *octant;
-    size_t count;
-    if (tm_repair_bad_octants(state, p->repair.threshold, true, &octant, &count,
-                              &error) != TM_OK)
+    bool *forced = calloc(state->mesh.elements + 1, sizeof *forced);
+    if ((forced ? tm_repair_find_forced(state, p->repair.threshold, forced, count, &error)
+                : tm_fail_memory(&error)) != TM_OK)
         filter_fail(&p->f, &error);
-    for (size_t i = 0; i < count; i++)
-        filter_note(&p->f, "octant %zu is left to improve", octant[i] + (size_t)base);
-    free(octant);
+    return forced;
+}
+
+static remainder_list find_left(const program *p, const tm_repair_state *state)
+{
+    tm_error error;
+    remainder_list left;
+    size_t count;
+    bool *forced = find_forced(p, state, &count);
+    if (tm_repair_bad_octants(state, p->repair.threshold, true, forced, &left.octant,
+                              &left.octants, &error) != TM_OK)
+        filter_fail(&p->f, &error);
+    free(forced);
+    return left;
+}
+
+/* A line for each of the first octants, and one for all. */
+static void note_left(const program *p, const remainder_list *left,
+                      const tm_repair_score *score, unsigned base)
+{
+    enum { NAMED = 6 };
+    for (size_t i = 0; i < left->octants && i < NAMED; i++)
+        filter_note(&p->f, "octant %zu is left to improve",
+                    left->octant[i] + (size_t)base);
+    if (left->octants > NAMED)
+        filter_note(&p->f,
+                    "%zu more octants are left to improve (--json and --trace list all)",
+                    left->octants - NAMED);
     filter_note(
         &p->f,
         "%zu elements are still bad (%zu of them invalid, the worst J_ENS %g) and "
         "%zu nodes not on the surface",
-        left->bad, left->invalid, left->worst, left->off_surface);
+        score->bad, score->invalid, score->worst, score->off_surface);
 }
 
-/* Before the repair, or after it. */
-typedef struct {
-    tm_repair_score score;
-    size_t elements, octants;
-} mesh_state;
-
-static mesh_state state_of(const tm_repair_state *state, const tm_stream *stream)
+static mesh_state state_of(const program *p, const tm_repair_state *state,
+                           const tm_stream *stream, const tm_repair_score *score)
 {
     const size_t octants =
         state->remade ? state->octree.leaves : mesh_rows(stream, ".octant");
-    return (mesh_state){.elements = state->mesh.elements, .octants = octants};
+    mesh_state m = {
+        .score = *score, .elements = state->mesh.elements, .octants = octants};
+    tm_error error;
+    if (score->bad > 0)
+        free(find_forced(p, state, &m.forced));
+    m.score.bad -= m.forced;
+    if (!p->f.json || !p->has_surface)
+        return m;
+    filter_stage(&p->f, "measuring");
+    if (tm_repair_shape_measure(&m.shape, state, &p->boundary, &error) != TM_OK ||
+        tm_repair_shape_compare(&m.apart, state, &p->boundary, p->surface.feature_angle,
+                                &error) != TM_OK)
+        filter_fail(&p->f, &error);
+    return m;
 }
 
-static void write_json(filter *f, const mesh_state *before, const mesh_state *after,
-                       const tm_repair_report *report, double seconds)
+/* Which octants are left, in the numbers of the output. */
+static void write_left(tm_json *json, const remainder_list *left, unsigned base)
 {
-    static const tm_report_row rows[] = {
-        TM_REPORT_ROW("bad", NULL, NULL, mesh_state, score.bad),
-        TM_REPORT_ROW("invalid", NULL, NULL, mesh_state, score.invalid),
-        TM_REPORT_ROW("held", NULL, NULL, mesh_state, score.off_surface),
-        TM_REPORT_ROW("worst", NULL, NULL, mesh_state, score.worst),
-        TM_REPORT_ROW("average", NULL, NULL, mesh_state, score.average),
-        TM_REPORT_ROW("elements", NULL, NULL, mesh_state, elements),
-        TM_REPORT_ROW("octants", NULL, NULL, mesh_state, octants),
-        {0}};
+    tm_json_open(json, "left", '[');
+    for (size_t i = 0; i < left->octants; i++)
+        tm_json_integer(json, NULL, left->octant[i] + (int64_t)base);
+    tm_json_close(json, ']');
+}
+
+static void write_json(program *p, const mesh_state *before, const mesh_state *after,
+                       const tm_repair_report *report, const remainder_list *left,
+                       unsigned base, double seconds)
+{
+#define ROW(key, member) TM_REPORT_ROW(key, NULL, NULL, mesh_state, member)
+#define SCORE_ROWS                                                                       \
+    ROW("bad", score.bad), ROW("forced", forced), ROW("invalid", score.invalid),         \
+        ROW("held", score.off_surface), ROW("worst", score.worst),                       \
+        ROW("average", score.average), ROW("elements", elements),                        \
+        ROW("octants", octants)
+    static const tm_report_row alone[] = {SCORE_ROWS, {0}};
+    static const tm_report_row all[] = {SCORE_ROWS,
+                                        ROW("corners", shape.corners),
+                                        ROW("sharp_length", shape.curves),
+                                        ROW("defects", shape.defects),
+                                        ROW("components", shape.components),
+                                        ROW("euler", shape.euler),
+                                        ROW("volume", shape.volume),
+                                        ROW("to_surface", apart.surface[TM_THERE].most),
+                                        ROW("from_surface", apart.surface[TM_BACK].most),
+                                        ROW("to_sharp", apart.curve[TM_THERE].most),
+                                        ROW("from_sharp", apart.curve[TM_BACK].most),
+                                        {0}};
+#undef ROW
+#undef SCORE_ROWS
     static const tm_report_row done[] = {
         TM_REPORT_ROW("iterations", NULL, NULL, tm_repair_report, iterations),
         TM_REPORT_ROW("tips", NULL, NULL, tm_repair_report, corners),
         TM_REPORT_ROW("divided", NULL, NULL, tm_repair_report, divided),
         {0}};
-    tm_json *json = filter_json_begin(f);
+    const tm_report_row *rows = p->has_surface ? all : alone;
+    tm_json *json = filter_json_begin(&p->f);
     tm_report_object(json, "before", rows, before);
     tm_report_object(json, "after", rows, after);
     tm_report_json(json, done, report);
+    write_left(json, left, base);
     tm_json_double(json, "seconds", seconds);
-    filter_json_end(f);
+    filter_json_end(&p->f);
+}
+
+static bool is_done(const mesh_state *m)
+{
+    return m->score.bad == 0 && m->score.off_surface == 0;
 }
 
 /* Finds the surface, what nodes may do, and the octree. */
@@ -322,6 +410,33 @@ static void prepare(program *p, const tm_stream *stream, tm_repair_state *state,
                 notes->no_octree.what);
 }
 
+/* Repairs the state, with the measures before and after. */
+static void repair(program *p, const tm_stream *stream, tm_repair_state *state,
+                   tm_repair_report *report, mesh_state *before, mesh_state *after)
+{
+    tm_error error;
+    tm_repair_score score = tm_repair_measure(state, p->repair.threshold);
+    *before = state_of(p, state, stream, &score);
+    p->repair.visit = visit;
+    p->repair.context = p;
+    p->repair.progress = filter_progress(&p->f);
+    p->repair.stop = early_end_stop();
+    early_end_begin(p->time);
+    if (tm_repair(state, p->has_surface ? &p->boundary : NULL, &p->repair, report,
+                  &error) != TM_OK)
+        fail(p, &error);
+    early_end_finish();
+    *after = state_of(p, state, stream, &report->after);
+    if (early_end_by_signal() || (early_end_by_time() && !is_done(after)))
+        filter_note(&p->f, "ended early, by %s: the mesh is the best until then",
+                    early_end_by_signal() ? "a signal" : "--time");
+    if (after->forced > 0)
+        filter_note(&p->f,
+                    "%zu elements are below the threshold because the surface is as "
+                    "sharp there: they are not bad",
+                    after->forced);
+}
+
 /* Repairs the mesh in the stream; returns whether nothing is left to do. */
 static bool run(program *p, tm_stream *stream)
 {
@@ -329,35 +444,32 @@ static bool run(program *p, tm_stream *stream)
     tm_repair_state state;
     tm_repair_notes notes = {0};
     tm_repair_report report;
+    mesh_state before, after;
     const clock_t start = clock();
     filter_stage(&p->f, "examining");
     if (tm_repair_from_stream(&state, stream, &error) != TM_OK)
         fail(p, &error);
+    const bool measured = p->f.json && tm_stream_find(stream, "surface.node");
     if (tm_repair_is_needed(&state, stream, p->repair.threshold) || p->trace ||
-        p->octants)
+        p->octants || measured)
         prepare(p, stream, &state, &notes);
-    tm_surface *surface = p->has_surface ? &p->boundary : NULL;
-    mesh_state before = state_of(&state, stream);
-    p->repair.visit = visit;
-    p->repair.context = p;
-    p->repair.progress = filter_progress(&p->f);
-    if (tm_repair(&state, surface, &p->repair, &report, &error) != TM_OK)
-        fail(p, &error);
-    mesh_state after = state_of(&state, stream);
-    before.score = report.before;
-    after.score = report.after;
-    const bool done = report.after.bad == 0 && report.after.off_surface == 0;
-    if (!done)
-        note_left(p, &state, &report.after, stream->base);
-    if (tm_repair_to_stream(&state, stream, surface, &notes, &error) != TM_OK)
+    repair(p, stream, &state, &report, &before, &after);
+    remainder_list left = find_left(p, &state);
+    const bool done = is_done(&after) && !early_end_by_signal();
+    if (!is_done(&after))
+        note_left(p, &left, &after.score, stream->base);
+    const unsigned base = stream->base;
+    if (tm_repair_to_stream(&state, stream, p->has_surface ? &p->boundary : NULL, &notes,
+                            &error) != TM_OK)
         filter_fail(&p->f, &error);
     if (notes.dropped[0])
         filter_leave_out(&p->f, "what refers to elements that are no more (%s)",
                          notes.dropped);
-    write_json(&p->f, &before, &after, &report,
+    write_json(p, &before, &after, &report, &left, base,
                (double)(clock() - start) / CLOCKS_PER_SEC);
+    free(left.octant);
     filter_write(&p->f, stream, "%zu elements of %zu, bad %zu of %zu", after.elements,
-                 before.elements, report.after.bad, report.before.bad);
+                 before.elements, after.score.bad, before.score.bad);
     tm_repair_state_free(&state);
     free(p->listed);
     return done;

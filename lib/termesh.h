@@ -103,6 +103,8 @@
 #include "octree/layer/octree_mesh.h"
 #include "octree/layer/octree_mesh_stream.h"
 #include "octree/repair/repair.h"
+#include "octree/repair/repair_forced.h"
+#include "octree/repair/repair_shape.h"
 #include "octree/repair/repair_state.h"
 #include "octree/repair/repair_stream.h"
 #include "octree/repair/repair_trace.h"

@@ -60,6 +60,12 @@ OFF
 END
 }
 
+# is_near KEY NUMBER: all numbers of that key in the report are, but for rounding.
+is_near() {
+    tr '{,}' '[\n*]' <report.json | sed -n "s/.*\"$1\": *//p" |
+        awk -v is="$2" '{ n++; if (($1 - is) ^ 2 > 1e-18) exit 1 } END { if (n != 2) exit 1 }'
+}
+
 @test "a good mesh is returned byte for byte, unknown blocks too" {
     sed '$d' good.tm >more.tm
     printf '%s\n' .note 'for element 1' .end >>more.tm
@@ -203,6 +209,7 @@ drop_octants() {
     run -1 --separate-stderr octree-repair -t 1 -i 0 -o left.tm good.tm
     [[ "$stderr" == *": octant "*" is left to improve"* ]]
     [[ "$stderr" == *"elements are still bad (0 of them invalid"* ]]
+    [ "${#stderr_lines[@]}" -le 10 ]
     worst() { jens-stats "$1" | sed -n 's/^worst quality *//p'; }
     awk -v a="$(worst left.tm)" -v b="$(worst good.tm)" 'BEGIN { exit !(a >= b) }'
     run -0 mesh-check left.tm
@@ -218,6 +225,70 @@ drop_octants() {
     run -0 jens-stats --certify left.tm
 }
 
+@test "the report: before and after of all that may not become worse, and what is left" {
+    run -1 --separate-stderr octree-repair -t 1 -i 0 --json report.json -o left.tm good.tm
+    [ "$(report corners)" -eq 8 ]
+    is_near sharp_length 12
+    [ "$(report defects)" -eq 0 ]
+    [ "$(report components)" -eq 1 ]
+    [ "$(report euler)" -eq 2 ]
+    is_near volume 1
+    for key in to_surface from_surface to_sharp from_sharp; do
+        is_near "$key" 0
+    done
+    named=$(grep -c 'octant [0-9]* is left to improve' <<<"$stderr")
+    more=$(sed -n 's/.*: \([0-9]*\) more octants are left.*/\1/p' <<<"$stderr")
+    left=$(sed 's/.*"left": \[\([^]]*\)\].*/\1/' report.json | tr ',' '\n' | wc -l)
+    [ "$left" -eq $((named + more)) ]
+}
+
+@test "what the surface is too sharp for is forced, and not bad" {
+    cat >pyramid.off <<'END'
+OFF
+5 5 0
+0 0 0
+1 0 0
+1 1 0
+0 1 0
+0.5 0.5 3
+4 0 3 2 1
+3 0 1 4
+3 1 2 4
+3 2 3 4
+3 3 0 4
+END
+    octree-mesh -q --no-history --resolve 0 -s 2 pyramid.off >pyramid.tm
+    run -0 --separate-stderr octree-repair -t 0.2 --json report.json -o sharp.tm pyramid.tm
+    [[ "$stderr" == *": 1 elements are below the threshold because the surface is as sharp"* ]]
+    [ "$(report forced)" -eq 1 ]
+    [ "$(report bad)" -eq 0 ]
+    grep -q '"left": \[\]' report.json
+    # 3 / 6.75^1.5 between three sloping edges of the tip, over that of the best pyramid.
+    jens-stats sharp.tm | awk '/^worst quality/ { exit !(($3 - 0.188) ^ 2 < 1e-6) }'
+}
+
+@test "ended by --time or a signal it writes the best so far, exit 1" {
+    run -1 --separate-stderr octree-repair -t 1 --time 1e-9 -o early.tm good.tm
+    [[ "$stderr" == *"ended early, by --time: "* ]]
+    run -0 mesh-check early.tm
+    octree-mesh --no-history -s 5 cube.off >large.tm
+    for signal in INT TERM; do
+        # In the background a shell makes its children ignore INT; env takes it back.
+        : >notes
+        env --default-signal=INT octree-repair -v -t 1 -o "$signal.tm" large.tm \
+            2>notes 3>&- &
+        until grep -q "octants to improve in iteration 0" notes; do sleep 0.05; done
+        kill -s "$signal" $!
+        wait $! && status=0 || status=$?
+        [ "$status" -eq 1 ]
+        grep -q 'ended early, by a signal: ' notes
+        run -0 mesh-check "$signal.tm"
+        worst() { jens-stats "$1" | sed -n 's/^worst quality *//p'; }
+        awk -v a="$(worst "$signal.tm")" -v b="$(worst large.tm)" \
+            'BEGIN { exit !(a >= b || a >= 0.2) }'
+    done
+}
+
 @test "without a surface nodes of the boundary stay, and no octant is split" {
     { sed '/^surface.node/,$d' bad.tm; echo .end; } >alone.tm
     run -0 --separate-stderr octree-repair -o mended.tm alone.tm
@@ -231,6 +302,7 @@ drop_octants() {
     run -2 octree-repair -t 2 good.tm
     run -2 octree-repair --method other good.tm
     run -2 octree-repair --max-growth 0.5 good.tm
+    run -2 octree-repair --time -1 good.tm
     printf '%s\n' 'termesh 1' .node '0 3 0 0' .end >empty.tm
     run -3 --separate-stderr octree-repair empty.tm
     [[ "$stderr" == 'octree-repair: empty.tm: holds points (.node alone), but '* ]]

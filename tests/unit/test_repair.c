@@ -171,7 +171,7 @@ static tm_repair_report repair(repair_case *c, tm_repair_options options)
         check_state(&c->state, &c->surface, &first);
         assert_ok(tm_repair_shape_measure(&is, &c->state, &c->surface, &error), &error);
         assert_true(is.corners >= was.corners);
-        assert_true(is.curves >= 0.99 * was.curves);
+        assert_true(is.curves >= 0.95 * was.curves); /* chords, where it bends */
         assert_true(is.defects <= was.defects);
     }
     check_stream(c, &report);
@@ -237,7 +237,7 @@ static void test_split(void **unused)
                                            .threshold = of[i].threshold,
                                            .iterations = i < 2 ? 4 : 1,
                                            .growth = of[i].growth});
-        assert_true(report.iterations > 0);
+        assert_int_equal(report.iterations > 0, i != 1); /* there is no room */
         assert_true(i != 0 || report.after.bad == 0);
     }
 }
@@ -319,6 +319,68 @@ static void test_divided(void **unused)
     assert_true(divided > 0);
 }
 
+typedef struct {
+    size_t left; /* questions until it is wanted */
+    bool wanted;
+} patience;
+
+static bool is_wanted(void *context)
+{
+    patience *p = context;
+    p->wanted = p->wanted || p->left-- == 0;
+    return p->wanted;
+}
+
+/* Whenever it is ended, what there is then is as good as it was at first, and whole. */
+static void test_ended(void **unused)
+{
+    (void)unused;
+    size_t ended = 0;
+    for (int round = 0; round < 2 * ROUNDS; round++) {
+        repair_case c;
+        patience p = {.left = random_below(1u << random_below(10))};
+        const tm_stop stop = {is_wanted, &p};
+        start_random_case(&c);
+        damage(&c, 1 + random_below(4), random_below(3));
+        repair(&c, (tm_repair_options){.method = TM_REPAIR_FULL,
+                                       .threshold = random_between(0, 0.5),
+                                       .iterations = 3,
+                                       .growth = 2,
+                                       .stop = &stop});
+        ended += p.wanted;
+    }
+    assert_true(ended > 0);
+}
+
+/* High thresholds never leave more that is invalid than 0 does. */
+static void test_valid_first(void **unused)
+{
+    (void)unused;
+    for (int round = 0; round < ROUNDS; round++) {
+        size_t invalid[2];
+        const double threshold = random_between(0.1, 0.4);
+        tm_polygon_surface p;
+        repair_case c[2];
+        for (int i = 0; i < 2; i++) {
+            tm_polygon_surface_init(&p);
+            add_pyramid(&p, 1.5);
+            start_case(&c[i], &p, 3);
+        }
+        damage(&c[0], 3 + random_below(4), random_below(3));
+        memcpy(c[1].state.mesh.xyz, c[0].state.mesh.xyz,
+               c[0].state.mesh.nodes * sizeof *c[0].state.mesh.xyz);
+        memcpy(c[1].state.rule, c[0].state.rule,
+               c[0].state.mesh.nodes * sizeof *c[0].state.rule);
+        for (int i = 0; i < 2; i++)
+            invalid[i] =
+                repair(&c[i], (tm_repair_options){.method = TM_REPAIR_FULL,
+                                                  .threshold = i == 0 ? 0 : threshold,
+                                                  .growth = 1})
+                    .after.invalid;
+        assert_true(invalid[1] <= invalid[0]);
+    }
+}
+
 /* Without octants, and without a surface, nodes inside move still. */
 static void test_alone(void **unused)
 {
@@ -356,10 +418,11 @@ int main(void)
 {
     random_start();
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_valid),  cmocka_unit_test(test_thresholds),
-        cmocka_unit_test(test_split),  cmocka_unit_test(test_held),
-        cmocka_unit_test(test_refine), cmocka_unit_test(test_divided),
-        cmocka_unit_test(test_alone),
+        cmocka_unit_test(test_valid),       cmocka_unit_test(test_thresholds),
+        cmocka_unit_test(test_split),       cmocka_unit_test(test_held),
+        cmocka_unit_test(test_refine),      cmocka_unit_test(test_divided),
+        cmocka_unit_test(test_alone),       cmocka_unit_test(test_ended),
+        cmocka_unit_test(test_valid_first),
     };
     return cmocka_run_group_tests(tests, start_mpi, NULL);
 }

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Each step of the repair alone, on random solids: all that it promises, before and
  * after; and the rule that decides what is kept. */
-#include "../../lib/octree/repair/repair_faces.h"
+#include "../../lib/mesh/mixed_boundary.h"
+#include "../../lib/octree/repair/repair_forced.h"
+#include "../../lib/octree/repair/repair_shape.h"
 #include "../../lib/octree/repair/repair_steps.h"
 #include "../../lib/octree/repair/element_division.h"
 #include "../../lib/octree/forest/mpi_start.h"
@@ -64,7 +66,7 @@ static void test_move(void **unused)
         tm_error error;
         repair_case c;
         start_random_case(&c);
-        damage(&c, random_below(4), random_below(3));
+        damage(&c, random_below(4), 1 + random_below(3));
         const double threshold = random_below(2) ? 0 : random_between(0, 0.4);
         const tm_examination first = examine_state(&c.state);
         tm_repair_state old = copy_elements(&c.state);
@@ -72,7 +74,7 @@ static void test_move(void **unused)
         tm_repair_score after = before;
         const tm_repair_effort effort = {
             random_below(3), random_between(0, 0.3),
-            random_below(2) ? 1.0 / (1 << random_below(4)) : 0, 10000, 100000};
+            random_below(4) ? 1.0 / (1 << random_below(4)) : 0, 10000, 100000};
         assert_ok(tm_repair_move(&c.state, &c.surface, threshold, effort, &after, &error),
                   &error);
         assert_true(effort.share > 0 || after.off_surface == before.off_surface);
@@ -88,6 +90,91 @@ static void test_move(void **unused)
     }
     assert_true(mended > 0);
     assert_true(brought > 0);
+}
+
+/* Two places of a mesh of a cube: in one a node is off its place, and comes to it; in the
+ * other one leaves it. */
+static void test_take_back(void **unused)
+{
+    (void)unused;
+    tm_error error;
+    tm_polygon_surface p;
+    repair_case c;
+    tm_polygon_surface_init(&p);
+    add_cube(&p, 0, 0, 0, 1);
+    start_case(&c, &p, 4);
+    tm_repair_state *s = &c.state;
+    size_t first = 0, second = s->mesh.nodes - 1;
+    while (s->rule[first].freedom != TM_MOVES_FREELY)
+        first++;
+    while (s->rule[second].freedom != TM_MOVES_FREELY ||
+           tm_distance2(s->mesh.xyz[first], s->mesh.xyz[second]) < 0.1)
+        second--;
+    double place[2][3];
+    memcpy(place[0], s->mesh.xyz[first], sizeof place[0]);
+    memcpy(place[1], s->mesh.xyz[second], sizeof place[1]);
+    const double off = random_between(0.03, 0.05);
+    s->mesh.xyz[first][0] += off;
+    const tm_repair_score before = measured(s, 0.2);
+    tm_repair_points points = {0};
+    assert_ok(tm_repair_save(&points, s, &error), &error);
+    memcpy(s->mesh.xyz[first], place[0], sizeof place[0]);
+    s->mesh.xyz[second][1] += off;
+    assert_ok(tm_repair_take_back(s, &points, 0.2, before.least, &error), &error);
+    assert_memory_equal(s->mesh.xyz[first], place[0], sizeof place[0]);
+    assert_memory_equal(s->mesh.xyz[second], place[1], sizeof place[1]);
+    const tm_repair_score after = measured(s, 0.2);
+    assert_true(tm_repair_better(&after, &before));
+    tm_repair_points_free(&points);
+    end_case(&c);
+}
+
+/* What a mesh keeps of its surface. */
+static void test_shape(void **unused)
+{
+    (void)unused;
+    tm_error error;
+    tm_polygon_surface p;
+    repair_case c;
+    tm_repair_shape whole, less;
+    tm_polygon_surface_init(&p);
+    const double side = random_between(0.5, 2), low[3] = {0, 0, 0},
+                 high[3] = {side, side, side};
+    add_box(&p, low, high, false);
+    start_case(&c, &p, 3);
+    assert_ok(tm_repair_shape_measure(&whole, &c.state, &c.surface, &error), &error);
+    assert_int_equal(whole.corners, 8);
+    assert_true(fabs(whole.curves - 12 * side) < 1e-9);
+    assert_true(fabs(whole.volume - side * side * side) < 1e-9);
+    assert_int_equal(whole.defects, 0);
+    assert_int_equal(whole.components, 1);
+    assert_int_equal(whole.euler, 2);
+    tm_surface_comparison apart;
+    assert_ok(tm_repair_shape_compare(&apart, &c.state, &c.surface, 40, &error), &error);
+    for (int way = 0; way < TM_WAYS; way++) {
+        assert_true(apart.surface[way].most < 1e-9);
+        assert_true(apart.curve[way].most < 1e-9);
+        assert_int_equal(apart.corner[way].parts, 8);
+    }
+    assert_true(tm_repair_shape_keeps(&whole, &whole, &c.surface));
+    for (int what = 0; what < 6; what++) {
+        less = whole;
+        less.corners -= what == 0;
+        less.curves *= what == 1 ? 0.98 : 1;
+        less.defects += what == 2;
+        less.components += what == 3;
+        less.euler -= what == 4 ? 2 : 0;
+        less.volume *= what == 5 ? 0.99 : 1;
+        assert_false(tm_repair_shape_keeps(&less, &whole, &c.surface));
+        assert_true(tm_repair_shape_keeps(&whole, &less, &c.surface));
+    }
+    /* A node of a sharp edge that is off it. */
+    for (size_t v = 0, done = 0; v < c.state.mesh.nodes && !done; v++)
+        if (c.state.on[v] == TM_NODE_ON_CURVE)
+            done = c.state.rule[v].off_surface = true;
+    assert_ok(tm_repair_shape_measure(&less, &c.state, &c.surface, &error), &error);
+    assert_true(less.curves < whole.curves);
+    end_case(&c);
 }
 
 /* Sharp corners: none lost, the solid is the same, and the worst is no worse. */
@@ -220,8 +307,9 @@ static void test_octants(void **unused)
     for (int off_surface = 0; off_surface < 2; off_surface++) {
         uint32_t *octant;
         size_t count, wide;
-        assert_ok(tm_repair_bad_octants(s, 0.2, off_surface, &octant, &count, &error),
-                  &error);
+        assert_ok(
+            tm_repair_bad_octants(s, 0.2, off_surface, NULL, &octant, &count, &error),
+            &error);
         uint8_t *is_listed = calloc(s->octree.leaves, 1);
         bool *near = calloc(s->mesh.nodes, sizeof *near);
         for (size_t i = 0; i < count; i++)
@@ -321,7 +409,7 @@ static void test_remake_tips(void **unused)
     add_pyramids(&p);
     start_case(&c, &p, 4);
     assert_int_equal(count_on(&c.state, TM_NODE_ON_CORNER), c.surface.corners);
-    assert_ok(tm_repair_bad_octants(&c.state, 0.25, false, &octant, &count, &error),
+    assert_ok(tm_repair_bad_octants(&c.state, 0.25, false, NULL, &octant, &count, &error),
               &error);
     assert_true(count > 0);
     assert_ok(tm_repair_remake(&made, &c.state, &c.surface, octant, count, &error),
@@ -425,6 +513,46 @@ static void test_least(void **unused)
         assert_int_equal(measured(&s, threshold).invalid, 0);
         assert_int_equal(
             tm_repair_is_bad(&s.mesh, 0, tm_mixed_jens(&s.mesh, 0), threshold), tenth);
+    }
+}
+
+/* A tetrahedron with an angle at the edge from node 0 to node 1, and one with its tip at
+ * node 0: what it is forced to be. */
+static void test_forced(void **unused)
+{
+    (void)unused;
+    for (int round = 0; round < ROUNDS; round++) {
+        hexahedron h;
+        tm_error error;
+        bool forced[1];
+        size_t count;
+        tm_repair_state s = state_of(&h);
+        const double angle = random_between(0.01, 0.5), cut = random_between(0.3, 0.6);
+        const double xyz[4][3] = {
+            {0, 0, 0}, {0, 1, 0}, {1, cut, 0}, {cos(angle), 1 - cut, sin(angle)}};
+        memcpy(h.xyz, xyz, sizeof xyz);
+        h.start[1] = 4;
+        if (tm_mixed_jens(&s.mesh, 0) < 0) {
+            h.item[2] = 3;
+            h.item[3] = 2;
+        }
+        const double limit = sqrt(2) * sin(angle), jens = tm_mixed_jens(&s.mesh, 0);
+        assert_true(jens > 0 && jens <= limit + 1e-12);
+        for (int sharp = 0; sharp < 2; sharp++)
+            for (int t = 0; t < 3; t++) {
+                const double threshold[] = {jens * 0.99, (jens + limit) / 2,
+                                            limit * 1.01};
+                s.on[0] = s.on[1] = sharp ? TM_NODE_ON_CURVE : TM_NODE_ON_PATCH;
+                assert_ok(tm_repair_find_forced(&s, threshold[t], forced, &count, &error),
+                          &error);
+                assert_int_equal(count, sharp && t == 2 && jens >= limit / 2);
+                assert_int_equal(forced[0], count);
+            }
+        /* Along sharp edges the corner's own J_ENS is all that there can be. */
+        s.on[0] = TM_NODE_ON_CORNER;
+        s.on[2] = s.on[3] = TM_NODE_ON_CURVE;
+        assert_ok(tm_repair_find_forced(&s, 1, forced, &count, &error), &error);
+        assert_int_equal(count, 1);
     }
 }
 
@@ -548,12 +676,13 @@ int main(void)
 {
     random_start();
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_least),       cmocka_unit_test(test_uncertified),
-        cmocka_unit_test(test_better),      cmocka_unit_test(test_star),
-        cmocka_unit_test(test_rules),       cmocka_unit_test(test_move),
-        cmocka_unit_test(test_divide),      cmocka_unit_test(test_sharp_corners),
-        cmocka_unit_test(test_octants),     cmocka_unit_test(test_remake),
-        cmocka_unit_test(test_remake_tips),
+        cmocka_unit_test(test_least),         cmocka_unit_test(test_uncertified),
+        cmocka_unit_test(test_better),        cmocka_unit_test(test_forced),
+        cmocka_unit_test(test_star),          cmocka_unit_test(test_rules),
+        cmocka_unit_test(test_move),          cmocka_unit_test(test_divide),
+        cmocka_unit_test(test_sharp_corners), cmocka_unit_test(test_take_back),
+        cmocka_unit_test(test_shape),         cmocka_unit_test(test_octants),
+        cmocka_unit_test(test_remake),        cmocka_unit_test(test_remake_tips),
     };
     return cmocka_run_group_tests(tests, start_mpi, NULL);
 }

@@ -54,7 +54,6 @@ static tm_status make_valid(const repair *r, tm_repair_state *state, tm_error *e
     for (size_t i = 0; i < EFFORTS && status == TM_OK && score.invalid > 0; i++) {
         tm_repair_effort effort = efforts[i];
         effort.share = 0;
-        effort.aim = TM_REPAIR_FLAT;
         status = tm_repair_move(state, r->surface, 0, effort, &score, error);
     }
     if (status == TM_OK && score.invalid > 0 && !is_stopped(r))
@@ -63,16 +62,16 @@ static tm_status make_valid(const repair *r, tm_repair_state *state, tm_error *e
     return status;
 }
 
-/* Makes elements anew, and divides them: those that are bad, and where nodes are off the
- * surface all that are not good, to make room. */
+/* Makes elements anew at tips, and divides elements: those that are bad, and where nodes
+ * are off the surface all that are not good, to make room. */
 static tm_status make_others(const repair *r, tm_repair_state *state, double threshold,
-                             tm_repair_score *score, tm_error *error)
+                             bool tips, tm_repair_score *score, tm_error *error)
 {
     const double to =
         score->off_surface > 0 ? fmax(threshold, TM_REPAIR_GOOD) : threshold;
     tm_status status = TM_OK;
     *score = tm_repair_measure(state, to);
-    if (score->bad > 0 && !is_stopped(r))
+    if (score->bad > 0 && tips && !is_stopped(r))
         status = tm_repair_sharp_corners(state, r->surface, to, score,
                                          &r->report->corners, error);
     if (status == TM_OK && score->bad > 0 && !is_stopped(r))
@@ -100,28 +99,33 @@ static tm_status mend_to(const repair *r, tm_repair_state *state, double thresho
         if (held < SIZE_MAX && score->off_surface / HELD_TIMES > held + HELD_MORE)
             return status;
         if (status == TM_OK && i > 0 && !is_done(score) && score->off_surface <= held)
-            status = make_others(r, state, threshold, score, error);
+            status = make_others(r, state, threshold, i == 1 || score->off_surface > 0,
+                                 score, error);
     }
     return status;
 }
 
 /* The same for the threshold of the options. Where elements are invalid, first all is
- * done that would be without one, so that it never leaves more of them; if in the end
- * nothing is better, it begins again from what there was. */
+ * done that would be without one, so that it never leaves more of them; and before more
+ * than what is good is asked for, that is. If in the end nothing is better, it begins
+ * again from what there was. */
 static tm_status mend(const repair *r, tm_repair_state *state, size_t held,
                       tm_repair_score *score, tm_error *error)
 {
-    const double t = r->options->threshold;
-    if (t == 0 || score->invalid == 0)
+    const double t = r->options->threshold, good = fmin(t, TM_REPAIR_GOOD);
+    const double stage[] = {score->invalid > 0 ? 0 : good, good, t};
+    enum { STAGES = sizeof stage / sizeof *stage };
+    if (stage[0] == t)
         return mend_to(r, state, t, held, score, error);
     tm_repair_state before = {0};
-    tm_repair_score now = tm_repair_measure(state, 0);
+    tm_repair_score now = *score;
     tm_status status = tm_repair_copy_mesh(&before, state, error);
-    if (status == TM_OK)
-        status = mend_to(r, state, 0, held, &now, error);
-    now = tm_repair_measure(state, t);
-    if (status == TM_OK)
-        status = mend_to(r, state, t, held, &now, error);
+    for (size_t i = 0; i < STAGES && status == TM_OK; i++) {
+        if (i > 0 && stage[i] == stage[i - 1])
+            continue;
+        now = tm_repair_measure(state, stage[i]);
+        status = mend_to(r, state, stage[i], held, &now, error);
+    }
     if (status == TM_OK && !tm_repair_better(&now, score)) {
         tm_repair_take_mesh(state, &before);
         status = mend_to(r, state, t, held, score, error);
@@ -190,9 +194,12 @@ static tm_status refine(repair *r, const uint32_t *octant, size_t count, outcome
     return status;
 }
 
+/* Where so much is bad that a small part of it would be all that there is room for, the
+ * threshold is too high. */
 static bool may_refine(const repair *r)
 {
-    return r->report->iterations < r->options->iterations &&
+    return 2 * r->report->after.bad + r->state->mesh.elements <= r->elements_at_most &&
+           r->report->iterations < r->options->iterations &&
            r->remade + r->state->mesh.elements <= r->remade_at_most && !is_stopped(r);
 }
 
@@ -208,7 +215,7 @@ static tm_status refine_some(repair *r, bool wide, bool *better, tm_error *error
     outcome became = TOO_LARGE;
     tm_status status = tm_repair_bad_octants(
         r->state, r->report->after.invalid > 0 ? 0 : r->options->threshold,
-        r->report->after.invalid == 0, &octant, &count, error);
+        r->report->after.invalid == 0, NULL, &octant, &count, error);
     if (status == TM_OK && wide)
         status = tm_repair_widen(r->state, &octant, &count, error);
     while (status == TM_OK && became == TOO_LARGE && count > 0 && may_refine(r)) {
@@ -228,7 +235,7 @@ static tm_status show(const repair *r, bool off_surface, size_t *count, tm_error
 {
     uint32_t *octant;
     tm_status status = tm_repair_bad_octants(r->state, r->options->threshold, off_surface,
-                                             &octant, count, error);
+                                             NULL, &octant, count, error);
     if (status == TM_OK && r->options->visit)
         status = r->options->visit(r->options->context, r->report->iterations, r->state,
                                    octant, *count, error);
@@ -292,8 +299,8 @@ static tm_status run_refine(const repair *r, tm_error *error)
     tm_status status = show(r, false, &count, error);
     while (status == TM_OK && count > 0 && r->report->iterations < o->iterations) {
         uint32_t *octant;
-        status =
-            tm_repair_bad_octants(r->state, o->threshold, false, &octant, &count, error);
+        status = tm_repair_bad_octants(r->state, o->threshold, false, NULL, &octant,
+                                       &count, error);
         if (status == TM_OK)
             status = remake(r, octant, count, error);
         free(octant);

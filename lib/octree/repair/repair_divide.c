@@ -4,12 +4,15 @@
 #include "../../base/array.h"
 #include "../../element/shape.h"
 #include "../../stream/stream.h"
-#include "repair_faces.h"
+#include "../../mesh/mixed_boundary.h"
 #include "element_division.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Elements as good are not divided, whatever the threshold is: parts are no better. */
+static const double not_divided = 0.5;
 
 /* An element and its parts. */
 typedef struct {
@@ -66,7 +69,7 @@ static tm_status find_divisions(divider *d, tm_error *error)
          e++) {
         const double jens = tm_mixed_jens(mesh, e);
         if (mesh->start[e + 1] - mesh->start[e] > TM_TET_NODES &&
-            tm_repair_is_bad(mesh, e, jens, d->threshold))
+            tm_repair_is_bad(mesh, e, jens, fmin(d->threshold, not_divided)))
             status = add_division(d, e, jens, find_open(d, e, &next), error);
     }
     return status;

@@ -10,7 +10,7 @@
 #include "../layer/octree_mesh_stream.h"
 #include "../forest/octree_stream.h"
 #include "repair_boundary.h"
-#include "repair_faces.h"
+#include "../../mesh/mixed_boundary.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -67,6 +67,16 @@ static tm_status move(mover *m, int rounds, double threshold, tm_repair_score *s
     return status;
 }
 
+/* Measurements of elements: by how much is bad, and no more than a threshold that most
+ * elements are below is worth. */
+static size_t most_measured(const tm_repair_state *state, const tm_repair_effort *effort,
+                            size_t bad)
+{
+    const size_t most = 2500000 + 40 * state->mesh.elements;
+    const size_t wanted = effort->at_least + effort->measured * bad;
+    return wanted < most ? wanted : most;
+}
+
 /* Moves nodes of a mesh, all of it or a part: `least` is that of the whole. */
 static tm_status move_in(tm_repair_state *state, const tm_surface *surface,
                          double threshold, tm_repair_effort effort, double least,
@@ -86,8 +96,8 @@ static tm_status move_in(tm_repair_state *state, const tm_surface *surface,
                     .off_surface_threshold =
                         effort.share > 0 ? fmax(effort.share * aim, TM_REPAIR_FLAT) : 0,
                     .effort = effort.effort,
-                    .most_measured = effort.at_least +
-                                     effort.measured * (score.bad + score.off_surface),
+                    .most_measured =
+                        most_measured(state, &effort, score.bad + score.off_surface),
                     .progress = state->progress,
                     .stop = state->stop}};
     if (!m.thresholds)

@@ -2,12 +2,13 @@
 #include "repair_shape.h"
 
 #include "../../base/array.h"
+#include "../../base/disjoint_sets.h"
 #include "../../element/shape.h"
 #include "../../examine/element_examine.h"
 #include "../../geom/vector.h"
 #include "../../stream/stream.h"
 #include "../layer/octree_mesh_stream.h"
-#include "repair_faces.h"
+#include "../../mesh/mixed_boundary.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -16,7 +17,7 @@
  * what of all curves, and of the volume, may be missing. */
 static const double along = 0.1, curves_less = 0.01, volume_off = 1e-3;
 
-/* The boundary: faces of elements, as numbers of repair_faces.h. */
+/* The boundary: faces of elements, as numbers of mixed_boundary.h. */
 typedef struct {
     const tm_repair_state *state;
     const tm_surface *surface;
@@ -89,6 +90,35 @@ static void measure_boundary(tm_repair_shape *shape, const boundary *b)
     }
 }
 
+/* The pieces of the boundary and its Euler characteristic. */
+static tm_status measure_topology(tm_repair_shape *shape, const boundary *b,
+                                  tm_error *error)
+{
+    const size_t nodes = b->state->mesh.nodes;
+    uint32_t *parent = tm_new(nodes, sizeof *parent);
+    int64_t half_edges = 0, used = 0;
+    if (!parent)
+        return tm_fail_memory(error);
+    for (size_t v = 0; v < nodes; v++)
+        parent[v] = TM_NONE;
+    for (size_t f = 0; f < b->faces; f++) {
+        uint32_t node[4];
+        const size_t k = nodes_of(b, f, node);
+        for (size_t i = 0; i < k; i++) {
+            used += parent[node[i]] == TM_NONE;
+            if (parent[node[i]] == TM_NONE)
+                parent[node[i]] = node[i];
+            tm_set_unite(parent, node[0], node[i]);
+        }
+        half_edges += (int64_t)k;
+    }
+    for (size_t v = 0; v < nodes; v++)
+        shape->components += parent[v] == v;
+    shape->euler = used - half_edges / 2 + (int64_t)b->faces;
+    free(parent);
+    return TM_OK;
+}
+
 tm_status tm_repair_shape_measure(tm_repair_shape *shape, const tm_repair_state *state,
                                   const tm_surface *surface, tm_error *error)
 {
@@ -109,12 +139,11 @@ tm_status tm_repair_shape_measure(tm_repair_shape *shape, const tm_repair_state 
                                             TM_NON_MANIFOLD_EDGE, TM_NON_MANIFOLD_VERTEX};
         for (size_t i = 0; i < sizeof defects / sizeof *defects; i++)
             shape->defects += found.defect[defects[i]].count;
-        shape->components = found.components;
-        shape->euler = found.euler;
         for (size_t v = 0; v < mesh->nodes; v++)
             shape->corners +=
                 state->on[v] == TM_NODE_ON_CORNER && !state->rule[v].off_surface;
         measure_boundary(shape, &b);
+        status = measure_topology(shape, &b, error);
     }
     free(b.face);
     return status;

@@ -6,12 +6,17 @@
 #include "../../element/shape.h"
 #include "../../stream/stream.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* How far around a tip nodes may move, and how many elements are at the middle. */
 enum { RINGS = 2, CORE_MOST = 24 };
-static const tm_repair_effort effort = {1, TM_REPAIR_FLAT, 1, 10000, 0};
+
+/* Elements at a tip that are as good are not made anew, whatever the threshold is: it is
+ * not sharp. */
+static const double not_sharp = 0.3;
+static const tm_repair_effort effort = {1, TM_REPAIR_FLAT, 1, 0, 60000};
 
 /* What comes in the place of one element, with nodes of the whole mesh. */
 typedef struct {
@@ -35,7 +40,8 @@ typedef struct {
 
 static bool is_bad(const corners *t, const tm_mixed_mesh *mesh, size_t e)
 {
-    return tm_repair_is_bad(mesh, e, tm_mixed_jens(mesh, e), t->threshold);
+    return tm_repair_is_bad(mesh, e, tm_mixed_jens(mesh, e),
+                            fmin(t->threshold, not_sharp));
 }
 
 static bool has_node(const tm_mixed_mesh *mesh, size_t e, uint32_t v)

@@ -87,8 +87,8 @@ static bool has_off_surface(const tm_repair_state *state, size_t e)
 }
 
 tm_status tm_repair_bad_octants(const tm_repair_state *state, double threshold,
-                                bool off_surface, uint32_t **octant, size_t *count,
-                                tm_error *error)
+                                bool off_surface, const bool *except, uint32_t **octant,
+                                size_t *count, tm_error *error)
 {
     const tm_mixed_mesh *mesh = &state->mesh;
     size_t room = 0;
@@ -96,8 +96,10 @@ tm_status tm_repair_bad_octants(const tm_repair_state *state, double threshold,
     *count = 0;
     for (size_t e = 0; e < mesh->elements; e++) {
         const double jens = tm_mixed_jens(mesh, e);
-        if (state->octant[e] == TM_NONE || !(tm_repair_is_bad(mesh, e, jens, threshold) ||
-                                             (off_surface && has_off_surface(state, e))))
+        const bool bad =
+            tm_repair_is_bad(mesh, e, jens, threshold) && !(except && except[e]);
+        if (state->octant[e] == TM_NONE ||
+            !(bad || (off_surface && has_off_surface(state, e))))
             continue;
         uint32_t *grown = tm_grow(*octant, &room, *count + 1, sizeof *grown);
         if (!grown)

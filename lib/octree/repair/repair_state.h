@@ -63,11 +63,11 @@ tm_repair_score tm_repair_measure(const tm_repair_state *state, double threshold
  * these must be better. */
 bool tm_repair_better(const tm_repair_score *a, const tm_repair_score *b);
 
-/* The octants that hold a bad element, or, with `off_surface`, one at a node that is off
- * the surface: ascending, malloc'ed. */
+/* The octants that hold a bad element, but for those of `except` ([elements], or NULL),
+ * or, with `off_surface`, one at a node that is off the surface: ascending, malloc'ed. */
 tm_status tm_repair_bad_octants(const tm_repair_state *state, double threshold,
-                                bool off_surface, uint32_t **octant, size_t *count,
-                                tm_error *error);
+                                bool off_surface, const bool *except, uint32_t **octant,
+                                size_t *count, tm_error *error);
 
 /* Adds the octants that have a node in common with the elements of those listed. */
 tm_status tm_repair_widen(const tm_repair_state *state, uint32_t **octant, size_t *count,

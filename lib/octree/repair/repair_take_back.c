@@ -5,6 +5,7 @@
 
 #include "../../base/array.h"
 #include "../../base/disjoint_sets.h"
+#include "../../geom/vector.h"
 #include "../../stream/stream.h"
 
 #include <math.h>
@@ -22,8 +23,7 @@ typedef struct {
 
 static bool has_moved(const judge *j, size_t v)
 {
-    return memcmp(j->before->xyz[v], j->state->mesh.xyz[v], sizeof *j->before->xyz) !=
-               0 ||
+    return tm_distance2(j->before->xyz[v], j->state->mesh.xyz[v]) > 0 ||
            j->before->rule[v].off_surface != j->state->rule[v].off_surface ||
            j->before->rule[v].where != j->state->rule[v].where;
 }
@@ -95,6 +95,52 @@ static void measure(judge *j)
     }
 }
 
+typedef struct {
+    double xyz[3];
+    uint32_t node;
+} place;
+
+static int compare_places(const void *a, const void *b)
+{
+    const place *p = a, *q = b;
+    for (int i = 0; i < 3; i++)
+        if (p->xyz[i] != q->xyz[i])
+            return p->xyz[i] < q->xyz[i] ? -1 : 1;
+    return (p->node > q->node) - (p->node < q->node);
+}
+
+static void restore(const judge *j, size_t v)
+{
+    memcpy(j->state->mesh.xyz[v], j->before->xyz[v], sizeof *j->before->xyz);
+    j->state->rule[v] = j->before->rule[v];
+}
+
+/* Takes back nodes of the boundary that have come to where another one is: elements do
+ * not tell where they have none in common. */
+static tm_status take_back_doubles(const judge *j, tm_error *error)
+{
+    const tm_mixed_mesh *mesh = &j->state->mesh;
+    size_t count = 0;
+    place *list = tm_new(mesh->nodes, sizeof *list);
+    if (!list)
+        return tm_fail_memory(error);
+    for (size_t v = 0; v < mesh->nodes; v++) {
+        if (j->state->rule[v].freedom == TM_MOVES_FREELY)
+            continue;
+        memcpy(list[count].xyz, mesh->xyz[v], sizeof list->xyz);
+        list[count++].node = (uint32_t)v;
+    }
+    if (count > 0)
+        qsort(list, count, sizeof *list, compare_places);
+    for (size_t i = 1; i < count; i++)
+        if (tm_distance2(list[i - 1].xyz, list[i].xyz) == 0) {
+            restore(j, list[i - 1].node);
+            restore(j, list[i].node);
+        }
+    free(list);
+    return TM_OK;
+}
+
 /* What elements of a piece may fall to: half of the worst there, if the whole mesh has
  * such, or it is good still. */
 static double find_good(const judge *j, uint32_t piece)
@@ -110,12 +156,6 @@ static bool is_kept(const judge *j, uint32_t piece)
     tm_repair_score was = j->score[piece][0];
     was.good = find_good(j, piece);
     return tm_repair_better(&j->score[piece][1], &was);
-}
-
-static void restore(const judge *j, size_t v)
-{
-    memcpy(j->state->mesh.xyz[v], j->before->xyz[v], sizeof *j->before->xyz);
-    j->state->rule[v] = j->before->rule[v];
 }
 
 /* Whether an element of a piece that does not stay is worse than it was. */
@@ -168,9 +208,11 @@ tm_status tm_repair_take_back(tm_repair_state *state, const tm_repair_points *be
                tm_new(nodes, sizeof *j.root),
                tm_new(nodes, sizeof *j.score)};
     uint32_t *list = tm_new(elements, sizeof *list);
-    const bool ok = j.root && j.score && list;
     size_t count = 0;
-    if (ok) {
+    tm_status status = j.root && j.score && list ? TM_OK : tm_fail_memory(error);
+    if (status == TM_OK)
+        status = take_back_doubles(&j, error);
+    if (status == TM_OK) {
         find_pieces(&j);
         measure(&j);
         for (uint32_t e = 0; e < elements; e++) {
@@ -183,5 +225,5 @@ tm_status tm_repair_take_back(tm_repair_state *state, const tm_repair_points *be
     free(j.root);
     free(j.score);
     free(list);
-    return ok ? TM_OK : tm_fail_memory(error);
+    return status;
 }

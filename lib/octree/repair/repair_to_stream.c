@@ -6,7 +6,7 @@
 #include "../layer/octree_mesh_stream.h"
 #include "../forest/octree_stream.h"
 #include "repair_facets.h"
-#include "repair_faces.h"
+#include "../../mesh/mixed_boundary.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "repair_faces.h"
+#include "mixed_boundary.h"
 
-#include "../../base/array.h"
-#include "../../mesh/face_table.h"
+#include "../base/array.h"
+#include "face_table.h"
 
 #include <stdlib.h>
 

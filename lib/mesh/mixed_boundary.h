@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The faces of a mixed mesh that belong to one element. */
-#ifndef TM_REPAIR_REPAIR_FACES_H
-#define TM_REPAIR_REPAIR_FACES_H
+#ifndef TM_MESH_MIXED_BOUNDARY_H
+#define TM_MESH_MIXED_BOUNDARY_H
 
-#include "../../base/error.h"
-#include "../../mesh/mixed_mesh.h"
+#include "../base/error.h"
+#include "mixed_mesh.h"
 
 enum { TM_FACE_SHIFT = 3 };
 
