@@ -10,7 +10,6 @@
 #include "../lib/octree/layer/octree_mesh_stream.h"
 #include "../lib/octree/layer/adaptive_refinement.h"
 #include "../lib/element/jens.h"
-#include "../lib/base/array.h"
 #include "../lib/surface/surface_curvature.h"
 
 #include <math.h>
@@ -156,7 +155,7 @@ static double *follow_curvature(const filter *f, settings *o, const tm_surface *
     if (o->curvature == 0)
         return NULL;
     tm_error error;
-    double *largest = tm_new(s->triangles, sizeof *largest);
+    double *largest = malloc((s->triangles + 1) * sizeof *largest);
     if (!largest)
         tm_fail_memory(&error);
     if (!largest)

@@ -297,7 +297,8 @@ static tm_status run_refine(const repair *r, tm_error *error)
     const tm_repair_options *o = r->options;
     size_t count;
     tm_status status = show(r, false, &count, error);
-    while (status == TM_OK && count > 0 && r->report->iterations < o->iterations) {
+    while (status == TM_OK && count > 0 && r->report->iterations < o->iterations &&
+           !is_stopped(r)) {
         uint32_t *octant;
         status = tm_repair_bad_octants(r->state, o->threshold, false, NULL, &octant,
                                        &count, error);
