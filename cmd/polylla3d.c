@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* polylla3d: tetrahedra in, polyhedra out. */
+/* polylla3d: tetrahedra in, or the elements of octants, polyhedra out. */
 #include "common/app/filter.h"
 #include "common/input/tet_input.h"
 
 #include "../lib/poly/facets.h"
+#include "../lib/poly/join_cells.h"
 #include "../lib/tet/mesh_measure.h"
 
 #include <float.h>
@@ -63,6 +64,7 @@ static const char own_help[] =
 typedef struct {
     tm_poly_options poly;
     bool merge, ignore_markers, label;
+    bool any;       /* of the options is given */
     double degrees; /* of --merge-coplanar */
 } settings;
 
@@ -114,6 +116,7 @@ static settings read_options(filter *f)
     int c;
     while ((c = filter_option(f)) != -1) {
         set_option(f, &o, c);
+        o.any = true;
         has_metric |= c == FACE_METRIC;
         has_mode |= c == MODE;
     }
@@ -135,11 +138,11 @@ static settings read_options(filter *f)
     return o;
 }
 
-/* Puts the blocks of the polyhedra in the place of those of the tetrahedra. */
-static void put_facets(filter *f, tm_stream *stream, const tm_block made[2])
+/* Puts the blocks of the polyhedra in the place of others. */
+static void put_blocks(filter *f, tm_stream *stream, const char *const *gone,
+                       size_t count, const tm_block made[2])
 {
-    static const char *const gone[2] = {".ele", ".face"};
-    for (int k = 0; k < 2; k++) {
+    for (size_t k = 0; k < count; k++) {
         tm_block *block = tm_stream_find(stream, gone[k]);
         if (block)
             tm_stream_remove(stream, block);
@@ -239,9 +242,68 @@ static void label(filter *f, tm_stream *stream, tm_tet_mesh *mesh, const setting
     free(order);
 }
 
+/* Gives the polyhedra their attributes: of how many elements they are, and what the first
+ * of these has. */
+static void set_attributes(filter *f, const tm_block *mix, const uint32_t *cell_of,
+                           tm_block *cell)
+{
+    tm_error error;
+    cell->attributes = 1 + mix->attributes;
+    cell->attribute = calloc(cell->count * cell->attributes + 1, sizeof *cell->attribute);
+    if (!cell->attribute) {
+        tm_fail_memory(&error);
+        filter_fail(f, &error);
+    }
+    for (size_t e = 0; e < mix->count; e++) {
+        double *row = cell->attribute + cell_of[e] * cell->attributes;
+        if (row[0]++ == 0 && mix->attributes > 0)
+            memcpy(row + 1, mix->attribute + e * mix->attributes,
+                   mix->attributes * sizeof *row);
+    }
+}
+
+/* Makes polyhedra of mixed elements: of those of each octant one. */
+static void join_octants(filter *f, tm_stream *stream, result *r)
+{
+    static const char *const gone[] = {".mix", ".face", ".facet", ".octant", ".root"};
+    tm_error error;
+    tm_cell_faces faces = {0};
+    const tm_block *octant = tm_stream_find(stream, ".octant");
+    tm_block *mix = tm_stream_find(stream, ".mix");
+    const tm_block *node = tm_stream_find(stream, ".node");
+    tm_block made[2] = {{.name = ".facet", .kind = TM_FACET},
+                        {.name = ".cell", .kind = TM_CELL}};
+    if (!octant) {
+        tm_fail_at(&error, TM_ERROR_INPUT, filter_input_name(f), 0, NULL,
+                   "has mixed elements, but no .octant that says which to join");
+        filter_fail(f, &error);
+    }
+    filter_stage(f, "joining octants");
+    uint32_t *label = malloc((mix->count + 1) * sizeof *label);
+    tm_status status =
+        label ? tm_cell_faces_find(&faces, stream, &error) : tm_fail_memory(&error);
+    const double(*xyz)[3] = (const double(*)[3])node->real;
+    if (status == TM_OK)
+        status =
+            tm_label_octants(&faces, octant, node->count, label, &r->poly.cells, &error);
+    if (status == TM_OK)
+        status = tm_join_cells(&faces, xyz, tm_flatness(xyz, node->count), label,
+                               r->poly.cells, &made[0], &made[1], &r->joined, &error);
+    if (status != TM_OK)
+        filter_fail(f, &error);
+    set_attributes(f, mix, label, &made[1]);
+    r->poly.tets = mix->count;
+    r->poly.regions = r->poly.cells;
+    r->facets = made[0].count;
+    tm_cell_faces_free(&faces);
+    free(label);
+    put_blocks(f, stream, gone, sizeof gone / sizeof *gone, made);
+}
+
 /* Makes polyhedra of the stream's tetrahedra. */
 static void convert(filter *f, tm_stream *stream, const settings *o, result *r)
 {
+    static const char *const gone[] = {".ele", ".face"};
     tm_error error;
     tm_tet_mesh mesh;
     tm_partition partition;
@@ -264,7 +326,7 @@ static void convert(filter *f, tm_stream *stream, const settings *o, result *r)
     make_facets(f, o, &mesh, &partition, made, r);
     if (tm_tet_mesh_to_stream(&mesh, stream, &error) != TM_OK)
         filter_fail(f, &error);
-    put_facets(f, stream, made);
+    put_blocks(f, stream, gone, sizeof gone / sizeof *gone, made);
     tm_partition_free(&partition);
 }
 
@@ -292,7 +354,8 @@ int main(int argc, char **argv)
                             "[--absorb] [--max-tets N] [--no-swallow] "
                             "[--merge-coplanar[=DEG]] [--ignore-markers] [--label] "
                             "[--face-metric area|inradius] [FILE]",
-                .purpose = "Joins tetrahedra to polyhedra.",
+                .purpose =
+                    "Joins tetrahedra, or the elements of each octant, to polyhedra.",
                 .help = own_help,
                 .options = options,
                 .words = option_words,
@@ -303,9 +366,16 @@ int main(int argc, char **argv)
     tm_stream stream;
     filter_read(&f, &stream);
 
-    result r;
-    convert(&f, &stream, &o, &r);
-    drop_unknown_blocks(&f, &stream, "the tetrahedra are polyhedra now");
+    result r = {0};
+    const bool mixed = tm_content_of(&stream) == TM_CONTENT_MIXED;
+    if (mixed && o.any)
+        filter_usage_error(&f, "of mixed elements those of each octant are joined: the "
+                               "options are for tetrahedra");
+    if (mixed)
+        join_octants(&f, &stream, &r);
+    else
+        convert(&f, &stream, &o, &r);
+    drop_unknown_blocks(&f, &stream, "the elements are polyhedra now");
     if (r.lost > 0)
         filter_note(&f, "%zu marked faces are inside of a polyhedron and dropped",
                     r.lost);
@@ -319,8 +389,9 @@ int main(int argc, char **argv)
                     r.poly.single);
     char summary[256];
     double cells = (double)r.poly.cells;
-    snprintf(summary, sizeof summary, "%zu tetrahedra -> %zu polyhedra, %.2f each",
-             r.poly.tets, r.poly.cells, cells > 0 ? (double)r.poly.tets / cells : 0);
+    snprintf(summary, sizeof summary, "%zu %s -> %zu polyhedra, %.2f each", r.poly.tets,
+             mixed ? "elements" : "tetrahedra", r.poly.cells,
+             cells > 0 ? (double)r.poly.tets / cells : 0);
     filter_note(&f, "%s", summary);
     write_json(&f, &r);
     filter_write(&f, &stream, "%s", summary);

@@ -79,14 +79,19 @@ void tm_tet_mesh_measure(const tm_tet_mesh *mesh, const uint32_t *tet, size_t co
     }
 }
 
-double tm_facet_flatness(const tm_tet_mesh *mesh)
+double tm_flatness(const double (*xyz)[3], size_t count)
 {
     const double ulps = 64;
     double largest = 0;
-    for (uint32_t v = 0; v < mesh->nodes; v++)
-        for (int k = 0; k < 3 && tm_node_lives(mesh, v); k++)
-            largest = fmax(largest, fabs(mesh->xyz[v][k]));
+    for (size_t v = 0; v < count; v++)
+        for (int k = 0; k < 3 && !isnan(xyz[v][0]); k++)
+            largest = fmax(largest, fabs(xyz[v][k]));
     return ulps * DBL_EPSILON * largest;
+}
+
+double tm_facet_flatness(const tm_tet_mesh *mesh)
+{
+    return tm_flatness((const double(*)[3])mesh->xyz, mesh->nodes);
 }
 
 static bool is_near_plane(const double normal[3], const double on_plane[3],

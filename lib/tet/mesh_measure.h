@@ -57,6 +57,7 @@ void tm_tet_mesh_measure(const tm_tet_mesh *mesh, const uint32_t *tet, size_t co
 /* Points that are this near to a plane are in it: the rounding of midpoints moves a point
  * by some ulps of its largest coordinate. O(nodes). */
 double tm_facet_flatness(const tm_tet_mesh *mesh);
+double tm_flatness(const double (*xyz)[3], size_t count);
 
 /* Whether constrained face g continues constrained face f in one facet beyond the edge
  * ab: both have the same marker and number of sides, the edge has no marker and the mesh

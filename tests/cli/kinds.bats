@@ -84,7 +84,7 @@ END
             status=$(status_of "$filter" "$kind.tm")
             row="$row $status"
             [ "$status" -ne 3 ] || [ "$filter" = oct-export ] ||
-                grep -q "^$filter: $kind.tm: \(holds .* but $filter takes\|has no elem\|has no \(faces\|cells\)\)" \
+                grep -q "^$filter: $kind.tm: \(holds .* but $filter takes\|has no elem\|has mixed elements, but no .octant\|has no \(faces\|cells\)\)" \
                     stderr.txt || { cat stderr.txt && false; }
             [ "$status" -ne 3 ] || ! [ -s out.txt ]
         done
@@ -98,11 +98,11 @@ END
 @test "the words: what is there, what is right, which filters take it" {
     run -3 lepp-improve mixed.tm
     [ "$output" = 'lepp-improve: mixed.tm: holds mixed elements (.mix), but lepp-improve takes '\
-'tetrahedra (.ele) (what it holds is for octree-repair, jens-stats, mesh-check and exporters)' ]
+'tetrahedra (.ele) (what it holds is for polylla3d, octree-repair, jens-stats, mesh-check and exporters)' ]
     run -3 tet-stats nothing.tm
     [ "$output" = 'tet-stats: nothing.tm: holds nothing, but tet-stats takes tetrahedra (.ele)' ]
     run -3 polylla3d mixed-facets.tm
-    [[ $output == 'polylla3d: mixed-facets.tm: holds mixed elements (.mix), but '* ]]
+    [[ $output == 'polylla3d: mixed-facets.tm: has mixed elements, but no .octant '* ]]
 }
 
 @test "a gate on --json does not pass for the wrong kind: there is none" {

@@ -457,3 +457,70 @@ END
     printf "termesh 1\n.node\n4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 1 1 0\n.ele\n1 4 0\n1 1 2 3 4\n.end\n" |
         polylla3d -q --merge-coplanar | vtu-export >"$out/flat.vtu"
 }
+
+# A grid of 4 x 4 x 4 cubes; the eight inside are those of two octants, four each.
+two_octants() {
+    python3 - <<'END'
+n, m = 4, 5
+node = lambda i, j, k: i + m * (j + m * k) + 1
+cells = sorted(((i, j, k) for k in range(n) for j in range(n) for i in range(n)),
+               key=lambda c: (not all(0 < x < n - 1 for x in c), c[2], c[1], c[0]))
+print('termesh 1\n.node\n%d 3 0 0' % m ** 3)
+for k in range(m):
+    for j in range(m):
+        for i in range(m):
+            print(node(i, j, k), i, j, k)
+print('.mix\n%d 1' % len(cells))
+for e, (i, j, k) in enumerate(cells, 1):
+    corners = [node(i + x, j + y, k + z) for z in (0, 1)
+               for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+    print(e, 8, *corners, 10 * k)
+print('.root\n1 0\n1 0 0 0 4 2\n.octant\n3 0\n1 0 0 0 0 9 65\n2 1 0 0 0 1 5\n3 1 0 0 0 5 9\n.end')
+END
+}
+
+@test "octants: polygons of facets in one plane, attributes, and what has none" {
+    two_octants >"$out/two.tm"
+    mesh-check -q "$out/two.tm"
+    polylla3d -q --json "$out/json" "$out/two.tm" >"$out/poly.tm"
+    mesh-check -q "$out/poly.tm"
+    [ "$(json "$out/json" polyhedra)" = 58 ] # 56 cubes at the boundary
+    [ "$(json "$out/json" facets_joined)" = 3 ]
+    # four cubes each, with the attribute of their first one; eight nodes around one inside
+    [ "$(rows .cell "$out/poly.tm" | awk '$(3 + $2) == 4 { print $(4 + $2) }' | paste -sd ' ')" = "10 20" ]
+    [ "$(rows .facet "$out/poly.tm" | awk '$4 > 4 { print $4 }')" = 8 ]
+    poly-stats -q --for fv --json "$out/stats" "$out/poly.tm" >"$out/table"
+    [ "$(json "$out/stats" volume) $(json "$out/stats" swallowed_vertices)" = "64 1" ]
+    run -3 --separate-stderr polylla3d <(sed '/^\.root/,$d' "$out/two.tm"; echo .end)
+    [[ $stderr == *"has mixed elements, but no .octant that says which to join"* ]]
+    run -2 --separate-stderr polylla3d --star "$out/two.tm"
+    [[ $stderr == *"the options are for tetrahedra"* ]]
+}
+
+@test "octants: an octree's mesh becomes fewer cells that finite volumes can use" {
+    local shape
+    surface cube off >cube.off
+    surface sphere off >sphere.off
+    command -v octree-mesh >/dev/null || skip "there is no p4est"
+    for shape in cube sphere; do
+        octree-mesh -q -s 4 $shape.off >"$out/mesh.tm"
+        polylla3d -q --json "$out/json" "$out/mesh.tm" >"$out/poly.tm"
+        mesh-check -q "$out/poly.tm"
+        poly-stats -q --for fv --json "$out/stats" "$out/poly.tm" >"$out/table"
+        mesh-check --json "$out/mesh" "$out/mesh.tm" >"$out/table"
+        python3 - "$out/mesh" "$out/stats" "$out/json" <<'END'
+import json, sys
+mesh, poly, run = (json.load(open(name)) for name in sys.argv[1:])
+assert run["polyhedra"] == poly["polyhedra"] < 0.6 * mesh["elements"]
+assert abs(poly["volume"] / mesh["volume"] - 1) < 1e-3 # facets of four nodes are bent
+assert poly["largest_faces"] > 6 and poly["not_star_shaped"] == 0
+END
+        # All elements are in one, and the facets of the boundary are there.
+        [ "$(rows .cell "$out/poly.tm" | awk '{ n += $(3 + $2) } END { print n }')" = \
+            "$(header .mix "$out/mesh.tm" | cut -d ' ' -f 1)" ]
+        [ "$(rows .facet "$out/poly.tm" | awk '$3 == -1' | wc -l)" = \
+            "$(json "$out/mesh" boundary_faces)" ]
+        openfoam-export -q "$out/foam" "$out/poly.tm"
+        rm -rf "$out/foam"
+    done
+}
