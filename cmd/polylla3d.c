@@ -263,7 +263,7 @@ static void set_attributes(filter *f, const tm_block *mix, const uint32_t *cell_
 }
 
 /* Makes polyhedra of mixed elements: of those of each octant one. */
-static void join_octants(filter *f, tm_stream *stream, result *r)
+static void join_octants(filter *f, tm_stream *stream, bool has_options, result *r)
 {
     static const char *const gone[] = {".mix", ".face", ".facet", ".octant", ".root"};
     tm_error error;
@@ -273,9 +273,11 @@ static void join_octants(filter *f, tm_stream *stream, result *r)
     const tm_block *node = tm_stream_find(stream, ".node");
     tm_block made[2] = {{.name = ".facet", .kind = TM_FACET},
                         {.name = ".cell", .kind = TM_CELL}};
-    if (!octant) {
+    if (!octant || has_options) {
         tm_fail_at(&error, TM_ERROR_INPUT, filter_input_name(f), 0, NULL,
-                   "has mixed elements, but no .octant that says which to join");
+                   octant ? "has mixed elements, those of each octant are joined: the "
+                            "options are for tetrahedra"
+                          : "has mixed elements, but no .octant that says which to join");
         filter_fail(f, &error);
     }
     filter_stage(f, "joining octants");
@@ -368,11 +370,8 @@ int main(int argc, char **argv)
 
     result r = {0};
     const bool mixed = tm_content_of(&stream) == TM_CONTENT_MIXED;
-    if (mixed && o.any)
-        filter_usage_error(&f, "of mixed elements those of each octant are joined: the "
-                               "options are for tetrahedra");
     if (mixed)
-        join_octants(&f, &stream, &r);
+        join_octants(&f, &stream, o.any, &r);
     else
         convert(&f, &stream, &o, &r);
     drop_unknown_blocks(&f, &stream, "the elements are polyhedra now");

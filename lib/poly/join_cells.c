@@ -301,7 +301,8 @@ static tm_status write_blocks(const joiner *j, size_t cells, tm_block *facet,
         if (facet->markers)
             facet->marker[p] = b->marker;
     }
-    memcpy(facet->item, j->item, j->items * sizeof *j->item);
+    for (size_t i = 0; i < j->items; i++)
+        facet->item[i] = j->item[i];
     return tm_cells_from_facets(facet, cell, cells, error);
 }
 

@@ -493,7 +493,7 @@ END
     [ "$(json "$out/stats" volume) $(json "$out/stats" swallowed_vertices)" = "64 1" ]
     run -3 --separate-stderr polylla3d <(sed '/^\.root/,$d' "$out/two.tm"; echo .end)
     [[ $stderr == *"has mixed elements, but no .octant that says which to join"* ]]
-    run -2 --separate-stderr polylla3d --star "$out/two.tm"
+    run -3 --separate-stderr polylla3d --star "$out/two.tm"
     [[ $stderr == *"the options are for tetrahedra"* ]]
 }
 
