@@ -17,6 +17,7 @@
 #include "../lib/octree/repair/repair_stream.h"
 #include "../lib/octree/repair/repair_trace.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <time.h>
 
@@ -331,6 +332,9 @@ static mesh_state state_of(const program *p, const tm_repair_state *state,
         tm_repair_shape_compare(&m.apart, state, &p->boundary, p->surface.feature_angle,
                                 &error) != TM_OK)
         filter_fail(&p->f, &error);
+    for (int to = 0; to < 2; to++) /* there may be no sharp edge to measure from or to */
+        if (!isfinite(m.apart.curve[to].most))
+            m.apart.curve[to].most = 0;
     return m;
 }
 

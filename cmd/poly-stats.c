@@ -55,15 +55,19 @@ static bool judge(const filter *f, const tm_poly_statistics *s, tm_poly_use use)
         filter_note(f, "fit for %s", name);
         return true;
     }
-    filter_note(f, "not fit for %s: smallest volume %.3g, %zu polyhedra are no balls",
-                name, s->min_volume, s->non_simple);
-    if (use == TM_USE_VEM)
-        filter_note(f, "%zu are not star-shaped: polylla3d --star makes none",
-                    s->not_star_shaped);
-    if (use == TM_USE_FV)
-        filter_note(
-            f, "%zu facets are not orthogonal, %zu skew, %zu pyramids have no volume",
-            fv->non_orthogonal, fv->skew, fv->wrong_pyramids);
+    filter_note(f, "not fit for %s:", name);
+    if (s->non_simple > 0)
+        filter_note(f, "%zu polyhedra are no balls", s->non_simple);
+    if (!(s->min_volume > 0))
+        filter_note(f, "the smallest volume is %.3g", s->min_volume);
+    if (use == TM_USE_VEM && s->not_star_shaped > 0)
+        filter_note(f, "%zu polyhedra are not star-shaped", s->not_star_shaped);
+    if (use == TM_USE_FV && fv->non_orthogonal > 0)
+        filter_note(f, "%zu facets are not orthogonal", fv->non_orthogonal);
+    if (use == TM_USE_FV && fv->skew > 0)
+        filter_note(f, "%zu facets are skew", fv->skew);
+    if (use == TM_USE_FV && fv->wrong_pyramids > 0)
+        filter_note(f, "%zu pyramids have no volume", fv->wrong_pyramids);
     return false;
 }
 

@@ -165,41 +165,46 @@ static void find_parts(const tm_tet_mesh *mesh, uint32_t *part)
         part[t] = tm_set_root(part, t);
 }
 
-/* Cuts each part into runs of even volume: as many as its share of the whole says, one at
- * least. Writes how far each part has come, in `filled`, by its first tetrahedron. */
+/* A part of the mesh: what cuts it into runs of even volume. */
+typedef struct {
+    double volume, filled;
+    size_t tets, runs;
+    uint32_t first; /* cell */
+} mesh_part;
+
+/* Cuts each part into runs: as many as its share of the whole says, one at least, and no
+ * more than it has tetrahedra. */
 static bool cut_into_runs(compactor *m, double run)
 {
     const tm_tet_mesh *mesh = m->mesh;
     uint32_t *part = tm_new(mesh->slots, sizeof *part);
-    double *volume = calloc(mesh->slots + 1, sizeof *volume);
-    double *filled = calloc(mesh->slots + 1, sizeof *filled);
-    uint32_t *first = tm_new(mesh->slots, sizeof *first); /* cell of a part */
-    bool done = part && volume && filled && first;
+    mesh_part *of = calloc(mesh->slots + 1, sizeof *of); /* by the first tetrahedron */
     m->cells = 0;
-    if (done)
+    if (part && of)
         find_parts(mesh, part);
-    for (uint32_t t = 0; t < mesh->slots && done; t++)
-        volume[part[t]] += m->centre[t][3];
-    for (uint32_t t = 0; t < mesh->slots && done; t++) {
+    for (uint32_t t = 0; t < mesh->slots && part && of; t++) {
+        of[part[t]].volume += m->centre[t][3];
+        of[part[t]].tets++;
+    }
+    for (uint32_t t = 0; t < mesh->slots && part && of; t++) {
         if (part[t] != t)
             continue;
-        first[t] = (uint32_t)m->cells;
-        m->cells += (size_t)fmax(1, floor(volume[t] / run + 0.5));
+        double runs = fmin(floor(of[t].volume / run + 0.5), (double)of[t].tets);
+        of[t].runs = (size_t)fmax(1, runs);
+        of[t].first = (uint32_t)m->cells;
+        m->cells += of[t].runs;
     }
-    m->cell = done ? calloc(m->cells + 1, sizeof *m->cell) : NULL;
+    m->cell = part && of ? calloc(m->cells + 1, sizeof *m->cell) : NULL;
     for (uint32_t t = 0; t < mesh->slots && m->cell; t++) {
-        uint32_t p = part[t];
-        double runs = fmax(1, floor(volume[p] / run + 0.5));
-        double at =
-            volume[p] > 0 ? (filled[p] + m->centre[t][3] / 2) / volume[p] * runs : 0;
-        filled[p] += m->centre[t][3];
-        m->label[t] = first[p] + (uint32_t)fmin(at, runs - 1);
+        mesh_part *p = &of[part[t]];
+        double share = p->volume > 0 ? (p->filled + m->centre[t][3] / 2) / p->volume : 0;
+        p->filled += m->centre[t][3];
+        m->label[t] =
+            p->first + (uint32_t)fmin(share * (double)p->runs, (double)p->runs - 1);
         add(&m->cell[m->label[t]], m->centre[t], 1);
     }
     free(part);
-    free(volume);
-    free(filled);
-    free(first);
+    free(of);
     return m->cell;
 }
 
@@ -226,7 +231,7 @@ tm_status tm_poly_compact(const tm_tet_mesh *mesh, const tm_poly_options *option
         measure(&m);
         double run = options->cells > 0 ? m.volume / (double)options->cells
                                         : pow(options->size, 3);
-        done = cut_into_runs(&m, fmax(run, m.volume / (double)TM_TETS_MAX));
+        done = cut_into_runs(&m, run);
         if (done) {
             settle(&m, 0, options->progress);
             settle(&m, border_price * run, options->progress);

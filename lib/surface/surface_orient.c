@@ -247,10 +247,16 @@ static tm_status find_holes(tm_surface *surface, const tm_polygon_surface *polyg
     if (!surface->hole)
         return tm_fail_memory(error);
     for (size_t h = 0; h < polygons->holes; h++) {
-        const uint32_t s = shell_around(surface, volume, polygons->hole[h]);
-        if (s != TM_NONE && volume[s] < 0)
-            memcpy(surface->hole[surface->holes++], polygons->hole[h],
-                   sizeof *surface->hole);
+        const double *p = polygons->hole[h];
+        const uint32_t s = shell_around(surface, volume, p);
+        if (s == TM_NONE)
+            continue;
+        if (volume[s] > 0)
+            return tm_fail(error, TM_ERROR_INPUT,
+                           "hole %zu, at (%g, %g, %g), is in a region that is outermost, "
+                           "or within two others: that cannot be left empty",
+                           h + 1, p[0], p[1], p[2]);
+        memcpy(surface->hole[surface->holes++], p, sizeof *surface->hole);
     }
     return TM_OK;
 }

@@ -307,3 +307,35 @@ END
     run -3 --separate-stderr octree-repair empty.tm
     [[ "$stderr" == 'octree-repair: empty.tm: holds points (.node alone), but '* ]]
 }
+
+@test "a list splits its octants and no others; tips made anew keep growth and shape" {
+    "$TM_BUILD/bench/shapes" spikes >spikes.off
+    octree-mesh -q -s 4 -o spikes.tm spikes.off
+    run octree-repair -q -t 0.2 --json report.json -o mended.tm spikes.tm
+    python3 - report.json spikes.off <<'END'
+import json, sys
+report = json.load(open(sys.argv[1]))
+before, after = report["before"], report["after"]
+assert after["elements"] <= 1.1 * before["elements"]
+lines = open(sys.argv[2]).read().split()
+n, f = int(lines[1]), int(lines[2])
+xyz = [list(map(float, lines[4 + 3 * i:7 + 3 * i])) for i in range(n)]
+at, volume = 4 + 3 * n, 0
+for _ in range(f):
+    k = int(lines[at])
+    p = [xyz[int(i)] for i in lines[at + 1:at + 1 + k]]
+    at += 1 + k
+    for a, b, c in ((p[0], p[i], p[i + 1]) for i in range(1, k - 1)):
+        volume += (a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
+                   + a[2] * (b[0] * c[1] - b[1] * c[0])) / 6
+assert abs(after["volume"] - volume) <= abs(before["volume"] - volume) + 1e-3 * volume
+assert not None in after.values()
+END
+    # One octant, of which no neighbour is smaller, is eight then: the rest is as it was.
+    surface sphere off >sphere.off
+    octree-mesh -q -s 3 --resolve 0 -o sphere.tm sphere.off
+    octant=$(rows .octant sphere.tm | awk '$2 == 3 && $7 > $6 { print $1 - 1; exit }')
+    echo "$octant" >one.ref
+    octree-repair -q --method refine -i 1 --octants one.ref -o split.tm sphere.tm || [ $? -eq 1 ]
+    [ "$(rows .octant split.tm | awk '$2 == 4' | wc -l)" = 8 ]
+}

@@ -163,6 +163,10 @@ END
     octree-mesh -s 3 -o mesh.tm hole.poly 2>message
     [ "$(volume mesh.tm)" = 26 ]
     run ! grep 'not in the mesh' message
+    # one that would take the outermost region away is refused
+    sed 's/^1 1.5 1.5 1.5$/1 0.5 0.5 0.5/' hole.poly >outer.poly
+    run -3 --separate-stderr octree-mesh -s 3 outer.poly
+    [[ "$stderr" == *"hole 1, at (0.5, 0.5, 0.5), is in a region that is outermost, or within two others: that cannot be left empty" ]]
 }
 
 @test "tetgen-mesh: of faces in one place the first is taken" {

@@ -307,7 +307,7 @@ static void test_divided(void **unused)
                     random_between(0, 0.6) * (0.5 - c.state.mesh.xyz[v][i]);
         tm_error error;
         const tm_repair_options options = {
-            .method = TM_REPAIR_FULL, .threshold = threshold, .growth = 1};
+            .method = TM_REPAIR_FULL, .threshold = threshold, .growth = 1.5};
         tm_repair_report report;
         assert_ok(tm_repair(&c.state, &c.surface, &options, &report, &error), &error);
         check_score(&c.state, &report.after, threshold);

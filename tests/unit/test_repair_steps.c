@@ -353,7 +353,7 @@ static void test_remake(void **unused)
         const size_t e = random_below((unsigned)c.state.mesh.elements);
         octant[0] = c.state.octant[e];
         const tm_examination first = examine_state(&c.state);
-        assert_ok(tm_repair_remake(&made, &c.state, &c.surface, octant, 1, &error),
+        assert_ok(tm_repair_remake(&made, &c.state, &c.surface, octant, 1, true, &error),
                   &error);
         assert_true(made.remade);
         assert_true(made.octree.leaves >= c.state.octree.leaves + 7);
@@ -412,7 +412,7 @@ static void test_remake_tips(void **unused)
     assert_ok(tm_repair_bad_octants(&c.state, 0.25, false, NULL, &octant, &count, &error),
               &error);
     assert_true(count > 0);
-    assert_ok(tm_repair_remake(&made, &c.state, &c.surface, octant, count, &error),
+    assert_ok(tm_repair_remake(&made, &c.state, &c.surface, octant, count, true, &error),
               &error);
     assert_int_equal(count_on(&made, TM_NODE_ON_CORNER), c.surface.corners);
     assert_true(count_on(&made, TM_NODE_ON_CURVE) >=

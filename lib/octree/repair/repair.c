@@ -62,6 +62,35 @@ static tm_status make_valid(const repair *r, tm_repair_state *state, tm_error *e
     return status;
 }
 
+/* Makes elements anew at tips, if that keeps the shape and there is room. */
+static tm_status make_tips(const repair *r, tm_repair_state *state, double threshold,
+                           tm_repair_score *score, tm_error *error)
+{
+    tm_repair_state before = {0};
+    tm_repair_shape was, is;
+    size_t *count = &r->report->corners, old = *count;
+    bool keeps = true;
+    tm_status status = tm_repair_copy_mesh(&before, state, error);
+    if (status == TM_OK)
+        status =
+            tm_repair_sharp_corners(state, r->surface, threshold, score, count, error);
+    const bool made = status == TM_OK && *count > old;
+    if (made && r->surface) {
+        status = tm_repair_shape_measure(&was, &before, r->surface, error);
+        if (status == TM_OK)
+            status = tm_repair_shape_measure(&is, state, r->surface, error);
+        keeps = status == TM_OK && tm_repair_shape_keeps(&is, &was, r->surface);
+    }
+    if (status == TM_OK && made &&
+        (!keeps || state->mesh.elements > r->elements_at_most)) {
+        tm_repair_take_mesh(state, &before);
+        *score = tm_repair_measure(state, threshold);
+        *count = old;
+    }
+    tm_repair_state_free(&before);
+    return status;
+}
+
 /* Makes elements anew at tips, and divides elements: those that are bad, and where nodes
  * are off the surface all that are not good, to make room. */
 static tm_status make_others(const repair *r, tm_repair_state *state, double threshold,
@@ -72,8 +101,7 @@ static tm_status make_others(const repair *r, tm_repair_state *state, double thr
     tm_status status = TM_OK;
     *score = tm_repair_measure(state, to);
     if (score->bad > 0 && tips && !is_stopped(r))
-        status = tm_repair_sharp_corners(state, r->surface, to, score,
-                                         &r->report->corners, error);
+        status = make_tips(r, state, to, score, error);
     if (status == TM_OK && score->bad > 0 && !is_stopped(r))
         status =
             tm_repair_divide(state, r->surface, to, score, &r->report->divided, error);
@@ -168,7 +196,7 @@ static tm_status refine(repair *r, const uint32_t *octant, size_t count, outcome
     *became = NOT_BETTER;
     r->report->iterations++;
     tm_status status =
-        tm_repair_remake(&made, r->state, r->surface, octant, count, error);
+        tm_repair_remake(&made, r->state, r->surface, octant, count, true, error);
     if (status == TM_ERROR_INPUT) { /* too deep: there is no such octree */
         tm_repair_state_free(&made);
         r->remade = r->remade_at_most;
@@ -270,7 +298,7 @@ static tm_status remake(const repair *r, const uint32_t *octant, size_t count,
 {
     tm_repair_state made = {0};
     const tm_status status =
-        tm_repair_remake(&made, r->state, r->surface, octant, count, error);
+        tm_repair_remake(&made, r->state, r->surface, octant, count, false, error);
     if (status == TM_OK)
         replace(r->state, &made);
     tm_repair_state_free(&made);

@@ -39,7 +39,7 @@ static tm_status mark_layer(const tm_octree *octree, const bool *filled, uint8_t
 
 static tm_status split(tm_octree *octree, const tm_repair_state *from,
                        const tm_surface *surface, const uint32_t *octant, size_t count,
-                       tm_error *error)
+                       bool layer, tm_error *error)
 {
     uint8_t *marked = calloc(octree->leaves + 1, 1);
     bool *filled = calloc(octree->leaves + 1, sizeof *filled);
@@ -53,7 +53,7 @@ static tm_status split(tm_octree *octree, const tm_repair_state *from,
         marked[l] = count > 0 && bsearch(&from->row[l], octant, count, sizeof *octant,
                                          tm_repair_compare_octants) != NULL;
     }
-    if (status == TM_OK)
+    if (status == TM_OK && layer)
         status = mark_layer(octree, filled, marked, error);
     if (status == TM_OK)
         status = tm_octree_refine(octree, surface, marked, error);
@@ -99,7 +99,7 @@ static tm_status take_mesh(tm_repair_state *to, tm_octree_mesh *made,
 
 tm_status tm_repair_remake(tm_repair_state *to, const tm_repair_state *from,
                            tm_surface *surface, const uint32_t *octant, size_t count,
-                           tm_error *error)
+                           bool layer, tm_error *error)
 {
     tm_octree_mesh made = {0};
     to->remade = true;
@@ -110,7 +110,7 @@ tm_status tm_repair_remake(tm_repair_state *to, const tm_repair_state *from,
         tm_progress_begin_within(&within, to->progress, "splitting octants");
     tm_status status = tm_octree_copy(&to->octree, &from->octree, error);
     if (status == TM_OK)
-        status = split(&to->octree, from, surface, octant, count, error);
+        status = split(&to->octree, from, surface, octant, count, layer, error);
     if (status != TM_OK)
         return status;
     status = tm_octree_mesh_make(&made, &to->octree, surface, inner, error);

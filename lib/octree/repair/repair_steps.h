@@ -56,9 +56,10 @@ tm_status tm_repair_divide(tm_repair_state *state, const tm_surface *surface,
                            tm_error *error);
 
 /* Makes *to, which must be zeros, of the octree with those octants split once, balanced
- * and meshed again. It is to be freed, after an error too. */
+ * and meshed again; with `layer` also those between them and the surface. It is to be
+ * freed, after an error too. */
 tm_status tm_repair_remake(tm_repair_state *to, const tm_repair_state *from,
                            tm_surface *surface, const uint32_t *octant, size_t count,
-                           tm_error *error);
+                           bool layer, tm_error *error);
 
 #endif

@@ -26,7 +26,7 @@ static const double fewest = 0.5;
 /* For few tetrahedra it is cheap to insist. */
 static const size_t tries_least = 3000;
 
-enum { PASSES_MAX = 8, KICKS_MAX = 1000 };
+enum { PASSES_MAX = 8, KICKS_MAX = 1000, ROUNDS_MAX = 4 };
 
 /* Work, see improve_engine.h: of a tetrahedron tried in a phase; by so many that are only
  * looked at. */
@@ -372,7 +372,8 @@ static void run_all(tm_improver *m)
     first.converge = false;
     m->options = &first;
     run(m);
-    tm_improve_stuck(m, run, reach);
+    for (int k = 0; k < ROUNDS_MAX && tm_improve_stuck(m, run, reach); k++)
+        run(m);
     tm_improve_worst(m, reach);
     m->options = options;
     if (!options->converge || tm_improve_is_over(m))

@@ -100,11 +100,13 @@ static void thin_out(tm_improver *m, tm_improve_reach *reach)
     tm_improve_restore(m, &m->kept);
 }
 
-void tm_improve_stuck(tm_improver *m, tm_improve_reach *run, tm_improve_reach *reach)
+bool tm_improve_stuck(tm_improver *m, tm_improve_reach *run, tm_improve_reach *reach)
 {
+    const double before = tm_improve_mesh_badness(m);
     if (is_stuck(m) && has_gained(m) && tm_improve_has(m, TM_OP_SMOOTHING))
         without_smoothing(m, run);
     if (is_stuck(m) && m->mesh->tets <= m->most_tets &&
         tm_improve_has(m, TM_OP_CONTRACTION))
         thin_out(m, reach);
+    return is_stuck(m) && tm_improve_mesh_badness(m) <= (1 - little_gain) * before;
 }
