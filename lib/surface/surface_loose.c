@@ -162,7 +162,8 @@ typedef struct roughness {
     const tm_surface *surface;
     const tm_sharp_edge *edge;
     size_t edges;
-    uint32_t *body;    /* [nodes]: disjoint sets, joined by triangles */
+    uint32_t *body; /* [nodes]: disjoint sets, joined by triangles; all of a surface that
+                       crosses itself */
     uint32_t *network; /* [nodes]: the same, by sharp edges */
     uint8_t *degree;   /* [nodes]: sharp edges there; 2: or more */
     tally *of_body;    /* [nodes], at roots */
@@ -182,6 +183,8 @@ static void unite(roughness *f)
     for (size_t t = 0; t < surface->triangles; t++)
         for (int i = 1; i < 3; i++)
             tm_set_unite(f->body, surface->triangle[t][0], surface->triangle[t][i]);
+    for (uint32_t v = 0; v < surface->nodes && surface->crossings > 0; v++)
+        tm_set_unite(f->body, 0, v);
     for (size_t e = 0; e < f->edges; e++)
         tm_set_unite(f->network, f->edge[e].node[0], f->edge[e].node[1]);
 }

@@ -592,6 +592,23 @@ static void test_rough(void **state)
             }
 }
 
+/* Bodies that cross are one: what a scan is made of. */
+static void test_rough_crossing(void **state)
+{
+    (void)state;
+    const tm_surface_options rough = {
+        .feature_angle = TM_FEATURE_ANGLE, .unless_rough = true, .lenient = true};
+    tm_polygon_surface p;
+    tm_surface s;
+    tm_polygon_surface_init(&p);
+    add_rough_tube(&p, 0, 1);
+    add_cube(&p, 0.5, 0, -2, 1);
+    build(&s, &p, &rough);
+    assert_true(s.crossings > 0 && s.rough);
+    assert_features(&s, 0, 0, 2);
+    tm_surface_free(&s);
+}
+
 /* The least and the largest curvature of the surface of polygons, which are freed. */
 static void find_curvature(tm_polygon_surface *p, double range[2])
 {
@@ -647,7 +664,8 @@ int main(void)
         cmocka_unit_test(test_nothing),      cmocka_unit_test(test_polygons),
         cmocka_unit_test(test_curves),       cmocka_unit_test(test_feature_angle),
         cmocka_unit_test(test_markers),      cmocka_unit_test(test_needles),
-        cmocka_unit_test(test_rough),        cmocka_unit_test(test_curvature),
+        cmocka_unit_test(test_rough),        cmocka_unit_test(test_rough_crossing),
+        cmocka_unit_test(test_curvature),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
