@@ -112,6 +112,7 @@
 
 /* poly: polyhedra made of tetrahedra */
 #include "poly/facets.h"
+#include "poly/join_cells.h"
 #include "poly/partition.h"
 
 #endif

@@ -15,6 +15,7 @@ static bool find_octants(const tm_cell_faces *faces, const tm_block *octant, siz
 {
     const size_t width = tm_block_integers(octant->kind);
     bool *outer = calloc(nodes + 1, sizeof *outer);
+    const bool done = outer;
     for (size_t f = 0; f < faces->facets && outer; f++)
         for (size_t i = faces->start[f]; i < faces->start[f + 1]; i++)
             outer[faces->node[i]] |= faces->side[f][1] == TM_NONE;
@@ -31,7 +32,7 @@ static bool find_octants(const tm_cell_faces *faces, const tm_block *octant, siz
                 if (faces->side[f][s] != TM_NONE)
                     of[faces->side[f][s]] = TM_NONE;
     free(outer);
-    return outer;
+    return done;
 }
 
 tm_status tm_label_octants(const tm_cell_faces *faces, const tm_block *octant,

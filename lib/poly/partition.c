@@ -164,6 +164,7 @@ static bool spare_even_ones(const repair *r, uint32_t *size)
     const tm_tet_mesh *mesh = r->mesh;
     const uint32_t *piece = r->shelling.piece;
     double *volume = calloc(r->pieces + 1, sizeof *volume), all = 0;
+    const bool done = volume;
     for (size_t t = 0; t < mesh->slots && volume; t++) {
         const uint32_t *n = mesh->tet[t];
         const double(*x)[3] = (const double(*)[3])mesh->xyz;
@@ -175,7 +176,7 @@ static bool spare_even_ones(const repair *r, uint32_t *size)
         if (size[p] <= SMALL && 3 * volume[p] >= all / (double)r->report->regions)
             size[p] = SMALL + 1;
     free(volume);
-    return volume;
+    return done;
 }
 
 /* Small pieces join those beside them: first larger ones take them up, then small ones.

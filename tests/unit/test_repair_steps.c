@@ -92,6 +92,17 @@ static void test_move(void **unused)
     assert_true(brought > 0);
 }
 
+/* Whether a node that leaves its place by so much along y makes nothing better. */
+static bool gains_nothing(tm_repair_state *s, size_t node, double off)
+{
+    const tm_repair_score before = measured(s, 0.2);
+    const double y = s->mesh.xyz[node][1];
+    s->mesh.xyz[node][1] += off;
+    const tm_repair_score after = measured(s, 0.2);
+    s->mesh.xyz[node][1] = y;
+    return !tm_repair_better(&after, &before);
+}
+
 /* Two places of a mesh of a cube: in one a node is off its place, and comes to it; in the
  * other one leaves it. */
 static void test_take_back(void **unused)
@@ -104,16 +115,23 @@ static void test_take_back(void **unused)
     add_cube(&p, 0, 0, 0, 1);
     start_case(&c, &p, 4);
     tm_repair_state *s = &c.state;
-    size_t first = 0, second = s->mesh.nodes - 1;
+    size_t first = 0, second = SIZE_MAX;
     while (s->rule[first].freedom != TM_MOVES_FREELY)
         first++;
-    while (s->rule[second].freedom != TM_MOVES_FREELY ||
-           tm_distance2(s->mesh.xyz[first], s->mesh.xyz[second]) < 0.1)
-        second--;
+    const double off = random_between(0.03, 0.05);
+    double farthest = 0;
+    for (size_t v = 0; v < s->mesh.nodes; v++) {
+        double distance2 = tm_distance2(s->mesh.xyz[first], s->mesh.xyz[v]);
+        if (s->rule[v].freedom != TM_MOVES_FREELY || distance2 <= farthest ||
+            !gains_nothing(s, v, off))
+            continue;
+        farthest = distance2;
+        second = v;
+    }
+    assert_true(second < SIZE_MAX);
     double place[2][3];
     memcpy(place[0], s->mesh.xyz[first], sizeof place[0]);
     memcpy(place[1], s->mesh.xyz[second], sizeof place[1]);
-    const double off = random_between(0.03, 0.05);
     s->mesh.xyz[first][0] += off;
     const tm_repair_score before = measured(s, 0.2);
     tm_repair_points points = {0};

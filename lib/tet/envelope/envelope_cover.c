@@ -28,6 +28,9 @@ static const double same_area = 1e-6;
 /* A triangle that is lower than this part of its longest edge has no normal. */
 static const double least_height = 1e-5;
 
+/* Of the border a shorter piece, by that edge, only touches the triangle. */
+static const double least_border = 1e-9;
+
 enum { PIECE_MOST = 10, FLOOD_MOST = 20000, LOOKED_AROUND = 24 };
 
 /* The triangle's own coordinates: u and v in its plane, z off it. */
@@ -192,6 +195,8 @@ static bool go_on(search *s, uint32_t t, piece corner)
         if (!cut_segment(&s->f, a, b))
             continue;
         if (across == TM_NONE) {
+            if (hypot(b[0] - a[0], b[1] - a[1]) <= least_border * s->f.longest)
+                continue;
             s->at_border = true;
             if (!is_near_edge(s->e, &s->f, a, b, corner[(i + 2) % 3]))
                 return false;

@@ -196,8 +196,8 @@ void tm_improve_set_price(tm_improver *m, double price);
 /* All that is done for one target. */
 typedef void tm_improve_reach(tm_improver *m);
 
-/* Tries other ways where much stays bad; `run` is all that is done with the input. Whether
- * that has helped, and much is bad still: then all may be done again. */
+/* Tries other ways where much stays bad; `run` is all that is done with the input.
+ * Whether that has helped, and much is bad still: then all may be done again. */
 bool tm_improve_stuck(tm_improver *m, tm_improve_reach *run, tm_improve_reach *reach);
 
 /* Whether so much of the input is bad that it is kept for that. */
