@@ -115,13 +115,11 @@ static settings read_options(filter *f)
     while ((c = filter_option(f)) != -1) {
         if (c == 'u')
             o.levels = true;
-        else if (c == FEATURE_ANGLE)
-            o.surface =
-                (tm_surface_options){.feature_angle = filter_number(
-                                         f, "--feature-angle", optarg, 0, straight_angle),
-                                     .lenient = o.surface.lenient,
-                                     .regions = o.surface.regions};
-        else if (c == RESOLVE)
+        else if (c == FEATURE_ANGLE) {
+            o.surface.feature_angle =
+                filter_number(f, "--feature-angle", optarg, 0, straight_angle);
+            o.surface.unless_rough = false;
+        } else if (c == RESOLVE)
             o.resolve = o.deeper =
                 (unsigned)filter_integer(f, "--resolve", optarg, 0, TM_OCTREE_LEVEL_MAX);
         else if (c == CAVITIES)
@@ -154,12 +152,9 @@ static double *follow_curvature(const filter *f, settings *o, const tm_surface *
     const unsigned levels = 3; /* a plane has octants of so many less */
     if (o->curvature == 0)
         return NULL;
-    tm_error error;
     double *largest = malloc((s->triangles + 1) * sizeof *largest);
     if (!largest)
-        tm_fail_memory(&error);
-    if (!largest)
-        filter_fail(f, &error);
+        filter_fail_memory(f);
     tm_surface_find_curvature(s, largest);
     for (size_t t = 0; t < s->triangles; t++)
         largest[t] = o->curvature / straight_angle * pi / largest[t];
@@ -304,31 +299,27 @@ static void note_losses(const filter *f, const tm_surface *s,
         filter_note(f, "%zu elements are inverted", r->invalid);
 }
 
-/* The deepest level of an octree that rules ask for, without what --resolve adds. */
-static unsigned level_of(const settings *o, const tm_octree *octree, const tm_surface *s)
+static unsigned deepest_level(const tm_octree *octree)
 {
-    unsigned asked = 0, deepest = 0;
+    unsigned deepest = 0;
     for (size_t l = 0; l < octree->leaves; l++)
         if (octree->leaf[l].level > deepest)
             deepest = octree->leaf[l].level;
+    return deepest;
+}
+
+/* The deepest level of an octree that rules ask for, without what --resolve adds. */
+static unsigned level_of(const settings *o, const tm_octree *octree, const tm_surface *s)
+{
+    const unsigned deepest = deepest_level(octree);
+    unsigned asked = 0;
     for (size_t r = 0; r < o->rules.rules.count; r++) {
         const tm_octree_rule *rule = &o->rules.rules.rule[r];
-        const double halved = rule->size > 0 ? log2(octree->side / rule->size) : 0;
-        const unsigned level =
-            rule->size > 0 ? (unsigned)fmax(0, ceil(halved - 1e-9)) : rule->level;
+        const unsigned level = tm_octree_rule_level(rule, octree->side);
         if (level > asked && tm_octree_rule_reaches(rule, s))
             asked = level;
     }
     return o->deeper > 0 && asked < deepest ? asked : deepest;
-}
-
-static double smallest_side(const tm_octree *octree)
-{
-    double side = octree->side;
-    for (size_t l = 0; l < octree->leaves; l++)
-        if (tm_leaf_side(octree, &octree->leaf[l]) < side)
-            side = tm_leaf_side(octree, &octree->leaf[l]);
-    return side;
 }
 
 typedef struct {
@@ -400,7 +391,8 @@ int main(int argc, char **argv)
         filter_fail(&f, &error);
     octree_rules_free(&o.rules);
     free(largest);
-    note_losses(&f, &surface, &mesh.report, smallest_side(&octree));
+    note_losses(&f, &surface, &mesh.report,
+                ldexp(octree.side, -(int)deepest_level(&octree)));
     if (f.json)
         write_json(&f, &octree, &mesh);
     const size_t nodes = mesh.assembly.mesh.nodes;

@@ -148,12 +148,9 @@ static void put_blocks(filter *f, tm_stream *stream, const char *const *gone,
             tm_stream_remove(stream, block);
     }
     for (int k = 0; k < 2; k++) {
-        tm_error error;
         tm_block *block = tm_stream_add(stream, made[k].name);
-        if (!block) {
-            tm_fail_memory(&error);
-            filter_fail(f, &error);
-        }
+        if (!block)
+            filter_fail_memory(f);
         *block = made[k];
     }
 }
@@ -163,16 +160,13 @@ static void put_blocks(filter *f, tm_stream *stream, const char *const *gone,
 static void put_labels(filter *f, tm_stream *stream, const tm_partition *partition,
                        const uint32_t *order)
 {
-    tm_error error;
     tm_block *ele = tm_stream_find(stream, ".ele");
     if (!ele)
         return;
     size_t width = ele->attributes;
     double *attribute = malloc((width + 1) * ele->count * sizeof *attribute + 1);
-    if (!attribute) {
-        tm_fail_memory(&error);
-        filter_fail(f, &error);
-    }
+    if (!attribute)
+        filter_fail_memory(f);
     for (size_t k = 0; k < ele->count; k++) {
         size_t t = order[k];
         for (size_t a = 0; a < width; a++)
@@ -227,10 +221,8 @@ static void label(filter *f, tm_stream *stream, tm_tet_mesh *mesh, const setting
     tm_tet_mesh sorted = {0};
     tm_partition partition;
     uint32_t *order = malloc((mesh->slots + 1) * sizeof *order);
-    if (!order) {
-        tm_fail_memory(&error);
-        filter_fail(f, &error);
-    }
+    if (!order)
+        filter_fail_memory(f);
     if (tm_tet_mesh_copy(&sorted, mesh, &error) != TM_OK)
         filter_fail(f, &error);
     cut(f, o, &sorted, &partition, order, r);
@@ -242,26 +234,6 @@ static void label(filter *f, tm_stream *stream, tm_tet_mesh *mesh, const setting
     free(order);
 }
 
-/* Gives the polyhedra their attributes: of how many elements they are, and what the first
- * of these has. */
-static void set_attributes(filter *f, const tm_block *mix, const uint32_t *cell_of,
-                           tm_block *cell)
-{
-    tm_error error;
-    cell->attributes = 1 + mix->attributes;
-    cell->attribute = calloc(cell->count * cell->attributes + 1, sizeof *cell->attribute);
-    if (!cell->attribute) {
-        tm_fail_memory(&error);
-        filter_fail(f, &error);
-    }
-    for (size_t e = 0; e < mix->count; e++) {
-        double *row = cell->attribute + cell_of[e] * cell->attributes;
-        if (row[0]++ == 0 && mix->attributes > 0)
-            memcpy(row + 1, mix->attribute + e * mix->attributes,
-                   mix->attributes * sizeof *row);
-    }
-}
-
 /* Makes polyhedra of mixed elements: of those of each octant one. */
 static void join_octants(filter *f, tm_stream *stream, bool has_options, result *r)
 {
@@ -271,8 +243,9 @@ static void join_octants(filter *f, tm_stream *stream, bool has_options, result 
     const tm_block *octant = tm_stream_find(stream, ".octant");
     tm_block *mix = tm_stream_find(stream, ".mix");
     const tm_block *node = tm_stream_find(stream, ".node");
-    tm_block made[2] = {{.name = ".facet", .kind = TM_FACET},
-                        {.name = ".cell", .kind = TM_CELL}};
+    tm_block made[2] = {
+        {.name = ".facet", .kind = TM_FACET},
+        {.name = ".cell", .kind = TM_CELL, .attributes = 1 + mix->attributes}};
     if (!octant || has_options) {
         tm_fail_at(&error, TM_ERROR_INPUT, filter_input_name(f), 0, NULL,
                    octant ? "has mixed elements, those of each octant are joined: the "
@@ -293,7 +266,7 @@ static void join_octants(filter *f, tm_stream *stream, bool has_options, result 
                                r->poly.cells, &made[0], &made[1], &r->joined, &error);
     if (status != TM_OK)
         filter_fail(f, &error);
-    set_attributes(f, mix, label, &made[1]);
+    tm_cells_count_elements(&made[1], label, mix->count, mix->attribute, mix->attributes);
     r->poly.tets = mix->count;
     r->poly.regions = r->poly.cells;
     r->facets = made[0].count;

@@ -27,3 +27,9 @@ void *tm_new(size_t count, size_t size)
         return NULL;
     return malloc(count ? count * size : 1);
 }
+
+int tm_compare_numbers(const void *a, const void *b)
+{
+    const uint32_t *p = a, *q = b;
+    return (*p > *q) - (*p < *q);
+}

@@ -20,12 +20,6 @@ static int compare(const void *a, const void *b)
     return (p->row > q->row) - (p->row < q->row);
 }
 
-static int compare_numbers(const void *a, const void *b)
-{
-    const uint32_t *p = a, *q = b;
-    return (*p > *q) - (*p < *q);
-}
-
 static tm_status take(octant_id *to, const tm_block *octant, unsigned base,
                       tm_error *error)
 {
@@ -95,7 +89,7 @@ tm_status tm_octants_of_ids(uint32_t *list, size_t *count, const tm_block *octan
     size_t kept = 0, o = 0;
     tm_status status = sort_ids(&sorted, octant, base, error);
     if (status == TM_OK && *count > 0)
-        qsort(list, *count, sizeof *list, compare_numbers);
+        qsort(list, *count, sizeof *list, tm_compare_numbers);
     for (size_t i = 0; i < *count && status == TM_OK; i++) {
         const uint32_t id = list[i];
         while (o < octant->count && sorted[o].id < id)
@@ -107,7 +101,7 @@ tm_status tm_octants_of_ids(uint32_t *list, size_t *count, const tm_block *octan
             list[kept++] = sorted[o].row;
     }
     if (status == TM_OK && kept > 0)
-        qsort(list, kept, sizeof *list, compare_numbers);
+        qsort(list, kept, sizeof *list, tm_compare_numbers);
     *count = kept;
     free(sorted);
     return status;

@@ -156,10 +156,8 @@ static void find_parts(const tm_tet_mesh *mesh, uint32_t *part)
     for (uint32_t t = 0; t < mesh->slots; t++)
         for (int i = 0; i < 4; i++) {
             uint32_t across = mesh->neighbour[t][i];
-            if (across & TM_FACE_BIT)
-                continue;
-            uint32_t r = tm_set_root(part, t), s = tm_set_root(part, across / 4);
-            part[r < s ? s : r] = r < s ? r : s;
+            if (!(across & TM_FACE_BIT))
+                tm_set_unite(part, t, across / 4);
         }
     for (uint32_t t = 0; t < mesh->slots; t++)
         part[t] = tm_set_root(part, t);

@@ -79,16 +79,13 @@ tm_status tm_cells_from_facets(const tm_block *facet, tm_block *cell, size_t cel
     return TM_OK;
 }
 
-/* How many tetrahedra each cell has, and their region. */
-static void set_attributes(const maker *m, tm_block *cell)
+void tm_cells_count_elements(tm_block *cell, const uint32_t *cell_of, size_t elements,
+                             const double *attribute, size_t width)
 {
-    size_t width = m->mesh->regions;
-    for (size_t k = 0; k < m->mesh->slots; k++) {
-        uint32_t t = m->partition->order[k];
-        double *attribute = cell->attribute + m->partition->cell[t] * cell->attributes;
-        if (attribute[0] == 0 && width > 0)
-            memcpy(attribute + 1, m->mesh->region + t * width, width * sizeof *attribute);
-        attribute[0]++;
+    for (size_t e = 0; e < elements; e++) {
+        double *row = cell->attribute + cell_of[e] * cell->attributes;
+        if (row[0]++ == 0 && width > 0)
+            memcpy(row + 1, attribute + e * width, width * sizeof *row);
     }
 }
 
@@ -103,6 +100,7 @@ tm_status tm_partition_facets(const tm_partition *partition, const tm_tet_mesh *
     if (status == TM_OK)
         status = tm_cells_from_facets(facet, cell, partition->cells, error);
     if (status == TM_OK)
-        set_attributes(&m, cell);
+        tm_cells_count_elements(cell, partition->cell, mesh->slots, mesh->region,
+                                mesh->regions);
     return status;
 }

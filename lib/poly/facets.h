@@ -23,6 +23,12 @@ tm_status tm_partition_facets(const tm_partition *partition, const tm_tet_mesh *
 tm_status tm_cells_from_facets(const tm_block *facet, tm_block *cell, size_t cells,
                                tm_error *error);
 
+/* Gives cells, whose 1 + width attributes are 0, the attributes that
+ * tm_partition_facets() says: of elements with the cells cell_of[elements] and the
+ * attributes attribute[elements][width]. O(elements). */
+void tm_cells_count_elements(tm_block *cell, const uint32_t *cell_of, size_t elements,
+                             const double *attribute, size_t width);
+
 /* Which neighbouring facets are of one plane. */
 typedef struct tm_coplanar {
     double degrees;  /* their normals differ by so much at most, or, with 0: */

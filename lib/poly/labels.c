@@ -216,14 +216,8 @@ static tm_status label_best_face(const tm_tet_mesh *mesh, const tm_poly_options 
         label[t] = t;
     for (uint32_t t = 0; t < mesh->slots; t++) {
         uint32_t across = mesh->neighbour[t][best_face(mesh, t, options->face_metric)];
-        if (across & TM_FACE_BIT)
-            continue;
-        uint32_t r = tm_set_root(label, t), s = tm_set_root(label, across / 4);
-        /* The first tetrahedron is the root. */
-        if (r < s)
-            label[s] = r;
-        else
-            label[r] = s;
+        if (!(across & TM_FACE_BIT))
+            tm_set_unite(label, t, across / 4); /* the first tetrahedron is the root */
     }
     for (uint32_t t = 0; t < mesh->slots; t++)
         label[t] = tm_set_root(label, t);

@@ -137,7 +137,7 @@ void tm_surface_closest_on_curve(const tm_surface *surface, uint32_t curve,
  * error is below 0.01, the largest about 0.1. */
 bool tm_surface_has_inside(const tm_surface *surface, const double point[3]);
 
-/* Six times the volume of each shell, [components]; negative where it looks inward. */
+/* The volume of each shell, [components]; negative where it looks inward. */
 void tm_surface_shell_volumes(const tm_surface *surface, double *volume);
 
 /* Whether a point is in what is meshed: inside, or with `regions` within any shell. */

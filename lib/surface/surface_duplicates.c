@@ -14,12 +14,6 @@ typedef struct sorted_facet {
     size_t facet;
 } sorted_facet;
 
-static int compare_nodes(const void *a, const void *b)
-{
-    const uint32_t *p = a, *q = b;
-    return (*p > *q) - (*p < *q);
-}
-
 static int compare_polygons(const sorted_facet *p, const sorted_facet *q)
 {
     if (p->nodes != q->nodes)
@@ -62,7 +56,7 @@ static size_t sort_facets(const tm_polygon_surface *surface, uint32_t *node,
             continue;
         uint32_t *first = node + surface->start[p];
         const size_t nodes = surface->start[p + 1] - surface->start[p];
-        qsort(first, nodes, sizeof *first, compare_nodes);
+        qsort(first, nodes, sizeof *first, tm_compare_numbers);
         sorted[count++] = (sorted_facet){first, nodes, f};
     }
     qsort(sorted, count, sizeof *sorted, compare_facets);

@@ -3,36 +3,23 @@
 #include "mesh.h"
 
 #include "../base/array.h"
+#include "../geom/place_order.h"
 #include "../geom/space_order.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct {
-    double xyz[3];
-    uint32_t node;
-} placed_node;
-
-static int compare_places(const void *a, const void *b)
-{
-    const placed_node *p = a, *q = b;
-    for (int x = 0; x < 3; x++)
-        if (p->xyz[x] != q->xyz[x])
-            return p->xyz[x] < q->xyz[x] ? -1 : 1;
-    return (p->node > q->node) - (p->node < q->node);
-}
-
 bool tm_tet_mesh_rank_nodes(const tm_tet_mesh *mesh, uint32_t *rank)
 {
-    placed_node *placed = tm_new(mesh->nodes, sizeof *placed);
+    tm_placed *placed = tm_new(mesh->nodes, sizeof *placed);
     for (uint32_t v = 0; v < mesh->nodes && placed; v++) {
         memcpy(placed[v].xyz, mesh->xyz[v], sizeof placed[v].xyz);
-        placed[v].node = v;
+        placed[v].item = v;
     }
     if (placed)
-        qsort(placed, mesh->nodes, sizeof *placed, compare_places);
+        tm_place_sort(placed, mesh->nodes);
     for (uint32_t k = 0; k < mesh->nodes && placed; k++)
-        rank[placed[k].node] = k;
+        rank[placed[k].item] = k;
     free(placed);
     return placed;
 }

@@ -498,9 +498,29 @@ END
     mesh-check -q round.tm
 }
 
+# A closed surface of rings, as OFF: standard input is Python that sets rings, around and
+# nodes, which are both poles and then ring by ring.
+revolved() {
+    python3 -c '
+import sys
+exec(sys.stdin.read())
+at = lambda r, a: 0 if r == 0 else 1 if r == rings else 2 + (r - 1) * around + a % around
+faces = []
+for r in range(rings):
+    for a in range(around):
+        p, q, s, t = at(r, a), at(r + 1, a), at(r + 1, a + 1), at(r, a + 1)
+        faces += [f for f in ((p, q, s), (p, s, t)) if len(set(f)) == 3]
+print("OFF")
+print(len(nodes), len(faces), 0)
+for p in nodes:
+    print(*p)
+for f in faces:
+    print(3, *f)'
+}
+
 @test "a rough body beside it leaves a smooth one its edges, and a note says so" {
     # a sphere of many triangles whose nodes go in and out
-    python3 - >noisy.off <<'END'
+    revolved >noisy.off <<'END'
 import math, random
 random.seed(5)
 around, rings = 60, 30
@@ -511,18 +531,6 @@ for r in range(1, rings):
         d = 1 + 0.05 * random.uniform(-1, 1)
         nodes.append((d * math.sin(u) * math.cos(w), d * math.sin(u) * math.sin(w),
                       d * math.cos(u)))
-at = lambda r, a: 0 if r == 0 else 1 if r == rings else 2 + (r - 1) * around + a % around
-faces = []
-for r in range(rings):
-    for a in range(around):
-        p, q, s, t = at(r, a), at(r + 1, a), at(r + 1, a + 1), at(r, a + 1)
-        faces += [f for f in ((p, q, s), (p, s, t)) if len(set(f)) == 3]
-print('OFF')
-print(len(nodes), len(faces), 0)
-for p in nodes:
-    print(*p)
-for f in faces:
-    print(3, *f)
 END
     run -0 --separate-stderr octree-mesh -s 3 -o rough.tm noisy.off
     [ "$stderr" = 'octree-mesh: noisy.off: the surface is rough all over: no edge of it is kept as sharp' ]
@@ -600,10 +608,10 @@ END
 import json
 assert abs(json.load(open("check.json"))["volume"] - (1 / 64 + 6 * 3 / 8 / 3 / 16)) < 1e-12'
     # a needle that ends round is a tip without a corner, thinner than octants
-    python3 - >needle.off <<'END'
+    revolved >needle.off <<'END'
 import math
 rings, around = 60, 12
-nodes, faces = [(0, 0, 2), (0, 0, -1)], []
+nodes = [(0, 0, 2), (0, 0, -1)]
 def radius(z):
     if z > 0.8:
         return 0.02 * math.sqrt(1 - ((z - 0.8) / 1.2) ** 8)
@@ -614,17 +622,6 @@ for r in range(1, rings):
     for a in range(around):
         w = 2 * math.pi * a / around
         nodes.append((radius(z) * math.cos(w), radius(z) * math.sin(w), z))
-at = lambda r, a: 0 if r == 0 else 1 if r == rings else 2 + (r - 1) * around + a % around
-for r in range(rings):
-    for a in range(around):
-        p, q, s, t = at(r, a), at(r + 1, a), at(r + 1, a + 1), at(r, a + 1)
-        faces += [f for f in ((p, q, s), (p, s, t)) if len(set(f)) == 3]
-print('OFF')
-print(len(nodes), len(faces), 0)
-for p in nodes:
-    print(*p)
-for f in faces:
-    print(3, *f)
 END
     for levels in 0 1; do
         run -0 --separate-stderr octree-mesh -s 3 --feature-angle 180 --resolve $levels \

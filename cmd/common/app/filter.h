@@ -144,6 +144,9 @@ _Noreturn void filter_usage_error(const filter *f, const char *format, ...)
 /* "name: file:line: block: what", then exit with error->status. */
 _Noreturn void filter_fail(const filter *f, const tm_error *error);
 
+/* The same where memory is out. */
+_Noreturn void filter_fail_memory(const filter *f);
+
 /* What the library is to be given where it takes a tm_progress. */
 const tm_progress *filter_progress(const filter *f);
 

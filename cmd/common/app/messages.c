@@ -107,6 +107,13 @@ void filter_fail(const filter *f, const tm_error *error)
     exit((int)error->status);
 }
 
+void filter_fail_memory(const filter *f)
+{
+    tm_error error;
+    tm_fail_memory(&error);
+    filter_fail(f, &error);
+}
+
 void filter_fail_file(const filter *f, tm_error *error, const tm_text *bytes,
                       const char *reader)
 {

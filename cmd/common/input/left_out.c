@@ -298,11 +298,8 @@ void mesh_leave_out(const filter *f, const tm_stream *stream)
     add_edges(&find);
     add_names(&find);
     add_blocks(&find);
-    if (find.text.failed) {
-        tm_error error;
-        tm_fail_memory(&error);
-        filter_fail(f, &error);
-    }
+    if (find.text.failed)
+        filter_fail_memory(f);
     if (find.text.size > 0)
         filter_leave_out(f, "%s", find.text.byte);
     tm_text_free(&find.text);

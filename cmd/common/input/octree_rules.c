@@ -26,12 +26,9 @@ static unsigned level_of(const filter *f, const char *option, const char *text)
 /* One item more at the end of an array of `count`. */
 static void *append(const filter *f, void *array, size_t count, size_t size)
 {
-    tm_error error;
     void *more = realloc(array, (count + 1) * size);
-    if (!more) {
-        tm_fail_memory(&error);
-        filter_fail(f, &error);
-    }
+    if (!more)
+        filter_fail_memory(f);
     return more;
 }
 

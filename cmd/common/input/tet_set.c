@@ -84,7 +84,6 @@ static void read_comparison(const filter *f, tet_set_rule *rule, const char *at)
 
 void tet_set_add(const filter *f, tet_set *set, const char *text)
 {
-    tm_error error;
     tet_set_rule rule = {.kind = TET_SET_LIST, .text = text};
     const size_t length = strcspn(text, "<>=");
     rule.attribute = text[length] == '\0' ? 0 : attribute_of(text, length);
@@ -96,10 +95,8 @@ void tet_set_add(const filter *f, tet_set *set, const char *text)
         read_comparison(f, &rule, text + length);
     }
     tet_set_rule *grown = realloc(set->rule, (set->rules + 1) * sizeof *grown);
-    if (!grown) {
-        tm_fail_memory(&error);
-        filter_fail(f, &error);
-    }
+    if (!grown)
+        filter_fail_memory(f);
     set->rule = grown;
     grown[set->rules++] = rule;
 }
@@ -281,16 +278,13 @@ static void find_listed(const filter *f, const tet_set_rule *rule,
 
 bool *tet_set_find(const filter *f, const tet_set *set, const tm_stream *stream)
 {
-    tm_error error;
     const tm_block *node = tm_stream_find(stream, ".node");
     const tm_block *ele = tm_stream_find(stream, ".ele");
     if (set->rules == 0)
         return NULL;
     bool *in_set = calloc(ele && ele->count > 0 ? ele->count : 1, sizeof *in_set);
-    if (!in_set) {
-        tm_fail_memory(&error);
-        filter_fail(f, &error);
-    }
+    if (!in_set)
+        filter_fail_memory(f);
     for (size_t k = 0; ele && k < set->rules; k++) {
         const tet_set_rule *rule = &set->rule[k];
         if (rule->kind == TET_SET_BOX)

@@ -38,17 +38,22 @@ double tm_octree_least_size(const tm_octree_rule *rule, size_t rules)
     return least;
 }
 
+unsigned tm_octree_rule_level(const tm_octree_rule *rule, double side)
+{
+    const double rounding = 1e-9;
+    if (!(rule->size > 0))
+        return rule->level;
+    const double halved = log2(side / rule->size) - rounding;
+    return halved > 0 ? (unsigned)fmin(ceil(halved), TM_OCTREE_FINEST) : 0;
+}
+
 tm_status tm_octree_set_levels(const tm_octree_rule *rule, size_t rules, double side,
                                tm_octree_rule *out, tm_error *error)
 {
-    const double rounding = 1e-9;
     for (size_t r = 0; r < rules; r++) {
         out[r] = rule[r];
-        if (!(rule[r].size > 0))
-            continue;
-        const double halved = log2(side / rule[r].size) - rounding;
-        out[r].level = halved > 0 ? (unsigned)fmin(ceil(halved), TM_OCTREE_FINEST) : 0;
-        if (out[r].level > TM_OCTREE_LEVEL_MAX)
+        out[r].level = tm_octree_rule_level(&rule[r], side);
+        if (rule[r].size > 0 && out[r].level > TM_OCTREE_LEVEL_MAX)
             return tm_fail(error, TM_ERROR_INPUT,
                            "leaves of %g are too small for the surface (%g is the "
                            "least for it)",

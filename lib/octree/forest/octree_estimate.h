@@ -18,6 +18,10 @@ tm_status tm_octree_estimate(const tm_surface *surface, const tm_octree_rule *ru
                              size_t rules, double coarser, double *elements, double *side,
                              tm_error *error);
 
+/* The level that a rule asks for in roots of that side: its own, or that of the largest
+ * leaves that are no larger than its size. */
+unsigned tm_octree_rule_level(const tm_octree_rule *rule, double side);
+
 /* Whether a rule for a box or a region can hold for any octant that is not outside of the
  * surface. Says so, too, where the surfaces only come close to each other. Expected
  * O(triangles of the region). */

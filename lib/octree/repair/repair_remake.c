@@ -51,7 +51,7 @@ static tm_status split(tm_octree *octree, const tm_repair_state *from,
     for (size_t l = 0; status == TM_OK && l < octree->leaves; l++) {
         filled[l] = from->row[l] != TM_NONE && by_row[from->row[l]];
         marked[l] = count > 0 && bsearch(&from->row[l], octant, count, sizeof *octant,
-                                         tm_repair_compare_octants) != NULL;
+                                         tm_compare_numbers) != NULL;
     }
     if (status == TM_OK && layer)
         status = mark_layer(octree, filled, marked, error);

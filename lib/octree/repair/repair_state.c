@@ -60,18 +60,12 @@ bool tm_repair_better(const tm_repair_score *a, const tm_repair_score *b)
            a->bad < b->bad || a->least > b->least;
 }
 
-int tm_repair_compare_octants(const void *a, const void *b)
-{
-    const uint32_t *p = a, *q = b;
-    return (*p > *q) - (*p < *q);
-}
-
 /* Sorts octants and drops repeats; returns how many are left. */
 static size_t sort_once(uint32_t *octant, size_t count)
 {
     size_t kept = 0;
     if (count > 0)
-        qsort(octant, count, sizeof *octant, tm_repair_compare_octants);
+        qsort(octant, count, sizeof *octant, tm_compare_numbers);
     for (size_t i = 0; i < count; i++)
         if (i == 0 || octant[i] != octant[i - 1])
             octant[kept++] = octant[i];
@@ -121,8 +115,7 @@ tm_status tm_repair_widen(const tm_repair_state *state, uint32_t **octant, size_
     if (!marked)
         return tm_fail_memory(error);
     for (size_t e = 0; e < mesh->elements; e++)
-        if (bsearch(&state->octant[e], *octant, old, sizeof **octant,
-                    tm_repair_compare_octants))
+        if (bsearch(&state->octant[e], *octant, old, sizeof **octant, tm_compare_numbers))
             for (size_t i = mesh->start[e]; i < mesh->start[e + 1]; i++)
                 marked[mesh->item[i]] = true;
     for (size_t e = 0; e < mesh->elements; e++) {

@@ -76,9 +76,6 @@ tm_status tm_repair_widen(const tm_repair_state *state, uint32_t **octant, size_
 /* Lets nodes that are off the surface before one patch go to any. */
 void tm_repair_free_off_surface(tm_repair_state *state);
 
-/* For qsort() and bsearch(). */
-int tm_repair_compare_octants(const void *a, const void *b);
-
 /* Where nodes are, and their rules: what is needed to take back moves of nodes, as long
  * as there are the same. */
 typedef struct tm_repair_points {

@@ -5,6 +5,7 @@
 
 #include "../../base/array.h"
 #include "../../base/disjoint_sets.h"
+#include "../../geom/place_order.h"
 #include "../../geom/vector.h"
 #include "../../stream/stream.h"
 
@@ -95,20 +96,6 @@ static void measure(judge *j)
     }
 }
 
-typedef struct {
-    double xyz[3];
-    uint32_t node;
-} place;
-
-static int compare_places(const void *a, const void *b)
-{
-    const place *p = a, *q = b;
-    for (int i = 0; i < 3; i++)
-        if (p->xyz[i] != q->xyz[i])
-            return p->xyz[i] < q->xyz[i] ? -1 : 1;
-    return (p->node > q->node) - (p->node < q->node);
-}
-
 static void restore(const judge *j, size_t v)
 {
     memcpy(j->state->mesh.xyz[v], j->before->xyz[v], sizeof *j->before->xyz);
@@ -121,21 +108,20 @@ static tm_status take_back_doubles(const judge *j, tm_error *error)
 {
     const tm_mixed_mesh *mesh = &j->state->mesh;
     size_t count = 0;
-    place *list = tm_new(mesh->nodes, sizeof *list);
+    tm_placed *list = tm_new(mesh->nodes, sizeof *list);
     if (!list)
         return tm_fail_memory(error);
     for (size_t v = 0; v < mesh->nodes; v++) {
         if (j->state->rule[v].freedom == TM_MOVES_FREELY)
             continue;
         memcpy(list[count].xyz, mesh->xyz[v], sizeof list->xyz);
-        list[count++].node = (uint32_t)v;
+        list[count++].item = (uint32_t)v;
     }
-    if (count > 0)
-        qsort(list, count, sizeof *list, compare_places);
+    tm_place_sort(list, count);
     for (size_t i = 1; i < count; i++)
         if (tm_distance2(list[i - 1].xyz, list[i].xyz) == 0) {
-            restore(j, list[i - 1].node);
-            restore(j, list[i].node);
+            restore(j, list[i - 1].item);
+            restore(j, list[i].item);
         }
     free(list);
     return TM_OK;

@@ -213,7 +213,7 @@ static void settle(tm_improver *m, tm_improve_phase phase, double price)
     }
 }
 
-void tm_improve_contract_all(tm_improver *m)
+static void contract_all(tm_improver *m)
 {
     for (uint32_t v = 0; v < m->mesh->nodes; v++) {
         if (m->mesh->tets <= m->most_tets || m->status != TM_OK)
@@ -223,18 +223,24 @@ void tm_improve_contract_all(tm_improver *m)
     }
 }
 
-/* Makes the mesh as small as is asked for, by a price that rises. */
+void tm_improve_shrink(tm_improver *m, int doublings, bool passes)
+{
+    double price = insertion_price;
+    for (int k = 0; k < doublings; k++, price *= 2) {
+        if (m->mesh->tets <= m->most_tets || !tm_improve_has(m, TM_OP_CONTRACTION))
+            return;
+        tm_improve_set_price(m, price);
+        contract_all(m);
+        if (passes)
+            run_pass(m, TM_PHASE_SHRINK);
+    }
+}
+
+/* Makes the mesh as small as is asked for. */
 static void coarsen(tm_improver *m)
 {
     enum { DOUBLINGS = 14 };
-    double price = insertion_price;
-    for (int k = 0; k < DOUBLINGS; k++, price *= 2) {
-        if (m->mesh->tets <= m->most_tets || !tm_improve_has(m, TM_OP_CONTRACTION))
-            break;
-        tm_improve_set_price(m, price);
-        tm_improve_contract_all(m);
-        run_pass(m, TM_PHASE_SHRINK);
-    }
+    tm_improve_shrink(m, DOUBLINGS, true);
     settle(m, TM_PHASE_SHRINK, 0);
 }
 

@@ -183,8 +183,9 @@ bool tm_improve_keeps_angles(const tm_improver *m);
 /* The least and the largest angle of the mesh. */
 tm_angle_limits tm_improve_angles(const tm_improver *m);
 
-/* Contracts at all nodes, once, until there are m->most_tets. */
-void tm_improve_contract_all(tm_improver *m);
+/* Contracts at all nodes, at a price for each tetrahedron that doubles so many times,
+ * until there are m->most_tets; with `passes`, all bad ones are tried in between. */
+void tm_improve_shrink(tm_improver *m, int doublings, bool passes);
 
 /* From here on no operation makes an angle below so many degrees, or above 180 less
  * that. */

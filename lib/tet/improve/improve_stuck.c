@@ -4,6 +4,7 @@
  * whole layers of a mesh that is too fine in one direction have to go before any one that
  * is left is good. */
 #include "improve_engine.h"
+
 #include <math.h>
 
 /* That is where so many were bad, and so many of them are left. */
@@ -16,8 +17,8 @@ static const double little_gain = 0.1;
  * all counted as in the whole mesh. */
 static const double enough_less = 0.5;
 
-/* While they get fewer: the price of one at first, and the least angle, in degrees. */
-static const double first_price = 0.1, least_angle = 0.5;
+/* The least angle while they get fewer, in degrees. */
+static const double least_angle = 0.5;
 enum { DOUBLINGS = 20, HALVINGS = 8 };
 
 static bool is_stuck(const tm_improver *m)
@@ -54,19 +55,15 @@ static void without_smoothing(tm_improver *m, tm_improve_reach *run)
         tm_improve_restore(m, &m->kept);
 }
 
-/* Contracts what it can, at prices that rise, until half of the tetrahedra are left. */
+/* Contracts what it can until half of the tetrahedra are left. */
 static void halve(tm_improver *m)
 {
     const tm_angle_limits limits = m->cost.limits;
     const size_t most = m->most_tets;
-    double price = first_price;
     m->most_tets = m->mesh->tets / 2;
     m->thrifty = false;
     m->cost.limits.least = fmin(limits.least, least_angle);
-    for (int k = 0; k < DOUBLINGS && m->mesh->tets > m->most_tets; k++, price *= 2) {
-        tm_improve_set_price(m, price);
-        tm_improve_contract_all(m);
-    }
+    tm_improve_shrink(m, DOUBLINGS, false);
     tm_improve_set_price(m, 0);
     m->most_tets = most;
     m->cost.limits = limits;
