@@ -10,6 +10,7 @@
 #include "../lib/octree/layer/octree_mesh_stream.h"
 #include "../lib/octree/layer/adaptive_refinement.h"
 #include "../lib/element/jens.h"
+#include "../lib/poly/octant/join_octants.h"
 #include "../lib/surface/surface_curvature.h"
 
 #include <math.h>
@@ -24,7 +25,8 @@ enum {
     CURVATURE,
     SIZE,
     INNER_SIZE,
-    MOST
+    MOST,
+    POLYHEDRA
 };
 
 static const struct option options[] = {
@@ -41,6 +43,7 @@ static const struct option options[] = {
     {"feature-angle", required_argument, NULL, FEATURE_ANGLE},
     {"resolve", required_argument, NULL, RESOLVE},
     {"cavities", no_argument, NULL, CAVITIES},
+    {"polyhedra", no_argument, NULL, POLYHEDRA},
     {"lenient", no_argument, NULL, LENIENT},
     FILTER_OPTIONS};
 
@@ -48,7 +51,7 @@ static const char synopsis[] =
     "[-a L] [-s L] [--size H] [--inner-size H] [--curvature DEG] [-b FILE.reg] [-r "
     "SURFACE L] [-l FILE] "
     "[-u] [--most N] [--feature-angle DEG] [--resolve N] [--cavities] "
-    "[--lenient] [SURFACE]";
+    "[--polyhedra] [--lenient] [SURFACE]";
 
 static const char own_help[] =
     "  -a, --all L         octants of level L everywhere\n"
@@ -76,6 +79,9 @@ static const char own_help[] =
     "where\n"
     "                      the surface is closer to itself than two octants\n"
     "      --cavities      a surface inside of another one bounds a hole, not a region\n"
+    "      --polyhedra     one polyhedron for each octant, with several facets where "
+    "smaller\n"
+    "                      ones are beside it, as polylla3d makes them\n"
     "      --lenient       take surfaces that are open or cross themselves\n";
 
 static const double default_angle = TM_FEATURE_ANGLE, straight_angle = 180;
@@ -87,7 +93,7 @@ typedef struct {
     unsigned resolve, deeper; /* deeper: what --resolve gives, 0 without it */
     double most;              /* elements */
     double curvature;         /* degrees; 0: not asked */
-    bool levels;
+    bool levels, polyhedra;
 } settings;
 
 /* A rule with a size: of the surface, or of everything. */
@@ -124,6 +130,8 @@ static settings read_options(filter *f)
                 (unsigned)filter_integer(f, "--resolve", optarg, 0, TM_OCTREE_LEVEL_MAX);
         else if (c == CAVITIES)
             o.surface.regions = false;
+        else if (c == POLYHEDRA)
+            o.polyhedra = true;
         else if (c == LENIENT)
             o.surface.lenient = true;
         else if (c == SIZE)
@@ -326,9 +334,22 @@ typedef struct {
     tm_octree_mesh_report mesh;
     size_t octants, nodes, boundary_nodes;
     size_t kind[TM_ELEMENT_NODES + 1]; /* elements by their nodes */
+    size_t polyhedra, facets, unfit;   /* 0 where there are elements */
 } report;
 
-static void write_json(filter *f, const tm_octree *octree, const tm_octree_mesh *mesh)
+static report report_of(const tm_octree *octree, const tm_octree_mesh *mesh)
+{
+    const tm_mixed_mesh *m = &mesh->assembly.mesh;
+    report r = {.mesh = mesh->report,
+                .octants = octree->leaves,
+                .nodes = m->nodes,
+                .boundary_nodes = mesh->boundary.nodes};
+    for (size_t e = 0; e < m->elements; e++)
+        r.kind[m->start[e + 1] - m->start[e]]++;
+    return r;
+}
+
+static void write_json(filter *f, const report *r)
 {
 #define ROW(key, member) TM_REPORT_ROW(key, NULL, NULL, report, member)
     static const tm_report_row rows[] = {ROW("octants", octants),
@@ -339,6 +360,9 @@ static void write_json(filter *f, const tm_octree *octree, const tm_octree_mesh 
                                          ROW("wedge", kind[6]),
                                          ROW("hex", kind[8]),
                                          TM_REPORT_CLOSE_ROW,
+                                         ROW("polyhedra", polyhedra),
+                                         ROW("facets", facets),
+                                         ROW("unfit", unfit),
                                          ROW("boundary_nodes", boundary_nodes),
                                          ROW("held_back", mesh.off_surface),
                                          ROW("inverted", mesh.invalid),
@@ -352,11 +376,24 @@ static void write_json(filter *f, const tm_octree *octree, const tm_octree_mesh 
                                          ROW("components", mesh.components),
                                          ROW("euler", mesh.euler),
                                          {0}};
-    const tm_mixed_mesh *m = &mesh->assembly.mesh;
-    report r = {mesh->report, octree->leaves, m->nodes, mesh->boundary.nodes, {0}};
-    for (size_t e = 0; e < m->elements; e++)
-        r.kind[m->start[e + 1] - m->start[e]]++;
-    filter_write_json(f, rows, &r);
+    filter_write_json(f, rows, r);
+}
+
+/* Joins the elements of each octant, in the stream. */
+static void join_octants(filter *f, tm_stream *stream, report *r)
+{
+    char faults[256];
+    tm_octant_join join;
+    tm_error error;
+    filter_stage(f, "joining octants");
+    if (tm_join_octants(stream, &join, &error) != TM_OK)
+        filter_fail(f, &error);
+    r->polyhedra = join.polyhedra;
+    r->facets = join.facets;
+    r->unfit = tm_fit_faults_left(&join.fit);
+    tm_fit_faults_say(&join.fit, faults, sizeof faults);
+    if (r->unfit > 0)
+        filter_note(f, "not quite fit for finite volumes: %s", faults);
 }
 
 int main(int argc, char **argv)
@@ -393,20 +430,22 @@ int main(int argc, char **argv)
     free(largest);
     note_losses(&f, &surface, &mesh.report,
                 ldexp(octree.side, -(int)deepest_level(&octree)));
-    if (f.json)
-        write_json(&f, &octree, &mesh);
-    const size_t nodes = mesh.assembly.mesh.nodes;
+    report r = report_of(&octree, &mesh);
     const size_t elements = mesh.assembly.mesh.elements;
-    const bool valid = mesh.report.invalid == 0;
     filter_stage(&f, "numbering");
     if (tm_octree_mesh_to_stream(&mesh, &octree, &surface, o.levels, &stream, &error) !=
         TM_OK)
         filter_fail(&f, &error);
-    filter_write(&f, &stream, "%zu octants, %zu nodes, %zu elements", octree.leaves,
-                 nodes, elements);
+    if (o.polyhedra)
+        join_octants(&f, &stream, &r);
+    if (f.json)
+        write_json(&f, &r);
+    filter_write(&f, &stream, "%zu octants, %zu nodes, %zu %s", r.octants, r.nodes,
+                 o.polyhedra ? r.polyhedra : elements,
+                 o.polyhedra ? "polyhedra" : "elements");
     tm_octree_mesh_free(&mesh);
     tm_octree_free(&octree);
     tm_surface_free(&surface);
     tm_stream_free(&stream);
-    return filter_finish(&f, valid ? EXIT_SUCCESS : EXIT_GOAL);
+    return filter_finish(&f, r.mesh.invalid == 0 ? EXIT_SUCCESS : EXIT_GOAL);
 }

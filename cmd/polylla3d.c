@@ -3,8 +3,9 @@
 #include "common/app/filter.h"
 #include "common/input/tet_input.h"
 
+#include "../lib/mesh/cell_faces.h"
 #include "../lib/poly/facets.h"
-#include "../lib/poly/join_cells.h"
+#include "../lib/poly/octant/join_octants.h"
 #include "../lib/tet/mesh_measure.h"
 
 #include <float.h>
@@ -182,6 +183,8 @@ static void put_labels(filter *f, tm_stream *stream, const tm_partition *partiti
 typedef struct {
     tm_poly_report poly;
     size_t facets, joined, lost;
+    size_t unfit; /* of octants: what finite volume methods mind */
+    char faults[256];
 } result;
 
 static void make_facets(filter *f, const settings *o, const tm_tet_mesh *mesh,
@@ -237,42 +240,26 @@ static void label(filter *f, tm_stream *stream, tm_tet_mesh *mesh, const setting
 /* Makes polyhedra of mixed elements: of those of each octant one. */
 static void join_octants(filter *f, tm_stream *stream, bool has_options, result *r)
 {
-    static const char *const gone[] = {".mix", ".face", ".facet", ".octant", ".root"};
     tm_error error;
-    tm_cell_faces faces = {0};
-    const tm_block *octant = tm_stream_find(stream, ".octant");
-    tm_block *mix = tm_stream_find(stream, ".mix");
-    const tm_block *node = tm_stream_find(stream, ".node");
-    tm_block made[2] = {
-        {.name = ".facet", .kind = TM_FACET},
-        {.name = ".cell", .kind = TM_CELL, .attributes = 1 + mix->attributes}};
-    if (!octant || has_options) {
+    tm_octant_join join;
+    const bool has_octants = tm_stream_find(stream, ".octant");
+    if (!has_octants || has_options) {
         tm_fail_at(&error, TM_ERROR_INPUT, filter_input_name(f), 0, NULL,
-                   octant ? "has mixed elements, those of each octant are joined: the "
-                            "options are for tetrahedra"
-                          : "has mixed elements, but no .octant that says which to join");
+                   has_octants
+                       ? "has mixed elements, those of each octant are joined: the "
+                         "options are for tetrahedra"
+                       : "has mixed elements, but no .octant that says which to join");
         filter_fail(f, &error);
     }
     filter_stage(f, "joining octants");
-    uint32_t *label = malloc((mix->count + 1) * sizeof *label);
-    tm_status status =
-        label ? tm_cell_faces_find(&faces, stream, &error) : tm_fail_memory(&error);
-    const double(*xyz)[3] = (const double(*)[3])node->real;
-    if (status == TM_OK)
-        status =
-            tm_label_octants(&faces, octant, node->count, label, &r->poly.cells, &error);
-    if (status == TM_OK)
-        status = tm_join_cells(&faces, xyz, tm_flatness(xyz, node->count), label,
-                               r->poly.cells, &made[0], &made[1], &r->joined, &error);
-    if (status != TM_OK)
+    if (tm_join_octants(stream, &join, &error) != TM_OK)
         filter_fail(f, &error);
-    tm_cells_count_elements(&made[1], label, mix->count, mix->attribute, mix->attributes);
-    r->poly.tets = mix->count;
-    r->poly.regions = r->poly.cells;
-    r->facets = made[0].count;
-    tm_cell_faces_free(&faces);
-    free(label);
-    put_blocks(f, stream, gone, sizeof gone / sizeof *gone, made);
+    r->unfit = tm_fit_faults_left(&join.fit);
+    tm_fit_faults_say(&join.fit, r->faults, sizeof r->faults);
+    r->poly.tets = join.elements;
+    r->poly.regions = r->poly.cells = join.polyhedra;
+    r->facets = join.facets;
+    r->joined = join.joined;
 }
 
 /* Makes polyhedra of the stream's tetrahedra. */
@@ -317,6 +304,7 @@ static void write_json(filter *f, const result *r)
                                          ROW("polyhedra", poly.cells),
                                          ROW("facets", facets),
                                          ROW("facets_joined", joined),
+                                         ROW("unfit", unfit),
                                          {0}};
     filter_write_json(f, rows, r);
 }
@@ -351,6 +339,8 @@ int main(int argc, char **argv)
     if (r.lost > 0)
         filter_note(&f, "%zu marked faces are inside of a polyhedron and dropped",
                     r.lost);
+    if (r.unfit > 0)
+        filter_note(&f, "not quite fit for finite volumes: %s", r.faults);
     bool is_missed = r.poly.not_star > 0;
     if (is_missed)
         filter_note(&f, "%zu polyhedra are no stars: flat tetrahedra", r.poly.not_star);

@@ -112,7 +112,9 @@
 
 /* poly: polyhedra made of tetrahedra */
 #include "poly/facets.h"
+#include "poly/fit/fit.h"
 #include "poly/join_cells.h"
+#include "poly/octant/join_octants.h"
 #include "poly/partition.h"
 
 #endif

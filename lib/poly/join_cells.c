@@ -9,53 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The octant of each element that has no node on the boundary; TM_NONE of the others. */
-static bool find_octants(const tm_cell_faces *faces, const tm_block *octant, size_t nodes,
-                         uint32_t *of)
-{
-    const size_t width = tm_block_integers(octant->kind);
-    bool *outer = calloc(nodes + 1, sizeof *outer);
-    const bool done = outer;
-    for (size_t f = 0; f < faces->facets && outer; f++)
-        for (size_t i = faces->start[f]; i < faces->start[f + 1]; i++)
-            outer[faces->node[i]] |= faces->side[f][1] == TM_NONE;
-    for (uint32_t c = 0; c < faces->cells; c++)
-        of[c] = TM_NONE;
-    for (uint32_t o = 0; o < octant->count; o++) {
-        const uint32_t *row = octant->integer + width * o;
-        for (uint32_t c = row[4]; c < row[5]; c++)
-            of[c] = o;
-    }
-    for (size_t f = 0; f < faces->facets && outer; f++)
-        for (size_t i = faces->start[f]; i < faces->start[f + 1]; i++)
-            for (int s = 0; s < 2 && outer[faces->node[i]]; s++)
-                if (faces->side[f][s] != TM_NONE)
-                    of[faces->side[f][s]] = TM_NONE;
-    free(outer);
-    return done;
-}
-
-tm_status tm_label_octants(const tm_cell_faces *faces, const tm_block *octant,
-                           size_t nodes, uint32_t *label, size_t *cells, tm_error *error)
-{
-    uint32_t *of = tm_new(faces->cells, sizeof *of);
-    uint32_t *label_of = tm_new(octant->count, sizeof *label_of);
-    bool done = of && label_of && find_octants(faces, octant, nodes, of);
-    *cells = 0;
-    for (size_t o = 0; o < octant->count && done; o++)
-        label_of[o] = TM_NONE;
-    for (size_t c = 0; c < faces->cells && done; c++) {
-        uint32_t o = of[c];
-        label[c] =
-            o == TM_NONE || label_of[o] == TM_NONE ? (uint32_t)(*cells)++ : label_of[o];
-        if (o != TM_NONE)
-            label_of[o] = label[c];
-    }
-    free(of);
-    free(label_of);
-    return done ? TM_OK : tm_fail_memory(error);
-}
-
 /* A facet that stays, seen from its first label. */
 typedef struct {
     uint32_t label[2];
@@ -71,7 +24,7 @@ typedef struct {
 typedef struct {
     const tm_cell_faces *faces;
     const double (*xyz)[3];
-    double flatness;
+    double flatness[2]; /* between two cells, on the boundary */
     border *border;
     size_t borders;
     bool *taken;      /* [borders] */
@@ -152,10 +105,11 @@ static void normal_of(const joiner *j, const border *b, double normal[3])
 static bool is_in_plane(const joiner *j, const border *b, const double normal[3],
                         const double on_plane[3])
 {
+    const double flatness = j->flatness[b->label[1] == TM_NONE];
     double own[3], to[3];
     for (size_t i = 0; i < corners_of(j, b); i++) {
         tm_subtract(to, j->xyz[corner(j, b, i)], on_plane);
-        if (!(fabs(tm_dot(normal, to)) <= j->flatness * tm_norm(normal)))
+        if (!(fabs(tm_dot(normal, to)) <= flatness * tm_norm(normal)))
             return false;
     }
     normal_of(j, b, own);
@@ -308,10 +262,10 @@ static tm_status write_blocks(const joiner *j, size_t cells, tm_block *facet,
 }
 
 tm_status tm_join_cells(const tm_cell_faces *faces, const double (*xyz)[3],
-                        double flatness, const uint32_t *label, size_t cells,
+                        const double flatness[2], const uint32_t *label, size_t cells,
                         tm_block *facet, tm_block *cell, size_t *joined, tm_error *error)
 {
-    joiner j = {.faces = faces, .xyz = xyz, .flatness = flatness};
+    joiner j = {.faces = faces, .xyz = xyz, .flatness = {flatness[0], flatness[1]}};
     tm_status status = find_borders(&j, label) && make_polygons(&j)
                            ? write_blocks(&j, cells, facet, cell, error)
                            : tm_fail_memory(error);

@@ -502,10 +502,13 @@ END
     surface cube off >cube.off
     surface sphere off >sphere.off
     command -v octree-mesh >/dev/null || skip "there is no p4est"
-    for shape in cube sphere; do
+    "$TM_BUILD/bench/shapes" gear 3 >gear.off
+    for shape in cube sphere gear; do
         octree-mesh -q -s 4 $shape.off >"$out/mesh.tm"
         polylla3d -q --json "$out/json" "$out/mesh.tm" >"$out/poly.tm"
         mesh-check -q "$out/poly.tm"
+        [ "$(json "$out/json" unfit)" = 0 ]
+        cmp <(grep -v '^#' "$out/poly.tm") <(octree-mesh -q -s 4 --polyhedra $shape.off | grep -v '^#')
         poly-stats -q --for fv --json "$out/stats" "$out/poly.tm" >"$out/table"
         mesh-check --json "$out/mesh" "$out/mesh.tm" >"$out/table"
         python3 - "$out/mesh" "$out/stats" "$out/json" <<'END'
