@@ -91,7 +91,7 @@ unit_tests := $(addprefix $(BUILD)/tests/,$(filter-out $(left_out),\
 	$(basename $(notdir $(wildcard tests/unit/test_*.c)))))
 oracles := $(patsubst tests/oracle/%.cc,$(BUILD)/tests/%,$(wildcard tests/oracle/*.cc))
 fuzzer := $(BUILD)/fuzz/fuzz
-solver := $(BUILD)/vem/vem-poisson
+solver := $(BUILD)/solve/poisson
 benchers := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/*.c))
 shapes := $(BUILD)/bench/shapes
 generated := $(BUILD)/generated/powers.h $(BUILD)/generated/transitions.h
@@ -179,8 +179,8 @@ $(shapes): $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/shapes/*.c))
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lm
 
-# Needs SuiteSparse; tests/cli/vem.bats and an example run it.
-$(solver): $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/vem/*.c)) $(library)
+# Needs SuiteSparse; tests/cli/solve.bats, an example and a benchmark run it.
+$(solver): $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/solve/*.c)) $(library)
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lcholmod $(LDLIBS)
 

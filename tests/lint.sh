@@ -44,7 +44,7 @@ tidy() {
     mpi=$(mpicc --showme:compile | sed 's/-I/-isystem /g')
     export build mpi
     # shellcheck disable=SC2016 # expanded by the inner shell
-    find lib cmd tests/unit tests/fuzz tests/vem tests/shapes -name '*.c' -print0 | xargs -0 -P "$(nproc)" -n 4 sh -c 'clang-tidy --quiet "$@" -- \
+    find lib cmd tests/unit tests/fuzz tests/solve tests/shapes -name '*.c' -print0 | xargs -0 -P "$(nproc)" -n 4 sh -c 'clang-tidy --quiet "$@" -- \
         -std=c17 -D_GNU_SOURCE -Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes \
         "-I$build/generated" $mpi 2>/dev/null' sh
 }

@@ -111,11 +111,18 @@ smallest facet  0.5
 shortest edge  1
 smallest dihedral angle  50.7060
 largest dihedral angle  180.0000
+largest diameter  1.732
+centroids outside of the kernel  0
+indicator for virtual elements  0.835
 
 of each polyhedron  smallest  mean
 shortest edge / diameter  0.5774  0.6422
 radius of the kernel's ball / diameter  0.1542  0.2214
 volume of the kernel / volume  1  1
+depth of the centroid in it / diameter  0.1231  0.2059
+rho 1: kernels  1  1
+rho 2: sizes  0.4797  0.5462
+rho 3: numbers of facets and edges  0.6964  0.8482
 
 from the centroids of cells and facets
 largest non-orthogonality  16.72
@@ -127,7 +134,6 @@ pyramids without volume  0
 facets that are not all seen  0
 largest bend of a facet  0
 volumes, 95 % to 5 %  6.00
-largest box  1.732
 
 histogram of facets per polyhedron, %
 4 to 5  50.00  ******************************
@@ -170,7 +176,9 @@ assert list(s) == [
     "euler_failures", "not_star_shaped", "swallowed_vertices", "faces_per_polyhedron",
     "largest_faces", "tets_per_polyhedron", "largest_tets", "input",
     "reduction_percent", "volume", "min_volume", "min_edge", "min_face_area",
-    "min_dihedral", "max_dihedral", "finite_volume", "fit_for", "edge_ratio", "kernel_radius", "kernel_ratio",
+    "min_dihedral", "max_dihedral", "max_diameter", "centroid_outside", "vem_indicator",
+    "finite_volume", "fit_for", "edge_ratio", "kernel_radius", "kernel_ratio",
+    "centroid_depth", "rho1", "rho2", "rho3",
     "faces_histogram", "tets_histogram", "kernel_ratio_histogram"]
 assert list(s["non_simple_by"]) == ["edges", "vertices", "pieces", "euler"]
 assert s["input"] == {"elements": 13, "faces": None, "edges": None, "nodes": 10}
@@ -366,9 +374,16 @@ polyhedra (.cell) "*"tet-stats, "* ]]
     poly-stats --for fv --json cubes.json cubes.tm >table
     python3 - cubes.json <<'END'
 import json, sys
-found = json.load(open(sys.argv[1]))["finite_volume"]
+found = json.load(open(sys.argv[1]))
+assert abs(found["max_diameter"] - 3 ** 0.5) < 1e-15 and found["centroid_outside"] == 0
+whole, face = 3 ** -0.5, 2 ** -0.5
+rho2, rho3 = (whole + face) / 2, (4 / 6 + 3 / 4) / 2
+assert abs(found["rho1"]["min"] - 1) < 1e-12 and abs(found["rho2"]["mean"] - rho2) < 1e-12
+assert abs(found["rho3"]["mean"] - rho3) < 1e-12
+assert abs(found["vem_indicator"] - ((rho2 + rho3) / 2) ** 0.5) < 1e-12
+assert abs(found["centroid_depth"]["mean"] - whole / 2) < 1e-12
+found = found["finite_volume"]
 assert found.pop("max_skewness") < 1e-15
-assert abs(found.pop("max_diameter") - 3 ** 0.5) < 1e-15
 assert found.pop("volume_spread") == 1
 assert len(found) == 7 and not any(found.values())
 END

@@ -156,7 +156,10 @@ static void test_shapes(void **state)
     assert_true(close_to(s.min_edge, 0.25) && close_to(s.min_face_area, 1.0 / 16));
     assert_true(close_to(s.min_dihedral, 90) && close_to(s.max_dihedral, 90));
     assert_true(s.star_shaped && close_to(s.kernel_radius, 0.5 / sqrt(3)));
-    assert_true(close_to(s.kernel_ratio, 1));
+    assert_true(close_to(s.kernel_ratio, 1) && close_to(s.rho[0], 1));
+    assert_true(close_to(s.rho[1], (1 / sqrt(3) + 1 / sqrt(2)) / 2));
+    assert_true(close_to(s.rho[2], (4. / 6 + 3. / 4) / 2));
+    assert_true(close_to(s.centroid_depth, 0.5 / sqrt(3)));
     /* Three cubes at a corner: the one in the middle sees the others. */
     s = shape_of_picture(2, 2, 1, "000.");
     assert_true(close_to(s.volume, 3.0 / 64) && close_to(s.diameter, 3.0 / 4));
@@ -166,6 +169,8 @@ static void test_shapes(void **state)
     /* A cross: the cube in the middle of seven. */
     s = shape_of_picture(3, 3, 3, "....0.....0.000.0.....0....");
     assert_true(s.star_shaped && close_to(s.kernel_ratio, 1.0 / 7));
+    assert_true(close_to(s.rho[0], 1.0 / 7) &&
+                close_to(s.centroid_depth, 0.5 / sqrt(11)));
     /* Kernels that are flat, empty, and of a ring. */
     s = shape_of_picture(3, 2, 1, "00..00");
     assert_true(!s.star_shaped && s.kernel_radius == 0 && s.kernel_ratio == 0);
@@ -173,6 +178,66 @@ static void test_shapes(void **state)
     assert_true(!s.star_shaped && s.kernel_radius == 0 && s.kernel_ratio == 0);
     s = shape_of_picture(3, 3, 1, "0000.0000");
     assert_true(!s.star_shaped && close_to(s.volume, 8.0 / 64));
+    assert_true(s.rho[0] == 0 && s.centroid_depth < 0);
+}
+
+/* An L of three unit cubes as a prism on two hexagons, turned, 1/8 as large, far from the
+ * origin; its indicator by hand. */
+static void test_prism(void **state)
+{
+    (void)state;
+    enum { CORNERS = 6, NODES = 2 * CORNERS, FACETS = CORNERS + 2 };
+    static const double outline[CORNERS][2] = {{0, 0}, {2, 0}, {2, 1},
+                                               {1, 1}, {1, 2}, {0, 2}};
+    static const double turn[3][3] = {
+        {2 / 3., -1 / 3., 2 / 3.}, {2 / 3., 2 / 3., -1 / 3.}, {-1 / 3., 2 / 3., 2 / 3.}};
+    double xyz[NODES][3];
+    uint32_t side[FACETS][2], node[2 * CORNERS + 4 * CORNERS], facet[FACETS];
+    size_t start[FACETS + 1] = {0, CORNERS, NODES}, cell[2] = {0, FACETS};
+    for (int v = 0; v < NODES; v++)
+        for (int k = 0; k < 3; k++) {
+            const double *from = outline[v % CORNERS];
+            xyz[v][k] = 100 + (turn[k][0] * from[0] + turn[k][1] * from[1] +
+                               (v < CORNERS ? 0 : turn[k][2])) /
+                                  8;
+        }
+    for (uint32_t i = 0; i < CORNERS; i++) {
+        const uint32_t next = (i + 1) % CORNERS;
+        node[i] = CORNERS - 1 - i;
+        node[CORNERS + i] = CORNERS + i;
+        memcpy(node + NODES + 4 * (size_t)i,
+               (uint32_t[]){i, next, CORNERS + next, CORNERS + i}, 4 * sizeof *node);
+        start[i + 3] = start[i + 2] + 4;
+    }
+    for (uint32_t f = 0; f < FACETS; f++) {
+        side[f][0] = 0;
+        side[f][1] = TM_NONE;
+        facet[f] = f;
+    }
+    const tm_poly_arrays mesh = {.nodes = NODES,
+                                 .xyz = (const double(*)[3])xyz,
+                                 .facets = FACETS,
+                                 .side = (const uint32_t(*)[2])side,
+                                 .facet_start = start,
+                                 .facet_node = node,
+                                 .cells = 1,
+                                 .cell_start = cell,
+                                 .cell_facet = facet};
+    tm_poly_statistics s;
+    assert_int_equal(tm_poly_statistics_measure(&s, &mesh, 1, NULL), TM_OK);
+    /* The square in the corner sees all of the hexagon, the cube there all of the prism.
+     */
+    const double rho1 = 1 / 3. * 1 / 3. * 1 / 3.;
+    const double rho2 =
+        (sqrt(2) / 3 + (2 / sqrt(8) + 2 / sqrt(5) + 4 / sqrt(2)) / FACETS) / 2;
+    const double rho3 = (4. / FACETS + (2 * 3 / 6. + 6 * 3 / 4.) / FACETS) / 2;
+    assert_true(fabs(s.volume - 3 / 512.) < 1e-12 &&
+                fabs(s.max_diameter - 3 / 8.) < 1e-12);
+    assert_true(fabs(s.rho[0].mean - rho1) < 1e-9 && fabs(s.rho[0].min - rho1) < 1e-9);
+    assert_true(fabs(s.rho[1].mean - rho2) < 1e-9 && fabs(s.rho[2].mean - rho3) < 1e-12);
+    assert_true(fabs(s.vem_indicator - sqrt(rho1 * (rho2 + rho3) / 2)) < 1e-9);
+    /* The centroid is at 5/6, the kernel ends at 1, the diameter is 3. */
+    assert_true(fabs(s.centroid_depth.mean - 1 / 18.) < 1e-9 && s.centroid_outside == 0);
 }
 
 static void test_flat(void **state)
@@ -190,6 +255,7 @@ static void test_flat(void **state)
     s = shape_of(&v, 0);
     assert_true(s.volume == 0 && !s.star_shaped && s.diameter == 0);
     assert_true(s.min_dihedral == 360 && s.max_dihedral == 0);
+    assert_true(s.rho[0] == 0 && s.rho[1] == 0 && s.centroid_depth == 0);
     voxels_free(&v);
 }
 
@@ -229,6 +295,8 @@ static void test_statistics(void **state)
     assert_int_equal(s.input.faces, 0);
     assert_int_equal(s.input.edges, 0);
     assert_true(close_to(s.kernel_ratio.mean, 2.0 / 5) && s.kernel_ratio.min == 0);
+    assert_true(s.centroid_outside == 3 && close_to(s.rho[0].mean, 2.0 / 5));
+    assert_true(close_to(s.max_diameter, sqrt(25 + 9 + 1)));
     voxels_free(&v);
 }
 
@@ -300,7 +368,7 @@ int main(void)
         cmocka_unit_test(test_shapes),        cmocka_unit_test(test_flat),
         cmocka_unit_test(test_statistics),    cmocka_unit_test(test_swallowed),
         cmocka_unit_test(test_no_polyhedra),  cmocka_unit_test(test_bins),
-        cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_threads),       cmocka_unit_test(test_prism),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

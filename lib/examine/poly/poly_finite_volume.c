@@ -15,7 +15,6 @@ typedef struct {
 typedef struct {
     double centre[3], volume;
     double mean[3]; /* of the centroids of its facets */
-    double low[3], high[3];
     size_t facets;
 } cell;
 
@@ -84,11 +83,6 @@ static void add_face(const measuring *m, size_t f, cell *c, double sign)
     c->facets++;
     for (int x = 0; x < 3; x++)
         c->mean[x] += m->face[f].centre[x];
-    for (size_t i = 0; i < corners(m->mesh, f); i++)
-        for (int x = 0; x < 3; x++) {
-            c->low[x] = fmin(c->low[x], corner(m->mesh, f, i)[x]);
-            c->high[x] = fmax(c->high[x], corner(m->mesh, f, i)[x]);
-        }
 }
 
 /* Three times the volume of the pyramid of a facet and a point. */
@@ -109,11 +103,6 @@ static void add_pyramid(const measuring *m, size_t f, cell *c, double sign)
 
 static void measure_cells(const measuring *m)
 {
-    for (size_t c = 0; c < m->mesh->cells; c++)
-        for (int x = 0; x < 3; x++) {
-            m->cell[c].low[x] = HUGE_VAL;
-            m->cell[c].high[x] = -HUGE_VAL;
-        }
     for_sides(m, add_face);
     for (size_t c = 0; c < m->mesh->cells; c++)
         for (int x = 0; x < 3 && m->cell[c].facets > 0; x++)
@@ -227,12 +216,8 @@ static void judge_cells(const measuring *m, double *volume, tm_poly_finite_volum
 {
     const double few = 0.05;
     const size_t cells = m->mesh->cells;
-    for (size_t c = 0; c < cells; c++) {
+    for (size_t c = 0; c < cells; c++)
         volume[c] = m->cell[c].volume;
-        if (m->cell[c].facets > 0)
-            out->max_diameter = fmax(out->max_diameter,
-                                     sqrt(tm_distance2(m->cell[c].low, m->cell[c].high)));
-    }
     qsort(volume, cells, sizeof *volume, compare);
     if (cells > 0) {
         size_t low = (size_t)(few * (double)(cells - 1));

@@ -30,7 +30,6 @@ typedef struct tm_poly_finite_volume {
     size_t unseen;         /* facets not all of which a centroid beside them sees */
     double max_bend;      /* 1 - area / sum of the triangles' areas: 0 for plane facets */
     double volume_spread; /* the volume that 95 % do not exceed, over that for 5 % */
-    double max_diameter;  /* of the boxes around cells: their diagonal */
 } tm_poly_finite_volume;
 
 /* Measures all facets that belong to the cells that they name. TM_ERROR_SYSTEM where

@@ -53,16 +53,26 @@ typedef struct tm_poly_shape {
     double max_dihedral; /* no edges 360 and 0 */
     double kernel_radius; /* of the largest ball in the kernel, over the diameter; or 0 */
     double kernel_ratio;  /* the kernel's volume over the volume, 0 … 1 */
-    bool star_shaped;
+    double centroid_depth; /* how far the centroid is from leaving the kernel, over the */
+    bool star_shaped;      /* diameter; below 0 where it is outside */
+    double rho[3];         /* see tm_poly_indicator() */
 } tm_poly_shape;
+
+/* A node, around the first one of the polyhedron. */
+typedef struct tm_poly_point {
+    double x[3];
+    double distance; /* from the mean of all nodes */
+} tm_poly_point;
 
 /* Memory that is kept from one polyhedron to the next. {0} is empty. */
 typedef struct tm_poly_shape_memory {
-    struct tm_poly_point *place; /* of its nodes; then again, farthest first */
-    double (*normal)[3];         /* of its facets, length 1; 0 of those without area */
-    double (*plane)[4];          /* of those with area */
+    tm_poly_point *place; /* of its nodes; then again, farthest first */
+    double (*normal)[3];  /* of its facets, length 1; 0 of those without area */
+    double (*plane)[4];   /* of those with area */
     size_t planes;
     size_t room[3];
+    double (*point)[2]; /* of polygons in their planes */
+    size_t point_room;
     tm_kernel_memory kernel;
 } tm_poly_shape_memory;
 
@@ -81,5 +91,21 @@ tm_status tm_poly_shape_measure(tm_poly_shape *shape, tm_poly_shape_memory *memo
 tm_status tm_poly_ball_measure(tm_poly_shape *shape, tm_poly_shape_memory *memory,
                                const tm_poly_boundary *b, const double (*xyz)[3],
                                double center[3], tm_error *error);
+
+/* poly_indicator.c: how far a polyhedron P with facets F is from what proofs of virtual
+ * elements' convergence suppose, as the quality indicator of Sorgente et al. (2022) has
+ * it, each 0 … 1:
+ *
+ *   rho[0] = |ker P| / |P| · Π |ker F| / |F|
+ *   rho[1] = ½ (min(|P|^⅓, min h_F) / max(|P|^⅓, h_P)
+ *               + mean of min(|F|^½, shortest edge of F) / max(|F|^½, h_F))
+ *   rho[2] = ½ (4 / number of facets + mean of 3 / number of edges of F)
+ *
+ * with kernels, volumes and areas |·| and diameters h. The indicator of a mesh is
+ * sqrt(mean of rho[0] (rho[1] + rho[2]) / 2). Facets that are not plane are taken as
+ * their projections along their normal. After tm_poly_shape_measure()'s other measures,
+ * which calls it; false where memory is out. O(corners²) of each facet. */
+bool tm_poly_indicator(tm_poly_shape *shape, tm_poly_shape_memory *memory,
+                       const tm_poly_boundary *b);
 
 #endif

@@ -10,12 +10,6 @@
 
 static const double full_turn = 360; /* degrees */
 
-/* A node, around the first one of the polyhedron. */
-typedef struct tm_poly_point {
-    double x[3];
-    double distance; /* from the mean of all nodes */
-} tm_poly_point;
-
 enum { PLACE, NORMAL, PLANE };
 
 void tm_poly_shape_memory_free(tm_poly_shape_memory *m)
@@ -23,6 +17,7 @@ void tm_poly_shape_memory_free(tm_poly_shape_memory *m)
     free(m->place);
     free(m->normal);
     free(m->plane);
+    free(m->point);
     tm_kernel_memory_free(&m->kernel);
     *m = (tm_poly_shape_memory){0};
 }
@@ -175,6 +170,43 @@ static void find_ball(tm_poly_shape *s, const tm_poly_shape_memory *m, double ce
     s->kernel_radius = s->star_shaped ? radius / s->diameter : 0;
 }
 
+/* The centroid, by the tetrahedra of the first node and the triangles around each face's
+ * first corner; the mean of the nodes where there is no volume. */
+static void find_centroid(const tm_poly_shape *s, const tm_poly_shape_memory *m,
+                          const tm_poly_boundary *b, double centroid[3])
+{
+    const double nodes_by_determinant = 24;
+    double moment[3] = {0}, mean[3] = {0};
+    for (size_t v = 0; v < b->nodes; v++)
+        for (int k = 0; k < 3; k++)
+            mean[k] += m->place[v].x[k] / (double)b->nodes;
+    for (size_t f = 0; f < b->faces; f++) {
+        const uint32_t *corner = b->corner + b->face_start[f];
+        for (size_t i = 2; i < b->face_start[f + 1] - b->face_start[f]; i++) {
+            const double *x = m->place[corner[0]].x, *y = m->place[corner[i - 1]].x;
+            const double *z = m->place[corner[i]].x;
+            double cross[3];
+            tm_cross(cross, x, y);
+            const double determinant = tm_dot(cross, z);
+            for (int k = 0; k < 3; k++)
+                moment[k] += determinant * (x[k] + y[k] + z[k]);
+        }
+    }
+    for (int k = 0; k < 3; k++)
+        centroid[k] =
+            s->volume > 0 ? moment[k] / nodes_by_determinant / s->volume : mean[k];
+}
+
+static void find_centroid_depth(tm_poly_shape *s, const tm_poly_shape_memory *m,
+                                const tm_poly_boundary *b)
+{
+    double centroid[3], least = HUGE_VAL;
+    find_centroid(s, m, b, centroid);
+    for (size_t i = 0; i < m->planes; i++)
+        least = fmin(least, m->plane[i][3] - tm_dot(m->plane[i], centroid));
+    s->centroid_depth = m->planes > 0 && s->diameter > 0 ? least / s->diameter : 0;
+}
+
 /* False where memory is out. */
 static bool find_kernel_ratio(tm_poly_shape *s, tm_poly_shape_memory *m,
                               const double center[3])
@@ -218,5 +250,8 @@ tm_status tm_poly_shape_measure(tm_poly_shape *shape, tm_poly_shape_memory *memo
         return status;
     shape->min_edge = min_edge(memory, b);
     find_dihedrals(shape, memory, b);
-    return find_kernel_ratio(shape, memory, center) ? TM_OK : tm_fail_memory(error);
+    find_centroid_depth(shape, memory, b);
+    return find_kernel_ratio(shape, memory, center) && tm_poly_indicator(shape, memory, b)
+               ? TM_OK
+               : tm_fail_memory(error);
 }

@@ -68,13 +68,16 @@ static size_t ratio_bin(double ratio)
 
 static void clear(tm_poly_statistics *s)
 {
-    *s = (tm_poly_statistics){.min_volume = HUGE_VAL,
-                              .min_edge = HUGE_VAL,
-                              .min_face_area = HUGE_VAL,
-                              .min_dihedral = largest_angle,
-                              .edge_ratio = {.min = HUGE_VAL},
-                              .kernel_radius = {.min = HUGE_VAL},
-                              .kernel_ratio = {.min = HUGE_VAL}};
+    *s = (tm_poly_statistics){
+        .min_volume = HUGE_VAL,
+        .min_edge = HUGE_VAL,
+        .min_face_area = HUGE_VAL,
+        .min_dihedral = largest_angle,
+        .edge_ratio = {.min = HUGE_VAL},
+        .kernel_radius = {.min = HUGE_VAL},
+        .kernel_ratio = {.min = HUGE_VAL},
+        .centroid_depth = {.min = HUGE_VAL},
+        .rho = {{.min = HUGE_VAL}, {.min = HUGE_VAL}, {.min = HUGE_VAL}}};
 }
 
 static void add_value(tm_poly_range *range, double value)
@@ -135,6 +138,12 @@ static void add_shape(chunk_sums *sums, const tm_poly_shape *shape)
     add_value(&s->kernel_radius, shape->kernel_radius);
     add_value(&s->kernel_ratio, shape->kernel_ratio);
     s->kernel_ratios[ratio_bin(shape->kernel_ratio)]++;
+    s->centroid_outside += !(shape->centroid_depth > 0);
+    add_value(&s->centroid_depth, shape->centroid_depth);
+    for (int k = 0; k < 3; k++)
+        add_value(&s->rho[k], shape->rho[k]);
+    s->vem_indicator += shape->rho[0] * (shape->rho[1] + shape->rho[2]) / 2;
+    s->max_diameter = fmax(s->max_diameter, shape->diameter);
 }
 
 static tm_status find_boundary(workspace *w, const tm_poly_arrays *mesh, size_t c)
@@ -217,6 +226,12 @@ static void add(tm_poly_statistics *sum, const tm_poly_statistics *s)
     add_range(&sum->edge_ratio, &s->edge_ratio);
     add_range(&sum->kernel_radius, &s->kernel_radius);
     add_range(&sum->kernel_ratio, &s->kernel_ratio);
+    add_range(&sum->centroid_depth, &s->centroid_depth);
+    for (int k = 0; k < 3; k++)
+        add_range(&sum->rho[k], &s->rho[k]);
+    sum->centroid_outside += s->centroid_outside;
+    sum->vem_indicator += s->vem_indicator;
+    sum->max_diameter = fmax(sum->max_diameter, s->max_diameter);
     add_counts(sum->cause, s->cause, TM_POLY_CAUSES);
     add_counts(sum->faces, s->faces, TM_COUNT_BINS);
     add_counts(sum->tets, s->tets, TM_COUNT_BINS);
@@ -232,6 +247,10 @@ static void divide(tm_poly_statistics *s, size_t polyhedra)
     s->edge_ratio.mean /= count;
     s->kernel_radius.mean /= count;
     s->kernel_ratio.mean /= count;
+    s->centroid_depth.mean /= count;
+    for (int k = 0; k < 3; k++)
+        s->rho[k].mean /= count;
+    s->vem_indicator = sqrt(s->vem_indicator / count);
 }
 
 static tm_status measure_cells(tm_poly_statistics *s, const tm_poly_arrays *mesh,

@@ -59,6 +59,11 @@ typedef struct tm_poly_statistics {
     tm_poly_range edge_ratio;    /* shortest edge over diameter */
     tm_poly_range kernel_radius; /* see poly_parts.h */
     tm_poly_range kernel_ratio;
+    tm_poly_range centroid_depth;
+    size_t centroid_outside; /* polyhedra whose kernel does not hold their centroid */
+    tm_poly_range rho[3];    /* see tm_poly_indicator() in poly_parts.h, and the one of */
+    double vem_indicator;    /* the mesh */
+    double max_diameter;     /* the largest distance of two nodes of a polyhedron */
     size_t faces[TM_COUNT_BINS]; /* polyhedra by their facets, and */
     size_t tets[TM_COUNT_BINS];  /* by their tetrahedra, if input.elements > 0 */
     size_t kernel_ratios[TM_KERNEL_RATIO_BINS];

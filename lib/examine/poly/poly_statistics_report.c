@@ -52,6 +52,9 @@ static const tm_report_row shape[] = {
     ROW("min_face_area", NULL, NULL, min_face_area),
     ROW("min_dihedral", "smallest dihedral angle", "%.4f", min_dihedral),
     ROW("max_dihedral", "largest dihedral angle", "%.4f", max_dihedral),
+    ROW("max_diameter", "largest diameter", "%.4g", max_diameter),
+    ROW("centroid_outside", "centroids outside of the kernel", NULL, centroid_outside),
+    ROW("vem_indicator", "indicator for virtual elements", "%.3f", vem_indicator),
     {0}};
 
 static const tm_report_row finite_volume[] = {
@@ -68,7 +71,6 @@ static const tm_report_row finite_volume[] = {
     ROW("unseen", "  facets that are not all seen", NULL, fv.unseen),
     ROW("max_bend", "  largest bend of a facet", "%.3g", fv.max_bend),
     ROW("volume_spread", "  volumes, 95 % to 5 %", "%.2f", fv.volume_spread),
-    ROW("max_diameter", "  largest box", "%.4g", fv.max_diameter),
     TM_REPORT_CLOSE_ROW,
     {0}};
 
@@ -125,6 +127,10 @@ void tm_poly_statistics_json(tm_json *json, const tm_poly_statistics *s)
     tm_report_object(json, "edge_ratio", min_mean, &s->edge_ratio);
     tm_report_object(json, "kernel_radius", min_mean, &s->kernel_radius);
     tm_report_object(json, "kernel_ratio", min_mean, &s->kernel_ratio);
+    tm_report_object(json, "centroid_depth", min_mean, &s->centroid_depth);
+    tm_report_object(json, "rho1", min_mean, &s->rho[0]);
+    tm_report_object(json, "rho2", min_mean, &s->rho[1]);
+    tm_report_object(json, "rho3", min_mean, &s->rho[2]);
     tm_report_histogram(json, "faces_histogram", s->faces, tm_count_bins(s->faces),
                         count_end);
     tm_report_histogram(json, "tets_histogram", s->tets, tm_count_bins(s->tets),
@@ -181,6 +187,10 @@ static void range_rows(tm_text *text, const tm_poly_statistics *s)
     range_row(text, "  shortest edge / diameter", &s->edge_ratio);
     range_row(text, "  radius of the kernel's ball / diameter", &s->kernel_radius);
     range_row(text, "  volume of the kernel / volume", &s->kernel_ratio);
+    range_row(text, "  depth of the centroid in it / diameter", &s->centroid_depth);
+    range_row(text, "  rho 1: kernels", &s->rho[0]);
+    range_row(text, "  rho 2: sizes", &s->rho[1]);
+    range_row(text, "  rho 3: numbers of facets and edges", &s->rho[2]);
 }
 
 static void mean_row(tm_text *text, const char *what, double mean, size_t largest)
