@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What checkMesh looks at with -allGeometry besides. */
+#ifndef TM_EXAMINE_POLY_ALL_GEOMETRY_H
+#define TM_EXAMINE_POLY_ALL_GEOMETRY_H
+
+#include "poly_centroids.h"
+#include "poly_finite_volume.h"
+
+/* Adds unseen, no_fan, weights, volume ratios, determinants and concave cells.
+ * O(corners²) for a facet that is no fan, O(facets²) for a cell that is convex. */
+void tm_poly_all_geometry(const tm_poly_centroids *m, tm_poly_finite_volume *out);
+
+#endif
