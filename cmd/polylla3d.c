@@ -32,7 +32,7 @@ static const struct option options[] = {
     {"cells", required_argument, NULL, CELLS},
     {"size", required_argument, NULL, SIZE},
     {"no-repair", no_argument, NULL, NO_REPAIR},
-    {"star", no_argument, NULL, STAR},
+    {"star", optional_argument, NULL, STAR},
     {"absorb", no_argument, NULL, ABSORB},
     {"max-tets", required_argument, NULL, MAX_TETS},
     {"no-swallow", no_argument, NULL, NO_SWALLOW},
@@ -50,7 +50,8 @@ static const char own_help[] =
     "      --face-metric M the best face of --mode face: area (default) or inradius\n"
     "      --cells N       compact: about N of them\n"
     "      --size H        compact: about as large as cubes of side H\n"
-    "      --star          each star-shaped with respect to a ball\n"
+    "      --star[=R]      each star-shaped with respect to a ball, of R times its\n"
+    "                      extent; or =centroid: seen from there, for finite volumes\n"
     "      --absorb        those of a few tetrahedra join others beside them\n"
     "      --max-tets N    of N tetrahedra at most\n"
     "      --no-swallow    no node inside of a polyhedron\n"
@@ -77,6 +78,20 @@ static const filter_words option_words[] = {
     FILTER_WORDS(FACE_METRIC, metrics),
     {0}};
 
+/* A ball in another one has half of its diameter as its radius at most. */
+static const double most_radius = 0.5;
+
+static void set_star(filter *f, tm_poly_options *p)
+{
+    p->star = TM_STAR_BALL;
+    if (optarg && strcmp(optarg, "centroid") == 0) {
+        p->star = TM_STAR_CENTROID;
+    } else if (optarg) {
+        p->star = TM_STAR_RADIUS;
+        p->radius = filter_number(f, "--star", optarg, 0, most_radius);
+    }
+}
+
 static void set_option(filter *f, settings *o, int c)
 {
     tm_poly_options *p = &o->poly;
@@ -91,7 +106,7 @@ static void set_option(filter *f, settings *o, int c)
     else if (c == NO_REPAIR)
         p->repair = false;
     else if (c == STAR)
-        p->star = true;
+        set_star(f, p);
     else if (c == ABSORB)
         p->absorb = true;
     else if (c == NO_SWALLOW)
@@ -189,7 +204,8 @@ static void make_facets(filter *f, const settings *o, const tm_tet_mesh *mesh,
 {
     tm_error error;
     filter_stage(f, "finding faces");
-    tm_coplanar plane = {o->degrees, tm_facet_flatness(mesh)};
+    tm_coplanar plane = {o->degrees, tm_facet_flatness(mesh), o->poly.radius,
+                         o->poly.star == TM_STAR_CENTROID};
     tm_status status =
         tm_partition_facets(partition, mesh, &made[0], &made[1], &r->lost, &error);
     if (status == TM_OK && o->merge)
@@ -325,7 +341,7 @@ int main(int argc, char **argv)
 {
     filter f = {.name = "polylla3d",
                 .synopsis = "[--mode terminal|edge|face|cavity|compact] [--cells N | "
-                            "--size H] [--no-repair] [--star] "
+                            "--size H] [--no-repair] [--star[=R|=centroid]] "
                             "[--absorb] [--max-tets N] [--no-swallow] "
                             "[--merge-coplanar[=DEG]] [--ignore-markers] [--label] "
                             "[--face-metric area|inradius] [FILE]",
@@ -353,7 +369,10 @@ int main(int argc, char **argv)
                     r.lost);
     bool is_missed = r.poly.not_star > 0;
     if (is_missed)
-        filter_note(&f, "%zu polyhedra are no stars: flat tetrahedra", r.poly.not_star);
+        filter_note(&f, "%zu polyhedra are no stars: %s", r.poly.not_star,
+                    o.poly.star == TM_STAR_RADIUS
+                        ? "tetrahedra that are too flat for the radius"
+                        : "flat tetrahedra");
     if (10 * r.poly.single > r.poly.cells)
         filter_note(&f,
                     "%zu polyhedra are of one tetrahedron: with any beside it they would "

@@ -241,23 +241,51 @@ static void judge_cells(const measuring *m, double *volume, tm_poly_finite_volum
     }
 }
 
+/* Makes room and measures facets and cells. */
+static bool start(measuring *m, const tm_poly_arrays *mesh, double *max_bend)
+{
+    *m = (measuring){.mesh = mesh,
+                     .face = tm_new(mesh->facets, sizeof *m->face),
+                     .cell = calloc(mesh->cells + 1, sizeof *m->cell)};
+    if (!m->face || !m->cell)
+        return false;
+    for (size_t f = 0; f < mesh->facets; f++) {
+        double sum = measure_face(mesh, f, &m->face[f]);
+        if (sum > 0)
+            *max_bend = fmax(*max_bend, 1 - tm_norm(m->face[f].area) / sum);
+    }
+    measure_cells(m);
+    return true;
+}
+
+tm_status tm_poly_find_unseen(bool *unseen, const tm_poly_arrays *mesh, tm_error *error)
+{
+    measuring m;
+    double max_bend = 0;
+    bool done = start(&m, mesh, &max_bend);
+    for (size_t c = 0; c < mesh->cells; c++)
+        unseen[c] = false;
+    for (size_t f = 0; f < mesh->facets && done; f++)
+        for (int s = 0; s < 2 && fits(mesh, f); s++) {
+            const uint32_t c = mesh->side[f][s];
+            const double sign = s == 0 ? 1 : -1;
+            if (c != TM_NONE)
+                unseen[c] |= !sees(&m, f, m.cell[c].centre, sign) ||
+                             !(pyramid(&m.face[f], m.cell[c].centre, sign) > 0);
+        }
+    free(m.face);
+    free(m.cell);
+    return done ? TM_OK : tm_fail_memory(error);
+}
+
 tm_status tm_poly_finite_volume_measure(tm_poly_finite_volume *measures,
                                         const tm_poly_arrays *mesh, tm_error *error)
 {
-    measuring m = {.mesh = mesh,
-                   .face = tm_new(mesh->facets, sizeof *m.face),
-                   .cell = calloc(mesh->cells + 1, sizeof *m.cell)};
+    measuring m;
     double *volume = tm_new(mesh->cells, sizeof *volume);
-    bool done = m.face && m.cell && volume;
     *measures = (tm_poly_finite_volume){0};
-    for (size_t f = 0; f < mesh->facets && done; f++) {
-        double sum = measure_face(mesh, f, &m.face[f]);
-        if (sum > 0)
-            measures->max_bend =
-                fmax(measures->max_bend, 1 - tm_norm(m.face[f].area) / sum);
-    }
+    bool done = start(&m, mesh, &measures->max_bend) && volume;
     if (done) {
-        measure_cells(&m);
         judge_facets(&m, measures);
         judge_cells(&m, volume, measures);
     }
