@@ -309,6 +309,18 @@ static size_t count_single(const tm_partition *partition, size_t tets)
     return count;
 }
 
+/* Takes the regions as they are given. */
+static void take_regions(const tm_tet_mesh *mesh, const uint32_t *given, uint32_t *label,
+                         size_t *regions)
+{
+    *regions = 0;
+    for (size_t t = 0; t < mesh->slots; t++) {
+        label[t] = given[t];
+        if (label[t] >= *regions)
+            *regions = (size_t)label[t] + 1;
+    }
+}
+
 /* Labels tetrahedra by their regions. Ties are told by the numbers of nodes: so that they
  * do not depend on how the mesh was numbered, nodes are numbered by their places here. */
 static tm_status find_regions(const tm_tet_mesh *mesh, const tm_poly_options *options,
@@ -342,8 +354,11 @@ tm_status tm_partition_make(tm_partition *partition, const tm_tet_mesh *mesh,
     if (!partition->cell)
         return tm_fail_memory(error);
     tm_progress_stage(options->progress, "joining tetrahedra");
-    tm_status status =
-        find_regions(mesh, options, partition->cell, &report->regions, error);
+    tm_status status = TM_OK;
+    if (options->given)
+        take_regions(mesh, options->given, partition->cell, &report->regions);
+    else
+        status = find_regions(mesh, options, partition->cell, &report->regions, error);
     partition->cells = report->regions;
     if (status == TM_OK && options->repair)
         status = repair_regions(partition, mesh, options, report, error);

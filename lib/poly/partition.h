@@ -42,9 +42,10 @@ typedef enum tm_poly_star {
 typedef struct tm_poly_options {
     tm_poly_mode mode;
     tm_face_metric face_metric;
-    size_t cells; /* compact: about so many, or with 0 */
-    double size;  /* about as large as cubes of this side */
-    bool repair;  /* the rest is for this */
+    size_t cells;          /* compact: about so many, or with 0 */
+    double size;           /* about as large as cubes of this side */
+    const uint32_t *given; /* [slots]: the regions, in place of a mode's; or NULL */
+    bool repair;           /* the rest is for this */
     tm_poly_star star;
     double radius;   /* of TM_STAR_RADIUS */
     bool absorb;     /* cells of a few tetrahedra join one beside them */

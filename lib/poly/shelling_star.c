@@ -195,15 +195,6 @@ static bool keeps_ball(tm_shelling *s, uint32_t t, bool *memory)
     return true;
 }
 
-static void tet_centroid(const tm_shelling *s, uint32_t t, double centre[3])
-{
-    for (int x = 0; x < 3; x++) {
-        centre[x] = 0;
-        for (int i = 0; i < 4; i++)
-            centre[x] += (s->xyz[s->mesh->tet[t][i]][x] - s->origin[x]) / 4;
-    }
-}
-
 /* The way from a point to the centroid of the cell across face i of t; false at the
  * boundary. What is in no piece yet is a cell of its own. */
 static bool to_cell_across(const tm_shelling *s, uint32_t t, uint32_t i,

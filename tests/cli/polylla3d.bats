@@ -468,6 +468,53 @@ END
     done
 }
 
+@test "--partition: cells that are given are repaired, and no others are made" {
+    local mesh option
+    for mesh in points sphere boxes ring grid; do
+        polylla3d -q --no-history --label $mesh.tm >"$out/label.tm"
+        polylla3d -q --no-history --partition "$out/label.tm" >"$out/again.tm"
+        polylla3d -q --no-history $mesh.tm >"$out/poly.tm"
+        cmp "$out/again.tm" "$out/poly.tm"
+        # Slabs that have anything: pieces, holes, two regions. The last attribute says which.
+        slabs $mesh.tm >"$out/slabs.tm"
+        for option in '' --star --star=centroid '--absorb --merge-coplanar'; do
+            # shellcheck disable=SC2086 # words
+            polylla3d -q --partition $option "$out/slabs.tm" >"$out/poly.tm"
+            python3 judge.py "$out/poly.tm" $mesh.tm simple
+        done
+    done
+    # Of the sphere each slab is a ball already; the attribute is taken away.
+    slabs sphere.tm >"$out/slabs.tm"
+    polylla3d --partition=1 --json "$out/json" -o "$out/poly.tm" "$out/slabs.tm"
+    [ "$(json "$out/json" regions)" -eq 4 ]
+    [ "$(json "$out/json" polyhedra)" -lt 200 ]
+    [ "$(header .cell "$out/poly.tm" | cut -d ' ' -f 2)" = 1 ]
+    run -3 --separate-stderr polylla3d --partition=2 "$out/slabs.tm"
+    [[ $stderr == *"has 1 attributes, but the partition is to be attribute 2"* ]]
+    run -3 --separate-stderr polylla3d --partition sphere.tm
+    for option in '--mode face' '--cells 5' --no-repair; do
+        # shellcheck disable=SC2086 # words
+        run -2 polylla3d --partition $option "$out/slabs.tm"
+    done
+}
+
+# Another attribute for tetrahedra: in which quarter of the box their first node is.
+slabs() {
+    python3 - "$1" <<'END'
+import sys
+lines = open(sys.argv[1]).read().split('\n')
+node, ele = lines.index('.node'), lines.index('.ele')
+x = {row.split()[0]: float(row.split()[1]) for row in lines[node + 2:ele] if row and row[0] != '.'}
+low, high = min(x.values()), max(x.values())
+n, k, width = (int(word) for word in lines[ele + 1].split())
+lines[ele + 1] = '%d %d %d' % (n, k, width + 1)
+for t in range(ele + 2, ele + 2 + n):
+    place = (x[lines[t].split()[1]] - low) / (high - low)
+    lines[t] += ' %d' % min(3, int(4 * place))
+print('\n'.join(lines))
+END
+}
+
 @test "the polyhedra do not depend on how the mesh is numbered" {
     local mesh options
     for mesh in points sphere boxes grid; do
