@@ -5,6 +5,7 @@
 
 #include "../lib/mesh/cell_faces.h"
 #include "../lib/poly/facets.h"
+#include "../lib/poly/given.h"
 #include "../lib/poly/octant/join_octants.h"
 #include "../lib/tet/mesh_measure.h"
 
@@ -17,6 +18,7 @@ enum {
     FACE_METRIC,
     CELLS,
     SIZE,
+    PARTITION,
     NO_REPAIR,
     STAR,
     ABSORB,
@@ -32,8 +34,9 @@ static const struct option options[] = {
     {"face-metric", required_argument, NULL, FACE_METRIC},
     {"cells", required_argument, NULL, CELLS},
     {"size", required_argument, NULL, SIZE},
+    {"partition", optional_argument, NULL, PARTITION},
     {"no-repair", no_argument, NULL, NO_REPAIR},
-    {"star", no_argument, NULL, STAR},
+    {"star", optional_argument, NULL, STAR},
     {"absorb", no_argument, NULL, ABSORB},
     {"max-tets", required_argument, NULL, MAX_TETS},
     {"no-swallow", no_argument, NULL, NO_SWALLOW},
@@ -51,7 +54,9 @@ static const char own_help[] =
     "      --face-metric M the best face of --mode face: area (default) or inradius\n"
     "      --cells N       compact: about N of them\n"
     "      --size H        compact: about as large as cubes of side H\n"
-    "      --star          each star-shaped with respect to a ball\n"
+    "      --partition[=K] those with one value of attribute K, from 1; the last one\n"
+    "      --star[=R]      each star-shaped with respect to a ball, of R times its\n"
+    "                      extent; or =centroid: seen from there, for finite volumes\n"
     "      --absorb        those of a few tetrahedra join others beside them\n"
     "      --max-tets N    of N tetrahedra at most\n"
     "      --no-swallow    no node inside of a polyhedron\n"
@@ -64,6 +69,8 @@ static const char own_help[] =
 
 typedef struct {
     tm_poly_options poly;
+    bool partition;   /* is given, */
+    size_t attribute; /* by this one, from 1; 0: the last one */
     bool merge, ignore_markers, label;
     bool any;       /* of the options is given */
     double degrees; /* of --merge-coplanar */
@@ -78,6 +85,20 @@ static const filter_words option_words[] = {
     FILTER_WORDS(FACE_METRIC, metrics),
     {0}};
 
+/* A ball in another one has half of its diameter as its radius at most. */
+static const double most_radius = 0.5;
+
+static void set_star(filter *f, tm_poly_options *p)
+{
+    p->star = TM_STAR_BALL;
+    if (optarg && strcmp(optarg, "centroid") == 0) {
+        p->star = TM_STAR_CENTROID;
+    } else if (optarg) {
+        p->star = TM_STAR_RADIUS;
+        p->radius = filter_number(f, "--star", optarg, 0, most_radius);
+    }
+}
+
 static void set_option(filter *f, settings *o, int c)
 {
     tm_poly_options *p = &o->poly;
@@ -89,10 +110,14 @@ static void set_option(filter *f, settings *o, int c)
         p->cells = (size_t)filter_integer(f, "--cells", optarg, 1, INT32_MAX);
     else if (c == SIZE)
         p->size = filter_number(f, "--size", optarg, DBL_MIN, DBL_MAX);
-    else if (c == NO_REPAIR)
+    else if (c == PARTITION) {
+        o->partition = true;
+        if (optarg)
+            o->attribute = (size_t)filter_integer(f, "--partition", optarg, 1, INT32_MAX);
+    } else if (c == NO_REPAIR)
         p->repair = false;
     else if (c == STAR)
-        p->star = true;
+        set_star(f, p);
     else if (c == ABSORB)
         p->absorb = true;
     else if (c == NO_SWALLOW)
@@ -125,6 +150,10 @@ static settings read_options(filter *f)
     const bool is_sized = p->cells > 0 || p->size > 0;
     if (is_sized && !has_mode)
         p->mode = TM_POLY_COMPACT;
+    if (o.partition && (has_mode || is_sized || has_metric || !p->repair))
+        filter_usage_error(f, "--partition says which tetrahedra are joined, and is for "
+                              "the repair: not with --mode, --cells, --size and "
+                              "--no-repair");
     if (is_sized != (p->mode == TM_POLY_COMPACT) || (p->cells > 0 && p->size > 0))
         filter_usage_error(f, "--mode compact needs one of --cells and --size, which are "
                               "for it alone");
@@ -192,7 +221,8 @@ static void make_facets(filter *f, const settings *o, const tm_tet_mesh *mesh,
 {
     tm_error error;
     filter_stage(f, "finding faces");
-    tm_coplanar plane = {o->degrees, tm_facet_flatness(mesh)};
+    tm_coplanar plane = {o->degrees, tm_facet_flatness(mesh), o->poly.radius,
+                         o->poly.star == TM_STAR_CENTROID};
     tm_status status =
         tm_partition_facets(partition, mesh, &made[0], &made[1], &r->lost, &error);
     if (status == TM_OK && o->merge)
@@ -202,39 +232,58 @@ static void make_facets(filter *f, const settings *o, const tm_tet_mesh *mesh,
     r->facets = made[0].count;
 }
 
-/* Cuts a mesh, which is sorted first: order[k] is which tetrahedron the k-th was. */
-static void cut(filter *f, const settings *o, tm_tet_mesh *mesh, tm_partition *partition,
-                uint32_t *order, result *r)
+/* Takes the attribute that is the partition out of the stream; NULL where none is. */
+static uint32_t *take_partition(filter *f, tm_stream *stream, const settings *o)
 {
     tm_error error;
+    uint32_t *label = NULL;
+    tm_block *ele = tm_stream_find(stream, ".ele");
+    if (o->partition && ele && ele->count > 0 &&
+        tm_take_given(ele, o->attribute ? o->attribute - 1 : ele->attributes - 1, &label,
+                      &error) != TM_OK)
+        filter_fail(f, &error);
+    return label;
+}
+
+/* Cuts a mesh, which is sorted first: order[k] is which tetrahedron the k-th was. `given`
+ * are labels of the tetrahedra as they were, or NULL. */
+static void cut(filter *f, const settings *o, tm_tet_mesh *mesh, const uint32_t *given,
+                tm_partition *partition, uint32_t *order, result *r)
+{
+    tm_error error;
+    tm_poly_options poly = o->poly;
+    uint32_t *sorted = malloc((mesh->slots + 1) * sizeof *sorted);
+    if (!sorted)
+        filter_fail_memory(f);
     filter_stage(f, "sorting");
     if (tm_tet_mesh_sort(mesh, order, &error) != TM_OK)
         filter_fail(f, &error);
     if (o->ignore_markers)
         tm_ignore_markers(mesh);
-    if (tm_partition_make(partition, mesh, &o->poly, &r->poly, &error) != TM_OK)
+    for (size_t k = 0; k < mesh->slots && given; k++)
+        sorted[k] = given[order[k]];
+    if (given)
+        poly.given = sorted;
+    if (tm_partition_make(partition, mesh, &poly, &r->poly, &error) != TM_OK)
         filter_fail(f, &error);
+    free(sorted);
 }
 
 /* Gives the tetrahedra of the stream labels: they stay in their order, a copy is cut. */
 static void label(filter *f, tm_stream *stream, tm_tet_mesh *mesh, const settings *o,
-                  result *r)
+                  const uint32_t *given, uint32_t *order, result *r)
 {
     tm_error error;
     tm_tet_mesh sorted = {0};
     tm_partition partition;
-    uint32_t *order = malloc((mesh->slots + 1) * sizeof *order);
-    if (!order)
-        filter_fail_memory(f);
     if (tm_tet_mesh_copy(&sorted, mesh, &error) != TM_OK)
         filter_fail(f, &error);
-    cut(f, o, &sorted, &partition, order, r);
+    cut(f, o, &sorted, given, &partition, order, r);
     if (tm_tet_mesh_to_stream(mesh, stream, &error) != TM_OK)
         filter_fail(f, &error);
     put_labels(f, stream, &partition, order);
     tm_partition_free(&partition);
     tm_tet_mesh_free(&sorted);
-    free(order);
 }
 
 /* Makes polyhedra of mixed elements: of those of each octant one. */
@@ -279,17 +328,23 @@ static void convert(filter *f, tm_stream *stream, const settings *o, result *r)
                    "has .facet or .cell already, which the polyhedra would be");
         filter_fail(f, &error);
     }
+    uint32_t *given = take_partition(f, stream, o);
     tet_mesh_from_stream(f, stream, &mesh);
+    uint32_t *order = malloc((mesh.slots + 1) * sizeof *order);
+    if (!order)
+        filter_fail_memory(f);
     if (o->label) {
-        label(f, stream, &mesh, o, r);
-        return;
+        label(f, stream, &mesh, o, given, order, r);
+    } else {
+        cut(f, o, &mesh, given, &partition, order, r);
+        make_facets(f, o, &mesh, &partition, made, r);
+        if (tm_tet_mesh_to_stream(&mesh, stream, &error) != TM_OK)
+            filter_fail(f, &error);
+        put_blocks(f, stream, gone, sizeof gone / sizeof *gone, made);
+        tm_partition_free(&partition);
     }
-    cut(f, o, &mesh, &partition, NULL, r);
-    make_facets(f, o, &mesh, &partition, made, r);
-    if (tm_tet_mesh_to_stream(&mesh, stream, &error) != TM_OK)
-        filter_fail(f, &error);
-    put_blocks(f, stream, gone, sizeof gone / sizeof *gone, made);
-    tm_partition_free(&partition);
+    free(given);
+    free(order);
 }
 
 static void write_json(filter *f, const result *r)
@@ -311,18 +366,18 @@ static void write_json(filter *f, const result *r)
 
 int main(int argc, char **argv)
 {
-    filter f = {.name = "polylla3d",
-                .synopsis = "[--mode terminal|edge|face|cavity|compact] [--cells N | "
-                            "--size H] [--no-repair] [--star] "
-                            "[--absorb] [--max-tets N] [--no-swallow] "
-                            "[--merge-coplanar[=DEG]] [--ignore-markers] [--label] "
-                            "[--face-metric area|inradius] [FILE]",
-                .purpose =
-                    "Joins tetrahedra, or the elements of each octant, to polyhedra.",
-                .help = own_help,
-                .options = options,
-                .words = option_words,
-                .letters = FILTER_LETTERS};
+    filter f = {
+        .name = "polylla3d",
+        .synopsis = "[--mode terminal|edge|face|cavity|compact] [--cells N | "
+                    "--size H | --partition[=K]] [--no-repair] [--star[=R|=centroid]] "
+                    "[--absorb] [--max-tets N] [--no-swallow] "
+                    "[--merge-coplanar[=DEG]] [--ignore-markers] [--label] "
+                    "[--face-metric area|inradius] [FILE]",
+        .purpose = "Joins tetrahedra, or the elements of each octant, to polyhedra.",
+        .help = own_help,
+        .options = options,
+        .words = option_words,
+        .letters = FILTER_LETTERS};
     filter_start(&f, argc, argv);
     settings o = read_options(&f);
     filter_operands(&f);
@@ -343,7 +398,10 @@ int main(int argc, char **argv)
         filter_note(&f, "not quite fit for finite volumes: %s", r.faults);
     bool is_missed = r.poly.not_star > 0;
     if (is_missed)
-        filter_note(&f, "%zu polyhedra are no stars: flat tetrahedra", r.poly.not_star);
+        filter_note(&f, "%zu polyhedra are no stars: %s", r.poly.not_star,
+                    o.poly.star == TM_STAR_RADIUS
+                        ? "tetrahedra that are too flat for the radius"
+                        : "flat tetrahedra");
     if (10 * r.poly.single > r.poly.cells)
         filter_note(&f,
                     "%zu polyhedra are of one tetrahedron: with any beside it they would "

@@ -14,6 +14,7 @@ setup_file() {
     }' >points.node
     tetgen-mesh --no-history points.node >points.tm
     surface sphere off | tetgen-mesh --no-history -q >sphere.tm
+    write_gain
     two_boxes_and_a_ring
     grid 4 >grid.tm
     cat >judge.py <<'END'
@@ -111,6 +112,66 @@ if '.face' in tet and int(tet['.face'][0][1]):
         areas[1][marker[0]] += area2(loop)
     for marker, area in areas[0].items():
         assert marker == '0' or abs(areas[1][marker] / area - 1) < 1e-12, marker
+END
+}
+
+# gain.py POLYHEDRA: exit 1 where an error of one cell, that is of more than one tetrahedron
+# or beside such a one, comes back to it as more than itself by OpenFOAM's scheme
+# `corrected`, one iteration after the other.
+write_gain() {
+    cat >gain.py <<'END'
+import sys
+def rows(name):
+    lines = iter(open(sys.argv[1]))
+    for line in lines:
+        if line.strip() == name:
+            return [next(lines).split() for _ in range(int(next(lines).split()[0]))]
+def minus(a, b): return [p - q for p, q in zip(a, b)]
+def dot(a, b): return sum(p * q for p, q in zip(a, b))
+def cross(a, b): return [a[k - 2] * b[k - 1] - a[k - 1] * b[k - 2] for k in range(3)]
+def times(s, a): return [s * p for p in a]
+def plus(a, b): return [p + q for p, q in zip(a, b)]
+nodes = rows('.node')
+base, xyz = int(nodes[0][0]), [[float(x) for x in row[1:4]] for row in nodes]
+cells = rows('.cell')
+tets = [float(row[2 + int(row[1])]) for row in cells]
+n = len(cells)
+volume, centre, gradient, solved, back = [0] * n, [[0] * 3] * n, [[0] * 3] * n, [0] * n, [0] * n
+faces = []
+for row in rows('.facet'):
+    a, b, c = (xyz[int(v) - base] for v in row[4:7])
+    area, middle = times(0.5, cross(minus(b, a), minus(c, a))), times(1 / 3, plus(plus(a, b), c))
+    sides = [int(row[1]) - base, int(row[2]) - base if row[2] != '-1' else None]
+    faces.append((sides, area, middle))
+    for i, side in enumerate(sides):
+        if side is not None:
+            part = (1 - 2 * i) * dot(area, middle) / 3
+            volume[side] += part
+            centre[side] = plus(centre[side], times(part * 3 / 4, middle))
+centre = [times(1 / v, c) for v, c in zip(volume, centre)]
+def parts(sides, area, middle):
+    d = minus(centre[sides[1]], centre[sides[0]])
+    part = dot(area, area) / dot(d, area)
+    far = [abs(dot(area, minus(middle, centre[side]))) for side in sides]
+    return part, minus(area, times(part, d)), [far[1 - i] / sum(far) for i in (0, 1)]
+for sides, area, middle in faces:
+    if sides[1] is None:
+        solved[sides[0]] += dot(area, area) / dot(area, minus(middle, centre[sides[0]]))
+        continue
+    part, rest, weight = parts(sides, area, middle)
+    for i, side in enumerate(sides):
+        solved[side] += part
+        gradient[side] = plus(gradient[side], times((1 - 2 * i) * weight[i] / volume[side], area))
+beside = [1] * n
+for sides, area, middle in faces:
+    if sides[1] is None:
+        continue
+    part, rest, weight = parts(sides, area, middle)
+    for i, side in enumerate(sides):
+        back[side] += (1 - 2 * i) * weight[i] * dot(rest, gradient[side])
+        back[side] -= weight[0] * weight[1] * dot(rest, area) / volume[sides[1 - i]]
+        beside[side] = max(beside[side], tets[sides[0]], tets[sides[1]])
+sys.exit(any(abs(b) > s and t > 1 for b, s, t in zip(back, solved, beside)))
 END
 }
 
@@ -300,6 +361,58 @@ END
     run -2 polylla3d --size 0 points.tm
 }
 
+@test "--star=R: a ball of that radius, by the extent, or it is said" {
+    local mesh radius
+    for mesh in points sphere; do
+        for radius in 0 0.02 0.08; do
+            run polylla3d -q --no-history --star=$radius --json "$out/json" -o "$out/poly.tm" $mesh.tm
+            [ "$status" -eq "$(json "$out/json" not_star_shaped | awk '{ print ($1 > 0) }')" ]
+            python3 judge.py "$out/poly.tm" $mesh.tm simple
+            poly-stats --json "$out/stats" "$out/poly.tm" >"$out/table"
+            [ "$(json "$out/stats" not_star_shaped)" -eq 0 ]
+            awk -v no="$(json "$out/json" not_star_shaped)" -v radius=$radius \
+                -v least="$(json "$out/stats" kernel_radius min)" \
+                'BEGIN { exit !(no > 0 || least >= radius) }'
+        done
+    done
+    # The more is asked for, the more cells there are.
+    polylla3d -q --star=0.01 --json "$out/1" sphere.tm >"$out/poly.tm"
+    [ "$(json "$out/1" not_star_shaped)" -eq 0 ]
+    [ "$(json "$out/1" polyhedra)" -lt "$(json "$out/json" polyhedra)" ]
+    run -2 polylla3d --star=0.6 points.tm
+    run -2 polylla3d --star=-1 points.tm
+    run -2 polylla3d --star=node points.tm
+}
+
+@test "--star=centroid: what finite volumes want, no worse than the tetrahedra" {
+    local mesh options
+    for mesh in points sphere boxes ring grid; do
+        polylla3d -q --no-history --max-tets 1 $mesh.tm >"$out/tets.tm"
+        poly-stats --json "$out/before" "$out/tets.tm" >"$out/table"
+        for options in '' --absorb '--cells 40 --absorb' '--mode face'; do
+            # shellcheck disable=SC2086 # words
+            polylla3d -q --no-history --star=centroid $options --json "$out/json" $mesh.tm >"$out/poly.tm"
+            python3 judge.py "$out/poly.tm" $mesh.tm simple
+            poly-stats --json "$out/stats" "$out/poly.tm" >"$out/table"
+            python3 - "$out/before" "$out/stats" <<'END'
+import json, sys
+before, now = (json.load(open(name))['finite_volume'] for name in sys.argv[1:])
+assert now['wrong_pyramids'] == now['unseen'] == 0
+assert now['max_non_orthogonality'] <= max(70 + 1e-6, before['max_non_orthogonality'])
+END
+            [ "$(json "$out/json" polyhedra)" -lt "$(json "$out/before" polyhedra)" ]
+            python3 gain.py "$out/poly.tm"
+        done
+    done
+    # Facets that are bent a little leave it so.
+    polylla3d -q --star=centroid --merge-coplanar=20 sphere.tm >"$out/poly.tm"
+    poly-stats --json "$out/stats" "$out/poly.tm" >"$out/table"
+    [ "$(json "$out/stats" finite_volume wrong_pyramids)" -eq 0 ]
+    # Others have cells by which a solver would not converge.
+    polylla3d -q --no-history --star sphere.tm >"$out/poly.tm"
+    run -1 python3 gain.py "$out/poly.tm"
+}
+
 @test "a mesh that is thin, or turned to be flat, gets stars as one that is not; what is single is said" {
     awk '/^\.node/ { print; getline; print; n = $1
         for (i = 0; i < n; i++) { getline; $4 = sprintf("%.17g", $4 / 1024); print }; next } { print }' \
@@ -353,6 +466,53 @@ written = {tuple(sorted(map(int, row[4:7]))): sorted(int(c) for c in row[1:3] if
 assert between == written
 END
     done
+}
+
+@test "--partition: cells that are given are repaired, and no others are made" {
+    local mesh option
+    for mesh in points sphere boxes ring grid; do
+        polylla3d -q --no-history --label $mesh.tm >"$out/label.tm"
+        polylla3d -q --no-history --partition "$out/label.tm" >"$out/again.tm"
+        polylla3d -q --no-history $mesh.tm >"$out/poly.tm"
+        cmp "$out/again.tm" "$out/poly.tm"
+        # Slabs that have anything: pieces, holes, two regions. The last attribute says which.
+        slabs $mesh.tm >"$out/slabs.tm"
+        for option in '' --star --star=centroid '--absorb --merge-coplanar'; do
+            # shellcheck disable=SC2086 # words
+            polylla3d -q --partition $option "$out/slabs.tm" >"$out/poly.tm"
+            python3 judge.py "$out/poly.tm" $mesh.tm simple
+        done
+    done
+    # Of the sphere each slab is a ball already; the attribute is taken away.
+    slabs sphere.tm >"$out/slabs.tm"
+    polylla3d --partition=1 --json "$out/json" -o "$out/poly.tm" "$out/slabs.tm"
+    [ "$(json "$out/json" regions)" -eq 4 ]
+    [ "$(json "$out/json" polyhedra)" -lt 200 ]
+    [ "$(header .cell "$out/poly.tm" | cut -d ' ' -f 2)" = 1 ]
+    run -3 --separate-stderr polylla3d --partition=2 "$out/slabs.tm"
+    [[ $stderr == *"has 1 attributes, but the partition is to be attribute 2"* ]]
+    run -3 --separate-stderr polylla3d --partition sphere.tm
+    for option in '--mode face' '--cells 5' --no-repair; do
+        # shellcheck disable=SC2086 # words
+        run -2 polylla3d --partition $option "$out/slabs.tm"
+    done
+}
+
+# Another attribute for tetrahedra: in which quarter of the box their first node is.
+slabs() {
+    python3 - "$1" <<'END'
+import sys
+lines = open(sys.argv[1]).read().split('\n')
+node, ele = lines.index('.node'), lines.index('.ele')
+x = {row.split()[0]: float(row.split()[1]) for row in lines[node + 2:ele] if row and row[0] != '.'}
+low, high = min(x.values()), max(x.values())
+n, k, width = (int(word) for word in lines[ele + 1].split())
+lines[ele + 1] = '%d %d %d' % (n, k, width + 1)
+for t in range(ele + 2, ele + 2 + n):
+    place = (x[lines[t].split()[1]] - low) / (high - low)
+    lines[t] += ' %d' % min(3, int(4 * place))
+print('\n'.join(lines))
+END
 }
 
 @test "the polyhedra do not depend on how the mesh is numbered" {

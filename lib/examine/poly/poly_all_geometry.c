@@ -31,14 +31,15 @@ static void judge_volumes(const tm_poly_centroids *m, size_t f,
     out->small_volume_ratios += ratio < TM_FV_VOLUME_RATIO;
 }
 
-/* Whether a point sees all triangles of a facet around its centroid. */
-static bool sees(const tm_poly_centroids *m, size_t f, const double point[3], double sign)
+bool tm_facet_is_seen(const tm_poly_centroids *m, size_t f, int s)
 {
     const size_t count = tm_facet_corners(m->mesh, f);
+    const double *from = m->cell[m->mesh->side[f][s]].centre;
     for (size_t i = 0; i < count; i++) {
-        const double *a = tm_facet_corner(m->mesh, f, i);
-        const double *b = tm_facet_corner(m->mesh, f, (i + 1) % count);
-        if (!(sign * tm_tet_volume(a, b, m->face[f].centre, point) < 0))
+        const double volume = tm_tet_volume(
+            tm_facet_corner(m->mesh, f, i), tm_facet_corner(m->mesh, f, (i + 1) % count),
+            m->face[f].centre, from);
+        if (!(s == 0 ? volume < 0 : volume > 0))
             return false;
     }
     return true;
@@ -46,11 +47,9 @@ static bool sees(const tm_poly_centroids *m, size_t f, const double point[3], do
 
 static bool is_seen(const tm_poly_centroids *m, size_t f)
 {
-    for (int s = 0; s < 2; s++) {
-        const uint32_t c = m->mesh->side[f][s];
-        if (c != TM_NONE && !sees(m, f, m->cell[c].centre, s == 0 ? 1 : -1))
+    for (int s = 0; s < 2; s++)
+        if (m->mesh->side[f][s] != TM_NONE && !tm_facet_is_seen(m, f, s))
             return false;
-    }
     return true;
 }
 

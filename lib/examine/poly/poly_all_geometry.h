@@ -10,4 +10,8 @@
  * O(corners²) for a facet that is no fan, O(facets²) for a cell that is convex. */
 void tm_poly_all_geometry(const tm_poly_centroids *m, tm_poly_finite_volume *out);
 
+/* Whether the centroid of a facet's first (0) or second (1) cell sees all triangles of the
+ * facet around its centroid. */
+bool tm_facet_is_seen(const tm_poly_centroids *m, size_t f, int s);
+
 #endif

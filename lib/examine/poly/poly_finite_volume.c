@@ -127,6 +127,24 @@ tm_status tm_poly_finite_volume_check(tm_poly_finite_volume *measures,
     return status;
 }
 
+tm_status tm_poly_find_unseen(bool *unseen, const tm_poly_arrays *mesh, tm_error *error)
+{
+    tm_poly_centroids m;
+    const tm_status status = tm_poly_centroids_find(&m, mesh, error);
+    for (size_t c = 0; c < mesh->cells; c++)
+        unseen[c] = false;
+    for (size_t f = 0; f < mesh->facets && status == TM_OK; f++)
+        for (int s = 0; s < 2 && tm_facet_fits(mesh, f); s++) {
+            const uint32_t c = mesh->side[f][s];
+            const double sign = s == 0 ? 1 : -1;
+            if (c != TM_NONE)
+                unseen[c] |= !tm_facet_is_seen(&m, f, s) ||
+                             !(tm_facet_pyramid(&m.face[f], m.cell[c].centre, sign) > 0);
+        }
+    tm_poly_centroids_free(&m);
+    return status;
+}
+
 tm_status tm_poly_finite_volume_measure(tm_poly_finite_volume *measures,
                                         const tm_poly_arrays *mesh, tm_error *error)
 {

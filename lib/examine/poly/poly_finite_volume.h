@@ -9,6 +9,7 @@
 #include "../../base/error.h"
 #include "../../mesh/poly_arrays.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 TM_EXTERN_C_BEGIN
@@ -66,6 +67,11 @@ tm_status tm_poly_finite_volume_measure(tm_poly_finite_volume *measures,
 /* The same, but only what checkMesh looks at without -allGeometry. O(corners). */
 tm_status tm_poly_finite_volume_check(tm_poly_finite_volume *measures,
                                       const tm_poly_arrays *mesh, tm_error *error);
+
+/* Tells of each cell whether its centroid does not see all of its facets, or has a
+ * pyramid that is not of positive volume. TM_ERROR_SYSTEM where memory is out.
+ * O(corners). */
+tm_status tm_poly_find_unseen(bool *unseen, const tm_poly_arrays *mesh, tm_error *error);
 
 TM_EXTERN_C_END
 
