@@ -114,5 +114,6 @@
 #include "poly/facets.h"
 #include "poly/join_cells.h"
 #include "poly/partition.h"
+#include "poly/dual/dual.h"
 
 #endif
