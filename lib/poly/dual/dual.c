@@ -194,14 +194,17 @@ tm_status tm_dual_make(tm_dual_blocks *made, const tm_tet_mesh *mesh,
     tm_status status = allocate(&d) ? TM_OK : tm_fail_memory(error);
     if (status == TM_OK)
         tm_dual_place_tets(&d);
-    for (bool first = true; status == TM_OK && (first || d.again); first = false) {
-        status = build(&d, error);
-        if (status == TM_OK && first)
+    for (int round = 0; status == TM_OK && (round < 2 || d.again); round++) {
+        if (round != 1 || d.again)
+            status = build(&d, error);
+        if (status == TM_OK && round == 0)
             status = tm_dual_flatten(&d, error);
-        if (status == TM_OK) {
+        if (status != TM_OK)
+            break;
+        if (round != 1 || d.again)
             tm_dual_place_cuts(&d);
-            status = tm_dual_improve(&d, report, error);
-        }
+        d.again = false;
+        status = tm_dual_improve(&d, round > 0, report, error);
     }
     if (status == TM_OK)
         status = write_blocks(&d, made, error);

@@ -33,8 +33,10 @@ static void join_across(tm_dual *d, uint32_t t, uint32_t k)
 static void touch_nodes(tm_dual *d)
 {
     const tm_tet_mesh *mesh = d->mesh;
-    for (size_t v = 0; v < mesh->nodes; v++)
+    for (size_t v = 0; v < mesh->nodes; v++) {
         d->touched[v] = d->level[v] != TM_DUAL_WHOLE;
+        d->has_cuts |= d->level[v] == TM_DUAL_PIECES;
+    }
     for (size_t f = 0; f < mesh->faces; f++)
         for (int i = 0; i < 3; i++)
             if (mesh->face[f].side[0] != TM_NONE || mesh->face[f].side[1] != TM_NONE)

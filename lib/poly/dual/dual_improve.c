@@ -11,14 +11,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_SWEEPS = 24, STEPS = 6 };
+enum { MOST_SWEEPS = 16, STEPS = 4 };
 
 /* The least barycentric coordinate that a point may have. */
 static const double least_coordinate = 0.03;
 
 typedef struct {
     tm_dual_vicinity v;
-    bool *active; /* [points] */
+    bool *active;    /* [points] */
+    uint8_t *missed; /* [points]: so many steps in a row were none */
     size_t moved;
 } improver;
 
@@ -75,6 +76,16 @@ static double coordinate(const double *const *corner, int corners, int i,
     return tm_dot(normal, to) / tm_dot(normal, height);
 }
 
+/* What is around the point is new: all points there are to be tried again. */
+static void forget_misses(improver *m)
+{
+    const tm_block *facet = &m->v.d->facet;
+    for (size_t k = 0; k < m->v.nears; k++)
+        for (size_t i = facet->start[m->v.near[k]]; i < facet->start[m->v.near[k] + 1];
+             i++)
+            m->missed[facet->item[i]] = 0;
+}
+
 /* Tries a step towards each corner and away from it. */
 static bool improve_point(improver *m, uint32_t p, double step)
 {
@@ -84,7 +95,7 @@ static bool improve_point(improver *m, uint32_t p, double step)
         return true;
     if (!tm_dual_vicinity_find(&m->v, p))
         return false;
-    tm_dual_score now = tm_dual_vicinity_judge(&m->v, NULL);
+    tm_dual_score now = tm_dual_vicinity_judge(&m->v);
     bool moved = false;
     for (int k = 0; k < 2 * corners && (now.worst > TM_DUAL_BAD || now.concave); k++) {
         const double by = k % 2 ? -step : step;
@@ -97,6 +108,9 @@ static bool improve_point(improver *m, uint32_t p, double step)
             inside = coordinate(corner, corners, i, to) >= least_coordinate;
         moved |= inside && tm_dual_vicinity_move(&m->v, p, to, &now);
     }
+    m->missed[p]++;
+    if (moved)
+        forget_misses(m);
     m->moved += moved;
     return true;
 }
@@ -143,15 +157,16 @@ static size_t mark_points(improver *m, bool all)
 
 static bool improve(improver *m)
 {
-    static const double steps[STEPS] = {0.1, 0.2, 0.05, 0.3, 0.1, 0.2};
+    static const double steps[STEPS] = {0.1, 0.2, 0.05, 0.3};
     const tm_dual *d = m->v.d;
     m->active = tm_new(d->points, sizeof *m->active);
-    bool done = m->active;
+    m->missed = calloc(d->points + 1, sizeof *m->missed);
+    bool done = m->active && m->missed;
     for (int sweep = 0; sweep < MOST_SWEEPS && done; sweep++) {
         if (mark_points(m, sweep > 1) == 0)
             break;
         for (uint32_t p = 0; p < d->points && done; p++)
-            if (m->active[p])
+            if (m->active[p] && m->missed[p] < STEPS)
                 done = improve_point(m, p, steps[sweep % STEPS]);
     }
     return done;
@@ -159,7 +174,7 @@ static bool improve(improver *m)
 
 /* Cuts the nodes whose cells have a wrong pyramid one level further, and counts what is
  * bad. */
-static void finish(improver *m, tm_dual_report *report)
+static void finish(improver *m, bool move, tm_dual_report *report)
 {
     tm_dual *d = m->v.d;
     report->wrong_pyramids = report->bad_facets = report->concave = 0;
@@ -171,7 +186,8 @@ static void finish(improver *m, tm_dual_report *report)
                 continue;
             report->wrong_pyramids++;
             uint8_t *level = &d->level[d->cell_node[c]];
-            if (*level == TM_DUAL_PIECES || *level == TM_DUAL_TO_CUT)
+            if (*level == TM_DUAL_PIECES || *level == TM_DUAL_TO_CUT ||
+                (!move && *level != TM_DUAL_WHOLE))
                 continue;
             *level = *level == TM_DUAL_WHOLE ? TM_DUAL_TO_CUT : TM_DUAL_PIECES;
             d->again = true;
@@ -184,17 +200,18 @@ static void finish(improver *m, tm_dual_report *report)
     report->moved += m->moved;
 }
 
-tm_status tm_dual_improve(tm_dual *d, tm_dual_report *report, tm_error *error)
+tm_status tm_dual_improve(tm_dual *d, bool move, tm_dual_report *report, tm_error *error)
 {
     improver m = {0};
     tm_status status = tm_dual_vicinity_make(&m.v, d, error);
-    if (status == TM_OK && !improve(&m))
+    if (status == TM_OK && move && !improve(&m))
         status = tm_fail_memory(error);
     if (status == TM_OK) {
-        finish(&m, report);
+        finish(&m, move, report);
         memcpy(d->tet_xyz, d->xyz, d->mesh->slots * sizeof *d->tet_xyz);
     }
     tm_dual_vicinity_free(&m.v);
     free(m.active);
+    free(m.missed);
     return status;
 }

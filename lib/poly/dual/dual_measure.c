@@ -4,6 +4,17 @@
 #include <math.h>
 #include <string.h>
 
+/* Inline, and of two of which one is NaN the second. */
+static inline double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+static inline double smaller(double a, double b)
+{
+    return a < b ? a : b;
+}
+
 void tm_dual_measure_face(const tm_dual *d, size_t f, tm_dual_face *face)
 {
     const size_t begin = d->facet.start[f], count = d->facet.start[f + 1] - begin;
@@ -88,7 +99,7 @@ static double skewness_of(const tm_dual_measures *m, size_t f, const double from
     double extent = sqrt(extent2 * length2);
     for (size_t i = dual->facet.start[f]; i < dual->facet.start[f + 1]; i++) {
         tm_subtract(direction, dual->xyz[dual->facet.item[i]], face->centre);
-        extent = fmax(extent, fabs(tm_dot(miss, direction)));
+        extent = larger(extent, fabs(tm_dot(miss, direction)));
     }
     return extent > 0 ? length2 / extent : 0;
 }
@@ -109,7 +120,7 @@ static double least_of_fan(const tm_dual_measures *m, size_t f, size_t apex,
     for (size_t k = 2; k < count && least > enough; k++) {
         tm_subtract(c, d->xyz[node[(apex + k) % count]], a);
         tm_cross(normal, b, c);
-        least = fmin(least, sign * tm_dot(normal, to) / pyramid);
+        least = smaller(least, sign * tm_dot(normal, to) / pyramid);
         memcpy(b, c, sizeof b);
     }
     return least;
@@ -128,9 +139,9 @@ static double best_fan(const tm_dual_measures *m, size_t f, const double pyramid
         double least = HUGE_VAL;
         for (int s = 0; s < 2 && least > best; s++)
             if (side[s] != TM_NONE)
-                least = fmin(least, least_of_fan(m, f, apex, m->centre[side[s]].at,
-                                                 s ? -1 : 1, pyramid[s], best));
-        best = fmax(best, least);
+                least = smaller(least, least_of_fan(m, f, apex, m->centre[side[s]].at,
+                                                    s ? -1 : 1, pyramid[s], best));
+        best = larger(best, least);
     }
     return best;
 }
@@ -153,7 +164,7 @@ static double least_around(const tm_dual_measures *m, size_t f, const double pyr
         tm_cross(normal, a, b);
         for (int s = 0; s < 2; s++)
             if (side[s] != TM_NONE)
-                least = fmin(least, (s ? -1 : 1) * tm_dot(normal, to[s]) / pyramid[s]);
+                least = smaller(least, (s ? -1 : 1) * tm_dot(normal, to[s]) / pyramid[s]);
         memcpy(a, b, sizeof a);
     }
     return least;
@@ -179,55 +190,95 @@ double tm_dual_judge_face(const tm_dual_measures *m, size_t f)
         tm_subtract(to[s], face->centre, m->centre[side[s]].at);
         height[s] = (s ? -1 : 1) * tm_dot(face->area, to[s]) / area;
         pyramid[s] = 2 * height[s] * area;
-        worst = fmax(worst, scaled(height[s] / tm_norm(to[s]), 0.25, 0.02));
+        worst = larger(worst, scaled(height[s] / tm_norm(to[s]), 0.25, 0.02));
     }
     double skew;
     if (inner) {
         const tm_dual_centre *e = &m->centre[side[1]];
         tm_subtract(line, e->at, c->at);
         const double cosine = tm_dot(line, face->area) / (tm_norm(line) * area);
-        worst = fmax(worst, scaled(cosine, 0.48, 0.35));
-        worst = fmax(worst, scaled(fmin(height[0], height[1]) / (height[0] + height[1]),
-                                   0.12, 0.055));
+        worst = larger(worst, scaled(cosine, 0.48, 0.35));
         worst =
-            fmax(worst, scaled(fmin(c->volume, e->volume) / fmax(c->volume, e->volume),
-                               0.02, 0.0105));
+            larger(worst, scaled(smaller(height[0], height[1]) / (height[0] + height[1]),
+                                 0.12, 0.055));
+        worst = larger(
+            worst, scaled(smaller(c->volume, e->volume) / larger(c->volume, e->volume),
+                          0.02, 0.0105));
         skew = skewness_of(m, f, c->at, line, 0.2);
     } else {
         for (int x = 0; x < 3; x++)
             line[x] = face->area[x] * height[0] / area;
         skew = skewness_of(m, f, c->at, line, 0.4);
     }
-    worst = fmax(worst, scaled(skew, 2, 3.8));
+    worst = larger(worst, scaled(skew, 2, 3.8));
     if (worst < 1)
-        worst = fmax(worst, scaled(least_around(m, f, pyramid), 0.01, 0.0005));
+        worst = larger(worst, scaled(least_around(m, f, pyramid), 0.01, 0.0005));
     if (worst < 1)
-        worst = fmax(worst, scaled(best_fan(m, f, pyramid), 0.01, 0.0005));
+        worst = larger(worst, scaled(best_fan(m, f, pyramid), 0.01, 0.0005));
     return worst;
+}
+
+/* A facet of a cell, seen from inside: n is its area vector, outward. */
+typedef struct {
+    double centre[3], n[3], square;
+    bool outer;
+} plane;
+
+enum { PLANES = 64 };
+
+/* What the planes a are to the centroids of b adds; returns the worst. */
+static double judge_planes(const plane *a, size_t as, const plane *b, size_t bs,
+                           double *sum)
+{
+    const double good = -0.02, bad = -0.001, heavy = 3;
+    double worst = -1;
+    for (size_t i = 0; i < as; i++)
+        for (size_t k = 0; k < bs; k++) {
+            double to[3];
+            if (a[i].outer && b[k].outer)
+                continue;
+            tm_subtract(to, b[k].centre, a[i].centre);
+            const double along = tm_dot(to, a[i].n),
+                         lengths2 = a[i].square * tm_norm2(to);
+            if ((along <= 0 && along * along >= good * good * lengths2) || lengths2 == 0)
+                continue;
+            const double x = scaled(along / sqrt(lengths2), good, bad);
+            worst = larger(worst, x);
+            *sum += x * x + (x > TM_DUAL_BAD ? heavy * (x - TM_DUAL_BAD) : 0);
+        }
+    return worst;
+}
+
+/* Takes up to PLANES facets of a cell, from place `from` on; how many. */
+static size_t take_planes(const tm_dual_measures *m, size_t c, size_t from, plane *p)
+{
+    const size_t end = m->cell->start[c + 1];
+    size_t count = 0;
+    for (; count < PLANES && from + count < end; count++) {
+        const size_t f = m->cell->item[from + count];
+        const tm_dual_face *face = &m->face[f];
+        const double sign = sign_of(m, f, c);
+        memcpy(p[count].centre, face->centre, sizeof p[count].centre);
+        for (int x = 0; x < 3; x++)
+            p[count].n[x] = sign * face->area[x];
+        p[count].square = tm_norm2(face->area);
+        p[count].outer = m->d->facet.integer[2 * f + 1] == TM_NONE;
+    }
+    return count;
 }
 
 double tm_dual_judge_cell(const tm_dual_measures *m, size_t c, double *sum)
 {
     const size_t begin = m->cell->start[c], end = m->cell->start[c + 1];
+    plane a[PLANES], b[PLANES];
     double worst = -1;
-    for (size_t i = begin; i < end; i++) {
-        const size_t f = m->cell->item[i];
-        const tm_dual_face *face = &m->face[f];
-        const double sign = sign_of(m, f, c), area2 = tm_norm2(face->area);
-        for (size_t k = begin; k < end; k++) {
-            double to[3];
-            const bool outer = m->d->facet.integer[2 * f + 1] == TM_NONE &&
-                               m->d->facet.integer[2 * m->cell->item[k] + 1] == TM_NONE;
-            if (k == i || outer)
-                continue;
-            tm_subtract(to, m->face[m->cell->item[k]].centre, face->centre);
-            const double along = sign * tm_dot(to, face->area);
-            const double limit2 = 0.0004 * area2 * tm_norm2(to);
-            if (along <= 0 && along * along >= limit2)
-                continue;
-            const double x = scaled(along / sqrt(area2 * tm_norm2(to)), -0.02, -0.001);
-            worst = fmax(worst, x);
-            *sum += x * x + (x > 0.9 ? 3 * (x - 0.9) : 0);
+    for (size_t i = begin, as; i < end; i += as) {
+        as = take_planes(m, c, i, a);
+        worst = larger(worst, judge_planes(a, as, a, as, sum));
+        for (size_t k = begin, bs; k < end && end - begin > PLANES; k += bs) {
+            bs = take_planes(m, c, k, b);
+            if (k != i)
+                worst = larger(worst, judge_planes(a, as, b, bs, sum));
         }
     }
     return worst;

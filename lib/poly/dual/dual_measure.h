@@ -5,6 +5,9 @@
 
 #include "dual_parts.h"
 
+/* Facets and cells are bad from here on: a little less than what is complained of. */
+#define TM_DUAL_BAD 0.9
+
 /* As poly_finite_volume.h defines them. */
 typedef struct tm_dual_face {
     double centre[3], area[3];

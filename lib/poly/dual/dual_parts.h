@@ -62,7 +62,7 @@ typedef struct tm_dual {
     double cosine;  /* of the feature angle */
     uint8_t *level; /* [nodes]: tm_dual_level */
     uint8_t *cuts; /* [pieces]: bit k: the face opposite corner k is cut at the piece's */
-    bool has_cuts;
+    bool has_cuts; /* faces that need not stay may be between cells of a node */
     size_t cut_nodes;
     bool again;    /* there are nodes to be cut */
     bool *touched; /* [nodes]: has constrained faces or is cut */

@@ -44,7 +44,8 @@ tm_status tm_dual_make_facets(tm_dual *d, tm_error *error);
 /* Makes facets plane. O(n). */
 tm_status tm_dual_flatten(tm_dual *d, tm_error *error);
 
-/* Moves points of bad facets; nodes with a wrong pyramid are to be cut further then. */
-tm_status tm_dual_improve(tm_dual *d, tm_dual_report *report, tm_error *error);
+/* Moves points of bad facets, if that is wanted; then nodes with a wrong pyramid are to
+ * be cut further, or only those that are whole. Counts what is bad. */
+tm_status tm_dual_improve(tm_dual *d, bool move, tm_dual_report *report, tm_error *error);
 
 #endif

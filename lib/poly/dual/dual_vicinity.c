@@ -5,7 +5,6 @@
 #include "../../stream/block.h"
 #include "../facets.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -67,6 +66,7 @@ void tm_dual_vicinity_free(tm_dual_vicinity *v)
     free(v->facet_stamp);
     free(v->cell_stamp);
     free(v->near);
+    free(v->watch);
     free(v->cell);
     free(v->was_face);
     free(v->was_centre);
@@ -110,28 +110,65 @@ bool tm_dual_vicinity_find(tm_dual_vicinity *v, uint32_t p)
     tm_dual_centre *centre =
         tm_grow(v->was_centre, &v->centre_room, v->cell_count, sizeof *centre);
     v->was_centre = centre ? centre : v->was_centre;
-    return done && face && centre;
+    uint32_t *watch = tm_grow(v->watch, &v->watch_room, v->nears, sizeof *watch);
+    v->watch = watch ? watch : v->watch;
+    return done && face && centre && watch;
 }
 
-tm_dual_score tm_dual_vicinity_judge(const tm_dual_vicinity *v,
-                                     const tm_dual_score *limit)
+/* Adds how bad a facet is. */
+static void add_to_score(tm_dual_score *s, double x)
 {
     const double heavy = 30;
+    if (!(x > 0))
+        return;
+    s->worst = x > s->worst ? x : s->worst;
+    s->sum += x * x + (x > TM_DUAL_BAD ? heavy * (x - TM_DUAL_BAD) : 0);
+}
+
+static bool is_beaten(const tm_dual_score *s, const tm_dual_score *limit)
+{
+    const double worst = limit->worst > TM_DUAL_BAD ? limit->worst : TM_DUAL_BAD;
+    return s->sum >= limit->sum || s->worst > worst;
+}
+
+static void add_cells(const tm_dual_vicinity *v, tm_dual_score *s,
+                      const tm_dual_score *limit)
+{
+    for (size_t k = 0; k < v->cell_count; k++) {
+        s->concave |= tm_dual_judge_cell(&v->m, v->cell[k], &s->sum) > TM_DUAL_BAD;
+        if (limit && s->sum >= limit->sum)
+            return;
+    }
+}
+
+tm_dual_score tm_dual_vicinity_judge(tm_dual_vicinity *v)
+{
+    const double calm = -0.15;
     tm_dual_score s = {0, 0, false};
+    v->watched = 0;
     for (size_t k = 0; k < v->nears; k++) {
         const double x = tm_dual_judge_face(&v->m, v->near[k]);
-        if (!(x > 0))
+        add_to_score(&s, x);
+        if (k >= v->own && !(x > calm))
             continue;
-        s.worst = fmax(s.worst, x);
-        s.sum += x * x + (x > TM_DUAL_BAD ? heavy * (x - TM_DUAL_BAD) : 0);
-        if (limit && (s.sum >= limit->sum || s.worst > fmax(limit->worst, TM_DUAL_BAD)))
-            return s;
+        v->watch[v->watched++] = v->near[k];
+        if (x > 0) { /* the bad ones first */
+            v->watch[v->watched - 1] = v->watch[0];
+            v->watch[0] = v->near[k];
+        }
     }
-    for (size_t k = 0; k < v->cell_count; k++) {
-        s.concave |= tm_dual_judge_cell(&v->m, v->cell[k], &s.sum) > TM_DUAL_BAD;
-        if (limit && s.sum >= limit->sum)
-            break;
-    }
+    add_cells(v, &s, NULL);
+    return s;
+}
+
+/* Judges what is watched, until that is not better than before any more. */
+static tm_dual_score judge_again(const tm_dual_vicinity *v, const tm_dual_score *limit)
+{
+    tm_dual_score s = {0, 0, false};
+    for (size_t k = 0; k < v->watched && !is_beaten(&s, limit); k++)
+        add_to_score(&s, tm_dual_judge_face(&v->m, v->watch[k]));
+    if (!is_beaten(&s, limit))
+        add_cells(v, &s, limit);
     return s;
 }
 
@@ -150,8 +187,8 @@ bool tm_dual_vicinity_move(tm_dual_vicinity *v, uint32_t p, const double to[3],
         v->was_centre[k] = v->m.centre[v->cell[k]];
         tm_dual_measure_centre(&v->m, v->cell[k], &v->m.centre[v->cell[k]]);
     }
-    const tm_dual_score after = tm_dual_vicinity_judge(v, now);
-    if (after.sum < now->sum && after.worst <= fmax(now->worst, TM_DUAL_BAD)) {
+    const tm_dual_score after = judge_again(v, now);
+    if (!is_beaten(&after, now)) {
         *now = after;
         return true;
     }

@@ -6,9 +6,6 @@
 
 #include "dual_measure.h"
 
-/* Facets and cells are bad from here on: a little less than what is complained of. */
-#define TM_DUAL_BAD 0.9
-
 /* How bad a vicinity is: the worst of its facets, and the sum of all that is not good;
  * whether a cell is not convex. */
 typedef struct tm_dual_score {
@@ -26,6 +23,8 @@ typedef struct tm_dual_vicinity {
     /* of a point */
     uint32_t *near; /* the facets that have it, `own` of them, then those of its cells */
     size_t own, nears, near_room;
+    uint32_t *watch; /* those that may become bad */
+    size_t watched, watch_room;
     uint32_t *cell;
     size_t cell_count, cell_room;
     tm_dual_face *was_face; /* before it was moved */
@@ -40,9 +39,9 @@ void tm_dual_vicinity_free(tm_dual_vicinity *v);
 /* Goes to a point; false where memory is out. */
 bool tm_dual_vicinity_find(tm_dual_vicinity *v, uint32_t p);
 
-/* Judges it, or stops where that is not better than `limit` any more, unless NULL. */
-tm_dual_score tm_dual_vicinity_judge(const tm_dual_vicinity *v,
-                                     const tm_dual_score *limit);
+/* Judges it. Facets that are good by far, and do not have the point, are not looked at
+ * again while the point is moved. */
+tm_dual_score tm_dual_vicinity_judge(tm_dual_vicinity *v);
 
 /* Moves the point there if that is better than *now, which is what it becomes. */
 bool tm_dual_vicinity_move(tm_dual_vicinity *v, uint32_t p, const double to[3],
