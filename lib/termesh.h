@@ -116,5 +116,6 @@
 #include "poly/join_cells.h"
 #include "poly/octant/join_octants.h"
 #include "poly/partition.h"
+#include "poly/dual/dual.h"
 
 #endif

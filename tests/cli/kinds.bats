@@ -65,6 +65,7 @@ octree-mesh     3 0 3 0 3 3 3 3 3
 octree-repair   3 3 3 3 3 3 0 0 3
 off-export      3 3 3 0 0 3 0 0 0
 openfoam-export 3 3 3 3 0 3 0 0 0
+poly-dual       3 3 3 3 0 0 3 3 3
 poly-stats      3 3 3 3 3 3 3 3 0
 polylla3d       3 3 3 3 0 0 3 3 3
 tet-stats       3 3 3 3 0 0 3 3 3

@@ -27,6 +27,7 @@ static const struct {
     {"tetgen-mesh", POINTS | SURFACE | PART},
     {"octree-mesh", SURFACE | PART},
     {"lepp-improve", TETRAHEDRA},
+    {"poly-dual", TETRAHEDRA},
     {"polylla3d", TETRAHEDRA | MIXED},
     {"octree-repair", MIXED},
     {"tet-stats", TETRAHEDRA},
