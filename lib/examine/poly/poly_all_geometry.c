@@ -11,89 +11,68 @@ static double height(const tm_poly_centroids *m, size_t f, const double from[3])
     return area > 0 ? fabs(tm_facet_pyramid(&m->face[f], from, 1)) / area : 0;
 }
 
-static void judge_weight(const tm_poly_centroids *m, size_t f, tm_poly_finite_volume *out)
+double tm_facet_weight(const tm_poly_centroids *m, size_t f)
 {
     const uint32_t *side = m->mesh->side[f];
     const double a = height(m, f, m->cell[side[0]].centre);
     const double b = height(m, f, m->cell[side[1]].centre);
-    const double weight = a + b > 0 ? fmin(a, b) / (a + b) : 0;
-    out->min_weight = fmin(out->min_weight, weight);
-    out->small_weights += weight < TM_FV_WEIGHT;
+    return a + b > 0 ? fmin(a, b) / (a + b) : 0;
 }
 
-static void judge_volumes(const tm_poly_centroids *m, size_t f,
-                          tm_poly_finite_volume *out)
+double tm_facet_volume_ratio(const tm_poly_centroids *m, size_t f)
 {
     const uint32_t *side = m->mesh->side[f];
     const double a = fabs(m->cell[side[0]].volume), b = fabs(m->cell[side[1]].volume);
-    const double most = fmax(a, b), ratio = most > 0 ? fmin(a, b) / most : 0;
-    out->min_volume_ratio = fmin(out->min_volume_ratio, ratio);
-    out->small_volume_ratios += ratio < TM_FV_VOLUME_RATIO;
+    const double most = fmax(a, b);
+    return most > 0 ? fmin(a, b) / most : 0;
 }
 
-bool tm_facet_is_seen(const tm_poly_centroids *m, size_t f, int s)
+/* Of the triangles of a facet around a point, but for those with its corner `base`. */
+static double least_sight(const tm_poly_centroids *m, size_t f, int s,
+                          const double point[3], size_t base)
 {
     const size_t count = tm_facet_corners(m->mesh, f);
-    const double *from = m->cell[m->mesh->side[f][s]].centre;
+    double least = HUGE_VAL, to[3];
+    tm_subtract(to, point, m->cell[m->mesh->side[f][s]].centre);
+    const double scale = tm_norm(to) * tm_norm(m->face[f].area) * (s == 0 ? 1 : -1);
+    if (scale == 0)
+        return 0;
     for (size_t i = 0; i < count; i++) {
-        const double volume = tm_tet_volume(
-            tm_facet_corner(m->mesh, f, i), tm_facet_corner(m->mesh, f, (i + 1) % count),
-            m->face[f].centre, from);
-        if (!(s == 0 ? volume < 0 : volume > 0))
-            return false;
+        double normal[3];
+        if (i == base || (i + 1) % count == base)
+            continue;
+        tm_triangle_normal(normal, point, tm_facet_corner(m->mesh, f, i),
+                           tm_facet_corner(m->mesh, f, (i + 1) % count));
+        least = fmin(least, tm_dot(normal, to) / scale);
     }
-    return true;
+    return least;
 }
 
-static bool is_seen(const tm_poly_centroids *m, size_t f)
+double tm_facet_sight(const tm_poly_centroids *m, size_t f, int s)
 {
-    for (int s = 0; s < 2; s++)
-        if (m->mesh->side[f][s] != TM_NONE && !tm_facet_is_seen(m, f, s))
-            return false;
-    return true;
+    return least_sight(m, f, s, m->face[f].centre, SIZE_MAX);
 }
 
-/* Whether both centroids see the facet as the fan of triangles around a corner. */
-static bool is_fan(const tm_poly_centroids *m, size_t f, size_t base)
+double tm_facet_fan(const tm_poly_centroids *m, size_t f, double enough)
 {
-    const size_t count = tm_facet_corners(m->mesh, f);
-    for (size_t i = 1; i + 1 < count; i++)
-        for (int s = 0; s < 2; s++) {
-            const uint32_t c = m->mesh->side[f][s];
-            if (c == TM_NONE)
-                continue;
-            const double volume = tm_tet_volume(
-                tm_facet_corner(m->mesh, f, base),
-                tm_facet_corner(m->mesh, f, (base + i) % count),
-                tm_facet_corner(m->mesh, f, (base + i + 1) % count), m->cell[c].centre);
-            if (!(s == 0 ? volume < 0 : volume > 0))
-                return false;
-        }
-    return true;
+    double best = -HUGE_VAL;
+    for (size_t base = 0; base < tm_facet_corners(m->mesh, f) && !(best > enough);
+         base++) {
+        double least = HUGE_VAL;
+        for (int s = 0; s < 2; s++)
+            if (m->mesh->side[f][s] != TM_NONE)
+                least = fmin(
+                    least, least_sight(m, f, s, tm_facet_corner(m->mesh, f, base), base));
+        best = fmax(best, least);
+    }
+    return best;
 }
 
-static bool has_fan(const tm_poly_centroids *m, size_t f)
-{
-    for (size_t base = 0; base < tm_facet_corners(m->mesh, f); base++)
-        if (is_fan(m, f, base))
-            return true;
-    return false;
-}
-
-static double determinant(const double a[3][3])
-{
-    double cross[3];
-    tm_cross(cross, a[1], a[2]);
-    return tm_dot(a[0], cross);
-}
-
-/* Of the sum of n n^T over the facets inside, where n is their area by the mean of these
- * areas. */
-static void judge_determinant(const tm_poly_centroids *m, size_t c,
-                              tm_poly_finite_volume *out)
+double tm_cell_determinant(const tm_poly_centroids *m, size_t c)
 {
     const tm_poly_arrays *mesh = m->mesh;
-    double sum[3][3] = {{0}}, mean = 0;
+    const double cube = 8; /* of a cube with all facets inside */
+    double sum[3][3] = {{0}}, mean = 0, cross[3];
     size_t inside = 0;
     for (size_t k = mesh->cell_start[c]; k < mesh->cell_start[c + 1]; k++) {
         const uint32_t f = mesh->cell_facet[k];
@@ -110,23 +89,26 @@ static void judge_determinant(const tm_poly_centroids *m, size_t c,
     for (int x = 0; x < 3; x++)
         for (int y = 0; y < 3; y++)
             sum[x][y] = mean > 0 ? sum[x][y] / mean / mean : 0;
-    const double cube = 8; /* of a cube with all facets inside */
-    const double found = fabs(determinant((const double(*)[3])sum)) / cube;
-    out->min_determinant = fmin(out->min_determinant, found);
-    out->small_determinants += found < TM_FV_DETERMINANT;
+    tm_cross(cross, sum[1], sum[2]);
+    return fabs(tm_dot(sum[0], cross)) / cube;
 }
 
-/* Whether a facet's centroid is beyond the plane of another one, or in it: so are, to
- * checkMesh, the facets around a hanging node. */
-static bool is_beyond(const tm_poly_centroids *m, uint32_t f, uint32_t other, size_t c)
+double tm_facet_beyond(const tm_poly_centroids *m, size_t f, size_t other, size_t c)
 {
     const tm_facet_centroid *at = &m->face[f];
-    const double sign = m->mesh->side[f][0] == c ? 1 : -1;
-    const double rounding = 1e-6;
     double to[3];
     tm_subtract(to, m->face[other].centre, at->centre);
     const double lengths = tm_norm(to) * tm_norm(at->area);
-    return lengths > 0 && sign * tm_dot(to, at->area) > -rounding * lengths;
+    const double sign = m->mesh->side[f][0] == c ? 1 : -1;
+    return lengths > 0 ? sign * tm_dot(to, at->area) / lengths : -1;
+}
+
+static bool is_seen(const tm_poly_centroids *m, size_t f)
+{
+    for (int s = 0; s < 2; s++)
+        if (m->mesh->side[f][s] != TM_NONE && !(tm_facet_sight(m, f, s) > 0))
+            return false;
+    return true;
 }
 
 static bool is_concave(const tm_poly_centroids *m, size_t c)
@@ -135,9 +117,23 @@ static bool is_concave(const tm_poly_centroids *m, size_t c)
     const size_t begin = mesh->cell_start[c], end = mesh->cell_start[c + 1];
     for (size_t i = begin; i < end; i++)
         for (size_t j = begin; j < end; j++)
-            if (i != j && is_beyond(m, mesh->cell_facet[i], mesh->cell_facet[j], c))
+            if (i != j && tm_facet_beyond(m, mesh->cell_facet[i], mesh->cell_facet[j],
+                                          c) > -TM_FV_PLANE)
                 return true;
     return false;
+}
+
+static void judge_facet(const tm_poly_centroids *m, size_t f, tm_poly_finite_volume *out)
+{
+    out->unseen += !is_seen(m, f);
+    out->no_fan += !(tm_facet_fan(m, f, 0) > 0);
+    if (m->mesh->side[f][1] == TM_NONE)
+        return;
+    const double weight = tm_facet_weight(m, f), ratio = tm_facet_volume_ratio(m, f);
+    out->min_weight = fmin(out->min_weight, weight);
+    out->small_weights += weight < TM_FV_WEIGHT;
+    out->min_volume_ratio = fmin(out->min_volume_ratio, ratio);
+    out->small_volume_ratios += ratio < TM_FV_VOLUME_RATIO;
 }
 
 void tm_poly_all_geometry(const tm_poly_centroids *m, tm_poly_finite_volume *out)
@@ -147,16 +143,13 @@ void tm_poly_all_geometry(const tm_poly_centroids *m, tm_poly_finite_volume *out
     for (size_t f = 0; f < m->mesh->facets; f++) {
         if (!tm_facet_fits(m->mesh, f))
             continue;
-        out->unseen += !is_seen(m, f);
-        out->no_fan += !has_fan(m, f);
-        if (m->mesh->side[f][1] == TM_NONE)
-            continue;
-        inside++;
-        judge_weight(m, f, out);
-        judge_volumes(m, f, out);
+        judge_facet(m, f, out);
+        inside += m->mesh->side[f][1] != TM_NONE;
     }
     for (size_t c = 0; c < m->mesh->cells; c++) {
-        judge_determinant(m, c, out);
+        const double determinant = tm_cell_determinant(m, c);
+        out->min_determinant = fmin(out->min_determinant, determinant);
+        out->small_determinants += determinant < TM_FV_DETERMINANT;
         out->concave += is_concave(m, c);
     }
     if (inside == 0)

@@ -78,18 +78,26 @@ static void add_pyramid(const tm_poly_centroids *m, size_t f, tm_cell_centroid *
         c->centre[x] += volume * (3 * m->face[f].centre[x] + c->mean[x]) / 4;
 }
 
+static void finish_mean(tm_cell_centroid *c)
+{
+    for (int x = 0; x < 3 && c->facets > 0; x++)
+        c->mean[x] /= (double)c->facets;
+}
+
+static void finish_centre(tm_cell_centroid *c)
+{
+    for (int x = 0; x < 3; x++)
+        c->centre[x] = c->volume != 0 ? c->centre[x] / (3 * c->volume) : c->mean[x];
+}
+
 static void measure_cells(const tm_poly_centroids *m)
 {
     for_sides(m, add_face);
     for (size_t c = 0; c < m->mesh->cells; c++)
-        for (int x = 0; x < 3 && m->cell[c].facets > 0; x++)
-            m->cell[c].mean[x] /= (double)m->cell[c].facets;
+        finish_mean(&m->cell[c]);
     for_sides(m, add_pyramid);
     for (size_t c = 0; c < m->mesh->cells; c++)
-        for (int x = 0; x < 3; x++)
-            m->cell[c].centre[x] = m->cell[c].volume != 0
-                                       ? m->cell[c].centre[x] / (3 * m->cell[c].volume)
-                                       : m->cell[c].mean[x];
+        finish_centre(&m->cell[c]);
 }
 
 tm_status tm_poly_centroids_find(tm_poly_centroids *c, const tm_poly_arrays *mesh,
@@ -107,6 +115,27 @@ tm_status tm_poly_centroids_find(tm_poly_centroids *c, const tm_poly_arrays *mes
     }
     measure_cells(c);
     return TM_OK;
+}
+
+void tm_facet_centroid_find(const tm_poly_centroids *c, size_t f)
+{
+    measure_face(c->mesh, f, &c->face[f]);
+}
+
+void tm_cell_centroid_find(const tm_poly_centroids *c, size_t cell)
+{
+    const tm_poly_arrays *mesh = c->mesh;
+    const size_t begin = mesh->cell_start[cell], end = mesh->cell_start[cell + 1];
+    tm_cell_centroid *out = &c->cell[cell];
+    *out = (tm_cell_centroid){{0}, 0, {0}, 0};
+    for (size_t i = begin; i < end; i++)
+        add_face(c, mesh->cell_facet[i], out, 0);
+    finish_mean(out);
+    for (size_t i = begin; i < end; i++) {
+        const uint32_t f = mesh->cell_facet[i];
+        add_pyramid(c, f, out, mesh->side[f][0] == cell ? 1 : -1);
+    }
+    finish_centre(out);
 }
 
 void tm_poly_centroids_free(tm_poly_centroids *c)

@@ -36,6 +36,11 @@ tm_status tm_poly_centroids_find(tm_poly_centroids *c, const tm_poly_arrays *mes
                                  tm_error *error);
 void tm_poly_centroids_free(tm_poly_centroids *c);
 
+/* Finds the centroid of one facet again, and of one cell from those of its facets, as
+ * cell_facet has them; where nodes have moved. */
+void tm_facet_centroid_find(const tm_poly_centroids *c, size_t f);
+void tm_cell_centroid_find(const tm_poly_centroids *c, size_t cell);
+
 static inline const double *tm_facet_corner(const tm_poly_arrays *mesh, size_t f,
                                             size_t i)
 {

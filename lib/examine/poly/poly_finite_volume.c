@@ -138,7 +138,7 @@ tm_status tm_poly_find_unseen(bool *unseen, const tm_poly_arrays *mesh, tm_error
             const uint32_t c = mesh->side[f][s];
             const double sign = s == 0 ? 1 : -1;
             if (c != TM_NONE)
-                unseen[c] |= !tm_facet_is_seen(&m, f, s) ||
+                unseen[c] |= !(tm_facet_sight(&m, f, s) > 0) ||
                              !(tm_facet_pyramid(&m.face[f], m.cell[c].centre, sign) > 0);
         }
     tm_poly_centroids_free(&m);

@@ -21,6 +21,7 @@ TM_EXTERN_C_BEGIN
 #define TM_FV_WEIGHT       0.05
 #define TM_FV_VOLUME_RATIO 0.01
 #define TM_FV_DETERMINANT  0.001
+#define TM_FV_PLANE        1e-6
 
 /* All are 0 where there is nothing to be measured. */
 typedef struct tm_poly_finite_volume {
