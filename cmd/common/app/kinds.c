@@ -27,7 +27,7 @@ static const struct {
     {"tetgen-mesh", POINTS | SURFACE | PART},
     {"octree-mesh", SURFACE | PART},
     {"lepp-improve", TETRAHEDRA},
-    {"polylla3d", TETRAHEDRA | MIXED},
+    {"polylla3d", TETRAHEDRA | MIXED | POLYHEDRA},
     {"octree-repair", MIXED},
     {"tet-stats", TETRAHEDRA},
     {"jens-stats", TETRAHEDRA | MIXED},
