@@ -51,9 +51,10 @@ static const char own_help[] =
     "      --mode MODE     how tetrahedra are joined: terminal (default), one "
     "polyhedron\n"
     "                      for each terminal edge; edge, by their longest edge; face,\n"
-    "                      across their best face; cavity, by their circumcentres;\n"
+    "                      across their best face; terminal-face, the same with\n"
+    "                      what comes near again; cavity, by their circumcentres;\n"
     "                      compact, to round cells of even size\n"
-    "      --face-metric M the best face of --mode face: area (default) or inradius\n"
+    "      --face-metric M the best face of these: area (default) or inradius\n"
     "      --cells N       compact: about N of them\n"
     "      --size H        compact: about as large as cubes of side H\n"
     "      --partition[=K] those with one value of attribute K, from 1; the last one\n"
@@ -174,8 +175,8 @@ static settings read_options(filter *f)
     if (is_sized != (p->mode == TM_POLY_COMPACT) || (p->cells > 0 && p->size > 0))
         filter_usage_error(f, "--mode compact needs one of --cells and --size, which are "
                               "for it alone");
-    if (has_metric && p->mode != TM_POLY_FACE)
-        filter_usage_error(f, "--face-metric is for --mode face");
+    if (has_metric && p->mode != TM_POLY_FACE && p->mode != TM_POLY_TERMINAL_FACE)
+        filter_usage_error(f, "--face-metric is for the modes face and terminal-face");
     if (!p->repair && (p->star || p->absorb || p->no_swallow || p->max_tets || o.merge))
         filter_usage_error(f, "--star, --absorb, --no-swallow, --max-tets and "
                               "--merge-coplanar are of the repair: not with --no-repair");
@@ -459,12 +460,13 @@ int main(int argc, char **argv)
 {
     filter f = {
         .name = "polylla3d",
-        .synopsis = "[--mode terminal|edge|face|cavity|compact] [--cells N | "
-                    "--size H | --partition[=K]] [--no-repair] [--star[=R|=centroid]] "
-                    "[--absorb] [--max-tets N] [--no-swallow] "
-                    "[--merge-coplanar[=DEG]] [--ignore-markers] [--label] "
-                    "[--levels N] "
-                    "[--face-metric area|inradius] [FILE]",
+        .synopsis =
+            "[--mode terminal|edge|face|terminal-face|cavity|compact] [--cells N | "
+            "--size H | --partition[=K]] [--no-repair] [--star[=R|=centroid]] "
+            "[--absorb] [--max-tets N] [--no-swallow] "
+            "[--merge-coplanar[=DEG]] [--ignore-markers] [--label] "
+            "[--levels N] "
+            "[--face-metric area|inradius] [FILE]",
         .purpose =
             "Joins tetrahedra, the elements of each octant, or polyhedra to polyhedra.",
         .help = own_help,

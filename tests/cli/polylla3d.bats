@@ -240,6 +240,7 @@ grid() {
 --absorb --merge-coplanar
 --mode edge
 --mode face
+--mode terminal-face --star
 --mode face --face-metric inradius --no-swallow
 --mode cavity --star --absorb --merge-coplanar
 --max-tets 7
@@ -249,7 +250,7 @@ END
 
 @test "without repair: the regions as they are, nothing lost" {
     local mode
-    for mode in terminal edge face cavity; do
+    for mode in terminal edge face terminal-face cavity; do
         polylla3d -q --no-repair --mode $mode --json "$out/$mode" points.tm >"$out/poly.tm"
         python3 judge.py "$out/poly.tm" points.tm
         [ "$(json "$out/$mode" regions)" -eq "$(json "$out/$mode" polyhedra)" ]
@@ -276,6 +277,58 @@ END
     read -r terminal longest <"$out/counts"
     [ "$(json "$out/terminal" regions)" -eq "$terminal" ]
     [ "$(json "$out/edge" regions)" -eq "$longest" ]
+}
+
+@test "--mode face: joined across best faces, and no others are inside; about 3 each" {
+    local mesh metric
+    for mesh in points sphere grid; do
+        for metric in area inradius; do
+            polylla3d -q --no-repair --mode face --face-metric $metric --label $mesh.tm >"$out/face.tm"
+            polylla3d -q --no-repair --mode terminal-face --face-metric $metric --label $mesh.tm >"$out/region.tm"
+            python3 - "$out/face.tm" "$out/region.tm" $metric <<'END'
+import itertools, math, sys
+def rows(path, name):
+    lines = iter(open(path))
+    for line in lines:
+        if line.strip() == name:
+            return [next(lines).split() for _ in range(int(next(lines).split()[0]))]
+xyz = {row[0]: [float(x) for x in row[1:4]] for row in rows(sys.argv[1], '.node')}
+tets = [frozenset(row[1:5]) for row in rows(sys.argv[1], '.ele')]
+cell, region = ([row[-1] for row in rows(path, '.ele')] for path in sys.argv[1:3])
+def metric(face):
+    a, b, c = (xyz[v] for v in face)
+    sides = [math.dist(a, b), math.dist(b, c), math.dist(c, a)]
+    u, w = ([q - p for p, q in zip(a, x)] for x in (b, c))
+    area = math.hypot(*(u[k - 2] * w[k - 1] - u[k - 1] * w[k - 2] for k in range(3))) / 2
+    return area if sys.argv[3] == 'area' else 2 * area / sum(sides)
+best, at = [], {}
+for t, tet in enumerate(tets):
+    faces = [frozenset(f) for f in itertools.combinations(tet, 3)]
+    most = max(map(metric, faces))
+    best.append({f for f in faces if metric(f) >= most * (1 - 1e-12)})
+    for f in faces:
+        at.setdefault(f, []).append(t)
+inside = links = 0
+for f, sides in at.items():
+    if len(sides) == 2 and cell[sides[0]] == cell[sides[1]]:
+        assert f in best[sides[0]] | best[sides[1]], 'a barrier face'
+        assert region[sides[0]] == region[sides[1]]
+        inside += 1
+    if len(sides) == 2 and region[sides[0]] == region[sides[1]]:
+        links += f in best[sides[0]] | best[sides[1]]
+assert len(tets) - inside == len(set(cell)), 'each is a tree of faces'
+assert len(set(cell)) >= len(set(region))
+assert links >= len(tets) - len(set(region))
+END
+        done
+    done
+    # As the paper has it, 70 % less than the tetrahedra.
+    polylla3d -q --mode face --no-repair --json "$out/json" points.tm >"$out/poly.tm"
+    awk -v n="$(json "$out/json" polyhedra)" -v tets="$(json "$out/json" tets)" \
+        'BEGIN { exit !(tets / n > 2.8 && tets / n < 4.2) }'
+    polylla3d -q --mode terminal-face --no-repair --json "$out/json" points.tm >"$out/poly.tm"
+    awk -v n="$(json "$out/json" polyhedra)" -v tets="$(json "$out/json" tets)" \
+        'BEGIN { exit !(tets / n > 5) }'
 }
 
 @test "regions and marked faces are between polyhedra, but for --ignore-markers" {
