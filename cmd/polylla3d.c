@@ -4,6 +4,7 @@
 #include "common/input/tet_input.h"
 
 #include "../lib/mesh/cell_faces.h"
+#include "../lib/poly/cluster/clusters.h"
 #include "../lib/poly/facets.h"
 #include "../lib/poly/given.h"
 #include "../lib/poly/octant/join_octants.h"
@@ -19,6 +20,7 @@ enum {
     CELLS,
     SIZE,
     PARTITION,
+    LEVELS,
     NO_REPAIR,
     STAR,
     ABSORB,
@@ -35,6 +37,7 @@ static const struct option options[] = {
     {"cells", required_argument, NULL, CELLS},
     {"size", required_argument, NULL, SIZE},
     {"partition", optional_argument, NULL, PARTITION},
+    {"levels", required_argument, NULL, LEVELS},
     {"no-repair", no_argument, NULL, NO_REPAIR},
     {"star", optional_argument, NULL, STAR},
     {"absorb", no_argument, NULL, ABSORB},
@@ -49,9 +52,10 @@ static const char own_help[] =
     "      --mode MODE     how tetrahedra are joined: terminal (default), one "
     "polyhedron\n"
     "                      for each terminal edge; edge, by their longest edge; face,\n"
-    "                      across their best face; cavity, by their circumcentres;\n"
+    "                      across their best face; terminal-face, the same with\n"
+    "                      what comes near again; cavity, by their circumcentres;\n"
     "                      compact, to round cells of even size\n"
-    "      --face-metric M the best face of --mode face: area (default) or inradius\n"
+    "      --face-metric M the best face of these: area (default) or inradius\n"
     "      --cells N       compact: about N of them\n"
     "      --size H        compact: about as large as cubes of side H\n"
     "      --partition[=K] those with one value of attribute K, from 1; the last one\n"
@@ -64,6 +68,7 @@ static const char own_help[] =
     "      --merge-coplanar[=DEG]  join faces between the same polyhedra that are in "
     "one\n"
     "                      plane, or whose normals differ by DEG at most\n"
+    "      --levels N      N coarser levels, each of an eighth of the polyhedra or so\n"
     "      --ignore-markers  join across marked faces inside\n"
     "      --label         write the tetrahedra, with their polyhedron as attribute\n";
 
@@ -72,7 +77,9 @@ typedef struct {
     bool partition;   /* is given, */
     size_t attribute; /* by this one, from 1; 0: the last one */
     bool merge, ignore_markers, label;
-    bool any;       /* of the options is given */
+    size_t levels;  /* coarser ones */
+    bool any;       /* of the other options is given */
+    bool for_tets;  /* one that is for tetrahedra alone */
     double degrees; /* of --merge-coplanar */
 } settings;
 
@@ -99,6 +106,15 @@ static void set_star(filter *f, tm_poly_options *p)
     }
 }
 
+enum { most_levels = 30 }; /* of a half each there would be 2^30 */
+
+/* Whether an option is for polyhedra, too. */
+static bool is_for_polyhedra(int c)
+{
+    return c == CELLS || c == SIZE || c == MODE || c == NO_REPAIR || c == STAR ||
+           c == LEVELS || c == IGNORE_MARKERS;
+}
+
 static void set_option(filter *f, settings *o, int c)
 {
     tm_poly_options *p = &o->poly;
@@ -110,6 +126,8 @@ static void set_option(filter *f, settings *o, int c)
         p->cells = (size_t)filter_integer(f, "--cells", optarg, 1, INT32_MAX);
     else if (c == SIZE)
         p->size = filter_number(f, "--size", optarg, DBL_MIN, DBL_MAX);
+    else if (c == LEVELS)
+        o->levels = (size_t)filter_integer(f, "--levels", optarg, 1, most_levels);
     else if (c == PARTITION) {
         o->partition = true;
         if (optarg)
@@ -142,7 +160,8 @@ static settings read_options(filter *f)
     int c;
     while ((c = filter_option(f)) != -1) {
         set_option(f, &o, c);
-        o.any = true;
+        o.any |= c != LEVELS;
+        o.for_tets |= !is_for_polyhedra(c);
         has_metric |= c == FACE_METRIC;
         has_mode |= c == MODE;
     }
@@ -157,11 +176,14 @@ static settings read_options(filter *f)
     if (is_sized != (p->mode == TM_POLY_COMPACT) || (p->cells > 0 && p->size > 0))
         filter_usage_error(f, "--mode compact needs one of --cells and --size, which are "
                               "for it alone");
-    if (has_metric && p->mode != TM_POLY_FACE)
-        filter_usage_error(f, "--face-metric is for --mode face");
+    if (has_metric && p->mode != TM_POLY_FACE && p->mode != TM_POLY_TERMINAL_FACE)
+        filter_usage_error(f, "--face-metric is for the modes face and terminal-face");
     if (!p->repair && (p->star || p->absorb || p->no_swallow || p->max_tets || o.merge))
         filter_usage_error(f, "--star, --absorb, --no-swallow, --max-tets and "
                               "--merge-coplanar are of the repair: not with --no-repair");
+    if (o.label && o.levels > 0)
+        filter_usage_error(f, "--levels is of polyhedra: --label writes none");
+    o.for_tets |= (has_mode && p->mode != TM_POLY_COMPACT) || p->star == TM_STAR_CENTROID;
     o.poly.progress = filter_progress(f);
     if (o.label && o.merge)
         filter_usage_error(f, "--merge-coplanar is for faces: --label writes none");
@@ -211,7 +233,7 @@ static void put_labels(filter *f, tm_stream *stream, const tm_partition *partiti
 /* What was done, for the note, the history and --json. */
 typedef struct {
     tm_poly_report poly;
-    size_t facets, joined, lost;
+    size_t facets, joined, lost, levels;
     size_t unfit; /* of octants: what finite volume methods mind */
     char faults[256];
 } result;
@@ -311,6 +333,63 @@ static void join_octants(filter *f, tm_stream *stream, bool has_options, result 
     r->joined = join.joined;
 }
 
+/* Joins polyhedra, unless only levels of them are asked for. */
+static void join_polyhedra(filter *f, tm_stream *stream, const settings *o, result *r)
+{
+    static const char *const gone[] = {".cell", ".facet"};
+    tm_error error;
+    tm_cell_faces faces = {0};
+    const tm_block *node = tm_stream_find(stream, ".node");
+    const tm_block *old = tm_stream_find(stream, ".cell");
+    tm_block made[2] = {{.name = ".facet", .kind = TM_FACET},
+                        {.name = ".cell", .kind = TM_CELL}};
+    r->poly = (tm_poly_report){.tets = old->count, .cells = old->count};
+    if (o->for_tets) {
+        tm_fail_at(
+            &error, TM_ERROR_INPUT, filter_input_name(f), 0, NULL,
+            "has polyhedra, which are joined by --cells, --size, --star, --levels, "
+            "--ignore-markers: other options are for tetrahedra");
+        filter_fail(f, &error);
+    }
+    if (o->levels > 0 && !o->any)
+        return;
+    uint32_t *label = malloc((old->count + 1) * sizeof *label);
+    tm_status status =
+        label ? tm_cell_faces_find(&faces, stream, &error) : tm_fail_memory(&error);
+    const tm_cluster_mesh mesh = {.faces = &faces,
+                                  .nodes = node->count,
+                                  .xyz = (const double(*)[3])node->real,
+                                  .attributes = old->attributes,
+                                  .attribute = old->attribute,
+                                  .ignore_markers = o->ignore_markers};
+    if (status == TM_OK)
+        status = tm_cluster_cells(&mesh, &o->poly, label, &r->poly, &error);
+    if (status == TM_OK)
+        status =
+            tm_cluster_blocks(&mesh, label, r->poly.cells, &made[0], &made[1], &error);
+    if (status != TM_OK)
+        filter_fail(f, &error);
+    r->facets = made[0].count;
+    tm_cell_faces_free(&faces);
+    free(label);
+    put_blocks(f, stream, gone, sizeof gone / sizeof *gone, made);
+}
+
+/* Adds levels to the polyhedra of the stream. */
+static void add_levels(filter *f, tm_stream *stream, const settings *o, result *r)
+{
+    tm_error error;
+    tm_poly_options poly = o->poly;
+    if (poly.star == TM_STAR_CENTROID)
+        poly.star = TM_NO_STAR;
+    if (o->levels > 0 && tm_cluster_levels(stream, o->levels, &poly, o->ignore_markers,
+                                           &r->levels, &error) != TM_OK)
+        filter_fail(f, &error);
+    if (r->levels < o->levels)
+        filter_note(f, "%zu levels are all: on the last one nothing can be joined",
+                    r->levels);
+}
+
 /* Makes polyhedra of the stream's tetrahedra. */
 static void convert(filter *f, tm_stream *stream, const settings *o, result *r)
 {
@@ -368,12 +447,15 @@ int main(int argc, char **argv)
 {
     filter f = {
         .name = "polylla3d",
-        .synopsis = "[--mode terminal|edge|face|cavity|compact] [--cells N | "
-                    "--size H | --partition[=K]] [--no-repair] [--star[=R|=centroid]] "
-                    "[--absorb] [--max-tets N] [--no-swallow] "
-                    "[--merge-coplanar[=DEG]] [--ignore-markers] [--label] "
-                    "[--face-metric area|inradius] [FILE]",
-        .purpose = "Joins tetrahedra, or the elements of each octant, to polyhedra.",
+        .synopsis =
+            "[--mode terminal|edge|face|terminal-face|cavity|compact] [--cells N | "
+            "--size H | --partition[=K]] [--no-repair] [--star[=R|=centroid]] "
+            "[--absorb] [--max-tets N] [--no-swallow] "
+            "[--merge-coplanar[=DEG]] [--ignore-markers] [--label] "
+            "[--levels N] "
+            "[--face-metric area|inradius] [FILE]",
+        .purpose =
+            "Joins tetrahedra, the elements of each octant, or polyhedra to polyhedra.",
         .help = own_help,
         .options = options,
         .words = option_words,
@@ -385,11 +467,14 @@ int main(int argc, char **argv)
     filter_read(&f, &stream);
 
     result r = {0};
-    const bool mixed = tm_content_of(&stream) == TM_CONTENT_MIXED;
-    if (mixed)
+    const tm_content content = tm_content_of(&stream);
+    if (content == TM_CONTENT_MIXED)
         join_octants(&f, &stream, o.any, &r);
+    else if (content == TM_CONTENT_POLYHEDRA)
+        join_polyhedra(&f, &stream, &o, &r);
     else
         convert(&f, &stream, &o, &r);
+    add_levels(&f, &stream, &o, &r);
     drop_unknown_blocks(&f, &stream, "the elements are polyhedra now");
     if (r.lost > 0)
         filter_note(&f, "%zu marked faces are inside of a polyhedron and dropped",
@@ -402,7 +487,7 @@ int main(int argc, char **argv)
                     o.poly.star == TM_STAR_RADIUS
                         ? "tetrahedra that are too flat for the radius"
                         : "flat tetrahedra");
-    if (10 * r.poly.single > r.poly.cells)
+    if (10 * r.poly.single > r.poly.cells && content != TM_CONTENT_POLYHEDRA)
         filter_note(&f,
                     "%zu polyhedra are of one tetrahedron: with any beside it they would "
                     "be no stars, or no balls",
@@ -410,8 +495,14 @@ int main(int argc, char **argv)
     char summary[256];
     double cells = (double)r.poly.cells;
     snprintf(summary, sizeof summary, "%zu %s -> %zu polyhedra, %.2f each", r.poly.tets,
-             mixed ? "elements" : "tetrahedra", r.poly.cells,
-             cells > 0 ? (double)r.poly.tets / cells : 0);
+             content == TM_CONTENT_MIXED       ? "elements"
+             : content == TM_CONTENT_POLYHEDRA ? "polyhedra"
+                                               : "tetrahedra",
+             r.poly.cells, cells > 0 ? (double)r.poly.tets / cells : 0);
+    if (r.levels > 0) {
+        const size_t used = strlen(summary);
+        snprintf(summary + used, sizeof summary - used, ", %zu coarser levels", r.levels);
+    }
     filter_note(&f, "%s", summary);
     write_json(&f, &r);
     filter_write(&f, &stream, "%s", summary);

@@ -22,9 +22,10 @@ TM_EXTERN_C_BEGIN
 typedef enum tm_poly_mode {
     TM_POLY_TERMINAL, /* one for each terminal edge: fans and their outlets */
     TM_POLY_EDGE,     /* tetrahedra with one longest edge: what the 2022 program did */
-    TM_POLY_FACE,     /* joined across the best face of each tetrahedron */
-    TM_POLY_CAVITY,   /* circumcentres in the circumscribed sphere of a seed */
-    TM_POLY_COMPACT,  /* compact ones of even size: compact.h */
+    TM_POLY_FACE,     /* joined across best faces, no barrier face left: best_faces.h */
+    TM_POLY_TERMINAL_FACE, /* the same with barrier faces as if they were none */
+    TM_POLY_CAVITY,        /* circumcentres in the circumscribed sphere of a seed */
+    TM_POLY_COMPACT,       /* compact ones of even size: compact.h */
     TM_POLY_MODES
 } tm_poly_mode;
 

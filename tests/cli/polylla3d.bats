@@ -240,6 +240,7 @@ grid() {
 --absorb --merge-coplanar
 --mode edge
 --mode face
+--mode terminal-face --star
 --mode face --face-metric inradius --no-swallow
 --mode cavity --star --absorb --merge-coplanar
 --max-tets 7
@@ -249,7 +250,7 @@ END
 
 @test "without repair: the regions as they are, nothing lost" {
     local mode
-    for mode in terminal edge face cavity; do
+    for mode in terminal edge face terminal-face cavity; do
         polylla3d -q --no-repair --mode $mode --json "$out/$mode" points.tm >"$out/poly.tm"
         python3 judge.py "$out/poly.tm" points.tm
         [ "$(json "$out/$mode" regions)" -eq "$(json "$out/$mode" polyhedra)" ]
@@ -276,6 +277,58 @@ END
     read -r terminal longest <"$out/counts"
     [ "$(json "$out/terminal" regions)" -eq "$terminal" ]
     [ "$(json "$out/edge" regions)" -eq "$longest" ]
+}
+
+@test "--mode face: joined across best faces, and no others are inside; about 3 each" {
+    local mesh metric
+    for mesh in points sphere grid; do
+        for metric in area inradius; do
+            polylla3d -q --no-repair --mode face --face-metric $metric --label $mesh.tm >"$out/face.tm"
+            polylla3d -q --no-repair --mode terminal-face --face-metric $metric --label $mesh.tm >"$out/region.tm"
+            python3 - "$out/face.tm" "$out/region.tm" $metric <<'END'
+import itertools, math, sys
+def rows(path, name):
+    lines = iter(open(path))
+    for line in lines:
+        if line.strip() == name:
+            return [next(lines).split() for _ in range(int(next(lines).split()[0]))]
+xyz = {row[0]: [float(x) for x in row[1:4]] for row in rows(sys.argv[1], '.node')}
+tets = [frozenset(row[1:5]) for row in rows(sys.argv[1], '.ele')]
+cell, region = ([row[-1] for row in rows(path, '.ele')] for path in sys.argv[1:3])
+def metric(face):
+    a, b, c = (xyz[v] for v in face)
+    sides = [math.dist(a, b), math.dist(b, c), math.dist(c, a)]
+    u, w = ([q - p for p, q in zip(a, x)] for x in (b, c))
+    area = math.hypot(*(u[k - 2] * w[k - 1] - u[k - 1] * w[k - 2] for k in range(3))) / 2
+    return area if sys.argv[3] == 'area' else 2 * area / sum(sides)
+best, at = [], {}
+for t, tet in enumerate(tets):
+    faces = [frozenset(f) for f in itertools.combinations(tet, 3)]
+    most = max(map(metric, faces))
+    best.append({f for f in faces if metric(f) >= most * (1 - 1e-12)})
+    for f in faces:
+        at.setdefault(f, []).append(t)
+inside = links = 0
+for f, sides in at.items():
+    if len(sides) == 2 and cell[sides[0]] == cell[sides[1]]:
+        assert f in best[sides[0]] | best[sides[1]], 'a barrier face'
+        assert region[sides[0]] == region[sides[1]]
+        inside += 1
+    if len(sides) == 2 and region[sides[0]] == region[sides[1]]:
+        links += f in best[sides[0]] | best[sides[1]]
+assert len(tets) - inside == len(set(cell)), 'each is a tree of faces'
+assert len(set(cell)) >= len(set(region))
+assert links >= len(tets) - len(set(region))
+END
+        done
+    done
+    # As the paper has it, 70 % less than the tetrahedra.
+    polylla3d -q --mode face --no-repair --json "$out/json" points.tm >"$out/poly.tm"
+    awk -v n="$(json "$out/json" polyhedra)" -v tets="$(json "$out/json" tets)" \
+        'BEGIN { exit !(tets / n > 2.8 && tets / n < 4.2) }'
+    polylla3d -q --mode terminal-face --no-repair --json "$out/json" points.tm >"$out/poly.tm"
+    awk -v n="$(json "$out/json" polyhedra)" -v tets="$(json "$out/json" tets)" \
+        'BEGIN { exit !(tets / n > 5) }'
 }
 
 @test "regions and marked faces are between polyhedra, but for --ignore-markers" {
@@ -515,6 +568,90 @@ print('\n'.join(lines))
 END
 }
 
+@test "polyhedra are joined again: balls, or stars, and nothing is lost" {
+    local mesh options
+    for mesh in points sphere boxes ring grid; do
+        polylla3d -q --star $mesh.tm >"$out/star.tm"
+        while read -r options; do
+            # shellcheck disable=SC2086 # words
+            polylla3d -q --no-history $options --json "$out/json" "$out/star.tm" >"$out/poly.tm"
+            python3 judge.py "$out/poly.tm" $mesh.tm simple
+            [ "$(json "$out/json" polyhedra)" -le "$(json "$out/json" tets)" ]
+            poly-stats --json "$out/stats" "$out/poly.tm" >"$out/table"
+            [[ $options != *--star* || $(json "$out/stats" not_star_shaped) -eq 0 ]]
+        done <<'END'
+
+--cells 10
+--size 0.7 --star
+--star=0.02
+END
+    done
+    # About an eighth, or as many as asked for; two regions stay two.
+    polylla3d -q --mode edge points.tm >"$out/edge.tm"
+    polylla3d -q --json "$out/json" "$out/edge.tm" >"$out/poly.tm"
+    awk -v a="$(json "$out/json" tets)" -v b="$(json "$out/json" polyhedra)" \
+        'BEGIN { exit !(b > a / 16 && b < a / 4) }'
+    polylla3d -q --cells 50 --no-repair --json "$out/json" "$out/edge.tm" >"$out/poly.tm"
+    [ "$(json "$out/json" polyhedra)" -eq 50 ]
+    polylla3d -q boxes.tm | polylla3d -q --cells 1 | rows .cell /dev/stdin |
+        awk '{ print $(3 + $2 + 1) }' | sort -u >"$out/regions"
+    [ "$(tr '\n' ' ' <"$out/regions")" = '3 7 ' ]
+    # Marked faces are between polyhedra, but for --ignore-markers.
+    printf 'termesh 1\n.node\n5 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0.3 0.3 0.5\n5 0.3 0.3 -0.5\n.ele\n2 4 0\n1 1 2 3 4\n2 1 3 2 5\n.face\n1 1\n1 1 2 3 8\n.end\n' |
+        polylla3d -q >"$out/two.tm"
+    [ "$(polylla3d -q --cells 1 "$out/two.tm" | header .cell /dev/stdin)" = '2 1' ]
+    [ "$(polylla3d -q --cells 1 --ignore-markers "$out/two.tm" | header .cell /dev/stdin)" = '1 1' ]
+}
+
+@test "--levels: each polyhedron is the union of its children" {
+    local mesh
+    for mesh in points sphere boxes ring grid; do
+        polylla3d -q --star --levels 3 --json "$out/json" -o "$out/levels.tm" $mesh.tm
+        python3 - "$out/levels.tm" "$(json "$out/json" levels)" <<'END'
+import collections, sys
+blocks, lines = {}, iter(open(sys.argv[1]))
+for line in lines:
+    name = line.strip()
+    if name.endswith(('.node', '.facet', '.cell')):
+        blocks[name] = [next(lines).split() for _ in range(int(next(lines).split()[0]))]
+base = int(blocks['.node'][0][0])
+def volumes(part):
+    xyz = [[float(x) for x in row[1:4]] for row in blocks[part + '.node']]
+    volume = collections.Counter()
+    for row in blocks[part + '.facet']:
+        n = [xyz[int(v) - base] for v in row[4:4 + int(row[3])]]
+        v = sum(a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2])
+                + a[2] * (b[0] * c[1] - b[1] * c[0])
+                for a, b, c in ((n[0], n[i], n[i + 1]) for i in range(1, len(n) - 1))) / 6
+        volume[int(row[1])] += v
+        volume[int(row[2])] -= v if row[2] != '-1' else 0
+    return volume
+parts = [''] + ['level%d' % k for k in range(1, int(sys.argv[2]) + 1)]
+assert len(parts) > 1 and parts[-1] + '.cell' in blocks
+for child, parent in zip(parts, parts[1:]):
+    below, above, sums = volumes(child), volumes(parent), collections.Counter()
+    tets = collections.Counter()
+    for row in blocks[child + '.cell']:
+        sums[int(float(row[-1]))] += below[int(row[0])]
+        tets[int(float(row[-1]))] += float(row[2 + int(row[1])])
+    assert len(sums) == len(blocks[parent + '.cell']) < len(blocks[child + '.cell'])
+    for row in blocks[parent + '.cell']:
+        c = int(row[0])
+        assert abs(sums[c] / above[c] - 1) < 1e-9 and tets[c] == float(row[2 + int(row[1])])
+END
+    done
+    # Of polyhedra alone: they stay as they are, and what cannot go on is said.
+    polylla3d -q --no-history sphere.tm >"$out/poly.tm"
+    run -0 --separate-stderr polylla3d --levels 30 --json "$out/json" -o "$out/levels.tm" "$out/poly.tm"
+    [[ $stderr == *"levels are all: on the last one nothing can be joined"* ]]
+    diff <(rows .facet "$out/poly.tm") <(rows .facet "$out/levels.tm")
+    # One ball in the end.
+    [ "$(header "level$(json "$out/json" levels).cell" "$out/levels.tm")" = '1 1' ]
+    # The levels before go where they are made again.
+    polylla3d -q --levels 1 "$out/levels.tm" >"$out/again.tm"
+    [ "$(grep -c '^level.*cell' "$out/again.tm")" -eq 1 ]
+}
+
 @test "the polyhedra do not depend on how the mesh is numbered" {
     local mesh options
     for mesh in points sphere boxes grid; do
@@ -581,8 +718,11 @@ END
     [ -z "$output" ]
     [[ $stderr == "polylla3d: $out/overlap.tm: .ele: tetrahedra 0 and 1 overlap"* ]]
     polylla3d -q points.tm >"$out/poly.tm"
-    run -3 --separate-stderr polylla3d "$out/poly.tm"
-    [[ $stderr == *"holds polyhedra (.cell), but polylla3d takes tetrahedra (.ele)"* ]]
+    for options in --absorb '--mode face' --star=centroid --label; do
+        # shellcheck disable=SC2086 # words
+        run -3 --separate-stderr polylla3d $options "$out/poly.tm"
+        [[ $stderr == *"other options are for tetrahedra"* ]]
+    done
     while read -r options; do
         # shellcheck disable=SC2086 # words
         run -2 --separate-stderr polylla3d $options points.tm
@@ -595,6 +735,8 @@ END
 --no-repair --star
 --no-repair --merge-coplanar
 --label --merge-coplanar
+--label --levels 2
+--levels 0
 --merge-coplanar=31
 --max-tets 0
 --nonsense

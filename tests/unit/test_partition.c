@@ -273,7 +273,7 @@ static void test_partitions(void **state)
         tm_stream stream;
         tm_tet_mesh mesh;
         make_mesh(&mesh, &stream, GRID, 0.8, k % 3 == 0);
-        tm_poly_options o = {.mode = (tm_poly_mode)(k % 4),
+        tm_poly_options o = {.mode = (tm_poly_mode)(k % TM_POLY_COMPACT),
                              .face_metric = (tm_face_metric)random_below(2),
                              .repair = k % 8 != 1,
                              .star = (tm_poly_star)random_below(4),

@@ -28,7 +28,7 @@ static const struct {
     {"octree-mesh", SURFACE | PART},
     {"lepp-improve", TETRAHEDRA},
     {"poly-dual", TETRAHEDRA},
-    {"polylla3d", TETRAHEDRA | MIXED},
+    {"polylla3d", TETRAHEDRA | MIXED | POLYHEDRA},
     {"octree-repair", MIXED},
     {"tet-stats", TETRAHEDRA},
     {"jens-stats", TETRAHEDRA | MIXED},
