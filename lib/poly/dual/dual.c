@@ -37,6 +37,7 @@ static void free_dual(tm_dual *d)
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         free(all[i]);
     tm_edge_map_free(&d->edge_of);
+    tm_dual_forget(d);
     tm_block_clear(&d->facet);
 }
 
@@ -194,17 +195,19 @@ tm_status tm_dual_make(tm_dual_blocks *made, const tm_tet_mesh *mesh,
     tm_status status = allocate(&d) ? TM_OK : tm_fail_memory(error);
     if (status == TM_OK)
         tm_dual_place_tets(&d);
-    for (int round = 0; status == TM_OK && (round < 2 || d.again); round++) {
-        if (round != 1 || d.again)
+    if (status == TM_OK)
+        status = build(&d, error);
+    if (status == TM_OK)
+        status = tm_dual_flatten(&d, error);
+    if (status == TM_OK) {
+        tm_dual_place_cuts(&d);
+        status = tm_dual_improve(&d, false, report, error);
+    }
+    for (bool more = true; more && status == TM_OK; more = d.again) {
+        if (d.again)
             status = build(&d, error);
-        if (status == TM_OK && round == 0)
-            status = tm_dual_flatten(&d, error);
-        if (status != TM_OK)
-            break;
-        if (round != 1 || d.again)
-            tm_dual_place_cuts(&d);
-        d.again = false;
-        status = tm_dual_improve(&d, round > 0, report, error);
+        if (status == TM_OK)
+            status = tm_dual_improve(&d, true, report, error);
     }
     if (status == TM_OK)
         status = write_blocks(&d, made, error);

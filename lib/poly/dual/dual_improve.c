@@ -177,6 +177,7 @@ static bool improve(improver *m)
 static void finish(improver *m, bool move, tm_dual_report *report)
 {
     tm_dual *d = m->v.d;
+    d->again = false;
     report->wrong_pyramids = report->bad_facets = report->concave = 0;
     for (size_t f = 0; f < d->facets; f++) {
         report->bad_facets += tm_dual_judge_face(&m->v.m, f) > 1;

@@ -39,6 +39,7 @@ typedef struct tm_dual_wall {
     bool constrained; /* the face has to stay */
     bool quad[3];     /* which corners of it are between two cells, or on the boundary */
     int32_t marker;
+    uint32_t point;
     uint32_t edge[3]; /* opposite corner j; TM_NONE where both ends have no quad */
 } tm_dual_wall;
 
@@ -54,6 +55,15 @@ typedef struct tm_dual_point {
     uint8_t place;
     uint32_t of;
 } tm_dual_point;
+
+/* Walls in the order of their halves, edges by their nodes; xyz[point]. */
+typedef struct tm_dual_kept {
+    tm_dual_wall *wall;
+    size_t walls;
+    tm_dual_edge *edge;
+    tm_edge_map edge_of;
+    double (*xyz)[3];
+} tm_dual_kept;
 
 typedef struct tm_dual {
     const tm_tet_mesh *mesh;
@@ -88,6 +98,9 @@ typedef struct tm_dual {
     double (*xyz)[3];     /* [points] */
     double (*tet_xyz)[3]; /* [tetrahedra]: where the points in them were put last */
     uint8_t *frozen;      /* [tetrahedra]: that is the centroid */
+
+    /* Where the points of walls and edges were, when the dual was built before. */
+    tm_dual_kept kept;
 
     tm_block facet;
     size_t facets, items, facet_room, marker_room, start_room, item_room;

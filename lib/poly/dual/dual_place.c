@@ -7,6 +7,8 @@
 #include "../../base/array.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 /* The least barycentric coordinate of a point that is put towards the circumcentre. */
 static const double least_in_tet = 0.2, least_in_face = 0.12;
@@ -112,31 +114,6 @@ static void freeze(tm_dual *d)
         }
 }
 
-tm_status tm_dual_place_walls(tm_dual *d, tm_error *error)
-{
-    const double(*node)[3] = (const double(*)[3])d->mesh->xyz;
-    double(*xyz)[3] = tm_grow(d->xyz, &d->xyz_room, d->points, sizeof *xyz);
-    if (!xyz)
-        return tm_fail_memory(error);
-    d->xyz = xyz;
-    freeze(d);
-    for (size_t p = 0; p < d->points; p++) {
-        const uint32_t of = d->point[p].of;
-        const tm_dual_place place = d->point[p].place;
-        const uint32_t *end = place == TM_DUAL_ON_EDGE ? d->edge[of].node : NULL;
-        if (place == TM_DUAL_IN_FACE)
-            place_in_face(d, &d->wall[of], xyz[p]);
-        for (int x = 0; x < 3; x++)
-            if (place == TM_DUAL_IN_TET)
-                xyz[p][x] = d->tet_xyz[of][x];
-            else if (place == TM_DUAL_AT_NODE)
-                xyz[p][x] = node[of][x];
-            else if (end)
-                xyz[p][x] = node[end[0]][x] + (node[end[1]][x] - node[end[0]][x]) / 2;
-    }
-    return TM_OK;
-}
-
 /* Where the line between the points on both sides meets the plane of a wall. */
 static void put_between(const tm_dual *d, const tm_dual_wall *wall,
                         const uint32_t node[3], double out[3])
@@ -174,4 +151,82 @@ void tm_dual_place_cuts(tm_dual *d)
             d->xyz[p][x] += bulge * (mean - d->xyz[p][x]);
         }
     }
+}
+
+void tm_dual_forget(tm_dual *d)
+{
+    free(d->kept.wall);
+    free(d->kept.edge);
+    free(d->kept.xyz);
+    tm_edge_map_free(&d->kept.edge_of);
+    d->kept = (tm_dual_kept){0};
+}
+
+void tm_dual_keep(tm_dual *d)
+{
+    if (d->xyz) {
+        tm_dual_forget(d);
+        d->kept = (tm_dual_kept){d->wall, d->walls, d->edge, d->edge_of, d->xyz};
+    } else {
+        free(d->wall);
+        free(d->edge);
+        tm_edge_map_free(&d->edge_of);
+    }
+    d->wall = NULL;
+    d->edge = NULL;
+    d->xyz = NULL;
+    d->edge_of = (tm_edge_map){0};
+    d->wall_room = d->edge_room = d->xyz_room = 0;
+}
+
+/* Puts the points of walls and edges where they were, but of nodes taken apart since. */
+static void put_back(tm_dual *d)
+{
+    const tm_dual_kept *kept = &d->kept;
+    size_t k = 0;
+    for (size_t w = 0; w < d->walls; w++) {
+        const tm_dual_wall *wall = &d->wall[w];
+        while (k < kept->walls && kept->wall[k].half < wall->half)
+            k++;
+        if (k < kept->walls && kept->wall[k].half == wall->half &&
+            !d->frozen[wall->half / 4])
+            memcpy(d->xyz[wall->point], kept->xyz[kept->wall[k].point], sizeof *d->xyz);
+    }
+    for (size_t e = 0; e < d->edges; e++) {
+        const tm_dual_edge *edge = &d->edge[e];
+        const uint32_t *was =
+            tm_edge_map_get(&kept->edge_of, edge->node[0], edge->node[1]);
+        if (was && edge->point != TM_NONE && kept->edge[*was].point != TM_NONE &&
+            d->level[edge->node[0]] != TM_DUAL_PIECES &&
+            d->level[edge->node[1]] != TM_DUAL_PIECES)
+            memcpy(d->xyz[edge->point], kept->xyz[kept->edge[*was].point],
+                   sizeof *d->xyz);
+    }
+}
+
+tm_status tm_dual_place_walls(tm_dual *d, tm_error *error)
+{
+    const double(*node)[3] = (const double(*)[3])d->mesh->xyz;
+    double(*xyz)[3] = tm_grow(d->xyz, &d->xyz_room, d->points, sizeof *xyz);
+    if (!xyz)
+        return tm_fail_memory(error);
+    d->xyz = xyz;
+    freeze(d);
+    for (size_t p = 0; p < d->points; p++) {
+        const uint32_t of = d->point[p].of;
+        const tm_dual_place place = d->point[p].place;
+        const uint32_t *end = place == TM_DUAL_ON_EDGE ? d->edge[of].node : NULL;
+        if (place == TM_DUAL_IN_FACE)
+            place_in_face(d, &d->wall[of], xyz[p]);
+        for (int x = 0; x < 3; x++)
+            if (place == TM_DUAL_IN_TET)
+                xyz[p][x] = d->tet_xyz[of][x];
+            else if (place == TM_DUAL_AT_NODE)
+                xyz[p][x] = node[of][x];
+            else if (end)
+                xyz[p][x] = node[end[0]][x] + (node[end[1]][x] - node[end[0]][x]) / 2;
+    }
+    tm_dual_place_cuts(d);
+    put_back(d);
+    return TM_OK;
 }

@@ -31,12 +31,16 @@ void tm_dual_wall_cells(const tm_dual *d, const tm_dual_wall *wall, int j,
 uint32_t tm_dual_quad_edge(const tm_dual *d, uint32_t q, bool last);
 
 /* Gives points their first places: those in tetrahedra, and then, where the dual is
- * built, the others. */
+ * built, the others, or where they were before if that was kept. */
 void tm_dual_place_tets(tm_dual *d);
 tm_status tm_dual_place_walls(tm_dual *d, tm_error *error);
 
-/* Puts the points of cuts, once those in tetrahedra are in their places. */
+/* Puts the points of cuts, for where those in tetrahedra are. */
 void tm_dual_place_cuts(tm_dual *d);
+
+/* Keeps walls, edges and their points, and makes them empty; frees what was kept. */
+void tm_dual_keep(tm_dual *d);
+void tm_dual_forget(tm_dual *d);
 
 /* Fills d->facet. O(n). */
 tm_status tm_dual_make_facets(tm_dual *d, tm_error *error);

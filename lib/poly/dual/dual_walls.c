@@ -69,6 +69,7 @@ static bool add_wall(tm_dual *d, uint32_t half)
     d->wall = list;
     list[d->walls++] = wall;
     const uint32_t point = new_point(d, TM_DUAL_IN_FACE, (uint32_t)d->walls - 1);
+    list[d->walls - 1].point = point;
     d->face_point[half] = point;
     if (across != TM_NONE)
         d->face_point[across] = point;
@@ -383,10 +384,10 @@ static tm_status find_node_points(tm_dual *d, tm_error *error)
 tm_status tm_dual_find_walls(tm_dual *d, tm_error *error)
 {
     const tm_tet_mesh *mesh = d->mesh;
+    tm_dual_keep(d);
     d->walls = d->edges = 0;
     d->points = 0;
     d->again = false;
-    tm_edge_map_free(&d->edge_of);
     for (uint32_t t = 0; t < mesh->slots; t++)
         if (new_point(d, TM_DUAL_IN_TET, t) == TM_NONE)
             return tm_fail_memory(error);
