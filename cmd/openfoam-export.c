@@ -5,6 +5,7 @@
 #include "common/app/output_files.h"
 
 #include "../lib/format/mesh_format.h"
+#include "../lib/stream/coordinates.h"
 
 #include <dirent.h>
 #include <stdio.h>
@@ -165,6 +166,18 @@ static void say_what_fails(const filter *f, const tm_poly_finite_volume *m,
         filter_note(f, "what may help: %s", help_for(content));
 }
 
+/* Not where that is not asked for, or coordinates are too large or too small. */
+static bool can_be_measured(const filter *f, const tm_stream *stream)
+{
+    tm_error error;
+    if (f->verbosity < 0)
+        return false;
+    if (tm_stream_check_coordinates(stream, &error) == TM_OK)
+        return true;
+    filter_note(f, "not measured for checkMesh: %s", error.what);
+    return false;
+}
+
 int main(int argc, char **argv)
 {
     filter f = {
@@ -185,7 +198,7 @@ int main(int argc, char **argv)
     tm_poly_finite_volume measures;
     tm_error error;
     const tm_content content = mesh_input_read(&f, &stream);
-    const bool wanted = f.verbosity >= 0;
+    const bool wanted = can_be_measured(&f, &stream);
     if (tm_openfoam_write(file, &stream, &counts, wanted ? &measures : NULL,
                           f.verbosity > 0, &error) != TM_OK)
         mesh_input_fail(&f, &error);

@@ -116,9 +116,9 @@ typedef struct tm_openfoam_counts {
  * cells, named alike, else marker_N and region_N. What a word of OpenFOAM cannot have
  * becomes '_', and a name that is taken gets the value behind it. Nodes that no cell has
  * are left out. What checkMesh will measure goes to *measures, if that is not NULL; with
- * all_geometry what it does with that option, too. TM_ERROR_INPUT as tm_cell_faces_find(),
- * or where there are no cells. Expected O(n + b log b) for b facets of the boundary, and
- * what the measures take. */
+ * all_geometry what it does with that option, too. TM_ERROR_INPUT as
+ * tm_cell_faces_find(), or where there are no cells. Expected O(n + b log b) for b facets
+ * of the boundary, and what the measures take. */
 tm_status tm_openfoam_write(tm_text file[TM_OPENFOAM_FILES], const tm_stream *stream,
                             tm_openfoam_counts *counts, tm_poly_finite_volume *measures,
                             bool all_geometry, tm_error *error);

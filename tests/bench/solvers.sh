@@ -191,6 +191,11 @@ errors() {
     fi
     if command -v gpmetis >/dev/null; then
         made METIS $python -B tests/bench/agglomerate.py --metis "$n" "$work/tets.tm"
+        if has polylla3d --partition; then
+            $python -B tests/bench/agglomerate.py --metis "$n" --label "$work/tets.tm" \
+                >"$work/labelled.tm"
+            made '  --partition --star' polyhedra --partition --star "$work/labelled.tm"
+        fi
     else
         note 'METIS: gpmetis of the package metis'
     fi
