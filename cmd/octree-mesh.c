@@ -10,7 +10,7 @@
 #include "../lib/octree/layer/octree_mesh_stream.h"
 #include "../lib/octree/layer/adaptive_refinement.h"
 #include "../lib/element/jens.h"
-#include "../lib/surface/surface_curvature.h"
+#include "../lib/surface/measure/surface_curvature.h"
 
 #include <math.h>
 #include <stdio.h>

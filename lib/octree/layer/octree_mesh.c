@@ -63,7 +63,7 @@ static tm_status find_boundary_once(tm_octree_mesh *m, const tm_octree *octree,
     m->off_surface = NULL;
     m->report.components = 0;
     tm_status status =
-        tm_interior_boundary_find(&m->boundary, octree, &m->interior, error);
+        tm_interior_boundary_of_parts(&m->boundary, octree, m->part, m->parts, error);
     if (status == TM_OK)
         status = measure_boundary(m, error);
     if (status == TM_OK)
@@ -78,15 +78,15 @@ static tm_status find_boundary(tm_octree_mesh *m, const tm_octree *octree,
     bool changed = false;
     tm_status status = find_boundary_once(m, octree, surface, error);
     if (status == TM_OK && m->report.components > surface->components)
-        status = tm_spurious_components_remove(&m->interior, octree, &m->boundary,
+        status = tm_spurious_components_remove(m->part, octree, &m->boundary,
                                                surface, m->at, &changed, error);
     if (status == TM_OK && changed)
         status = find_boundary_once(m, octree, surface, error);
     if (status != TM_OK || !surface->regions)
         return status;
-    status =
-        tm_interior_find_enclosed(&m->enclosed, &m->interior, octree, surface, error);
-    if (status == TM_OK && m->enclosed.count > 0)
+    status = tm_interior_find_enclosed(&m->part[1], m->part, octree, surface, error);
+    m->parts += m->part[1].chosen != NULL;
+    if (status == TM_OK && m->parts > 1)
         status = find_boundary_once(m, octree, surface, error);
     return status;
 }
@@ -138,9 +138,9 @@ static void elect_shells(const tm_octree_mesh *m, const tm_surface *surface,
         const uint32_t s = m->boundary.face[f][0];
         const uint32_t shell = surface->shell[m->at[s].triangle];
         if (volume[shell] > 0)
-            vote(&at[tm_set_root(parent, a->inner[s])], shell);
-        else if (a->across && a->across[s] != TM_NONE)
-            vote(&at[tm_set_root(parent, a->across[s])], shell);
+            vote(&at[tm_set_root(parent, a->inner[0][s])], shell);
+        else if (a->parts > 1 && a->inner[1][s] != TM_NONE)
+            vote(&at[tm_set_root(parent, a->inner[1][s])], shell);
     }
 }
 
@@ -151,15 +151,11 @@ static void number_regions(tm_octree_mesh *m, const tm_octree *octree,
 {
     const tm_assembly *a = &m->assembly;
     for (size_t l = 0; l < octree->leaves; l++) {
-        const uint32_t *core_node = NULL;
-        if (m->interior.chosen[l])
-            core_node = a->core_node;
-        else if (m->enclosed.count > 0 && m->enclosed.chosen[l])
-            core_node = a->core_across;
-        if (!core_node)
+        const size_t p = tm_interior_part_of(m->part, m->parts, l);
+        if (p == m->parts)
             continue;
         const uint32_t shell =
-            at[tm_set_root(parent, core_node[octree->node[l][0]])].shell;
+            at[tm_set_root(parent, a->core_node[p][octree->node[l][0]])].shell;
         m->region[l] = shell + 1;
         met[shell] = true;
     }
@@ -201,9 +197,9 @@ static tm_status count_regions(tm_octree_mesh *m, const tm_octree *octree,
     for (size_t i = 0; i < surface->components; i++)
         within += volume[i] < 0;
     tm_status status = TM_OK;
-    if (m->enclosed.count > 0 || surface->region)
+    if (m->parts > 1 || surface->region)
         status = find_regions(m, octree, surface, volume, error);
-    if (m->enclosed.count > 0)
+    if (m->parts > 1)
         within = surface->components - m->report.regions;
     if (within > surface->holes && !surface->by_winding)
         m->report.regions_lost = within - surface->holes;
@@ -216,7 +212,7 @@ static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *su
 {
     tm_octree_mesh_report *r = &m->report;
     tm_status status = TM_OK;
-    if (m->interior.count == 0)
+    if (m->part->count == 0)
         status = tm_fail(error, TM_ERROR_INPUT,
                          "no leaf is inside the surface: it needs a finer level");
     tm_progress_stage(progress, "finding the interior boundary");
@@ -227,8 +223,8 @@ static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *su
         status = tm_feature_find(&m->feature, &m->boundary, surface, m->at, error);
     tm_progress_stage(progress, "assembling elements");
     if (status == TM_OK)
-        status = tm_assemble(&m->assembly, octree, &m->interior, &m->enclosed,
-                             &m->boundary, error);
+        status = tm_assemble(&m->assembly, octree, m->part, m->parts, &m->boundary,
+                             error);
     tm_progress_stage(progress, "projecting the layer");
     if (status == TM_OK)
         status = tm_project_layer(&m->assembly, &m->boundary, &m->feature, surface, m->at,
@@ -252,12 +248,13 @@ tm_status tm_octree_mesh_make(tm_octree_mesh *mesh, const tm_octree *octree,
                               tm_error *error)
 {
     tm_interior interior;
+    *mesh = (tm_octree_mesh){0};
     tm_progress_stage(progress, "choosing octants");
     tm_status status = tm_interior_choose(&interior, octree, surface, error);
-    *mesh = (tm_octree_mesh){.interior = interior};
     if (status == TM_OK)
         status =
             tm_octree_mesh_make_of(mesh, octree, &interior, surface, progress, error);
+    tm_interior_free(&interior);
     return status;
 }
 
@@ -265,7 +262,12 @@ tm_status tm_octree_mesh_make_of(tm_octree_mesh *mesh, const tm_octree *octree,
                                  tm_interior *interior, tm_surface *surface,
                                  const tm_progress *progress, tm_error *error)
 {
-    *mesh = (tm_octree_mesh){.interior = *interior};
+    enum { PARTS = 2 };
+    *mesh = (tm_octree_mesh){.part = calloc(PARTS, sizeof *mesh->part)};
+    if (!mesh->part)
+        return tm_fail_memory(error);
+    mesh->parts = 1;
+    *mesh->part = *interior;
     *interior = (tm_interior){0};
     const size_t bytes = surface->triangles * sizeof *surface->patch;
     uint32_t *patch = tm_new(surface->triangles, sizeof *patch);
@@ -281,8 +283,9 @@ tm_status tm_octree_mesh_make_of(tm_octree_mesh *mesh, const tm_octree *octree,
 
 void tm_octree_mesh_free(tm_octree_mesh *mesh)
 {
-    tm_interior_free(&mesh->interior);
-    tm_interior_free(&mesh->enclosed);
+    for (size_t p = 0; p < mesh->parts; p++)
+        tm_interior_free(&mesh->part[p]);
+    free(mesh->part);
     tm_interior_boundary_free(&mesh->boundary);
     tm_feature_free(&mesh->feature);
     tm_assembly_free(&mesh->assembly);

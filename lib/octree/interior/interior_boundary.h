@@ -73,6 +73,12 @@ tm_leaf_state tm_interior_leaf_state(const tm_interior *interior, const tm_octre
 tm_status tm_interior_boundary_find(tm_interior_boundary *boundary,
                                     const tm_octree *octree, const tm_interior *interior,
                                     tm_error *error);
+/* Finds the boundary of leaves in parts, which have the same nodes `used`: the faces that
+ * nothing is beyond, and those between two parts, once, as faces of the part that comes
+ * first. Nodes are numbered in the octree's order, faces part by part, leaf by leaf. */
+tm_status tm_interior_boundary_of_parts(tm_interior_boundary *boundary,
+                                        const tm_octree *octree, const tm_interior *part,
+                                        size_t parts, tm_error *error);
 void tm_interior_boundary_free(tm_interior_boundary *boundary);
 
 TM_EXTERN_C_END

@@ -3,7 +3,7 @@
 #ifndef TM_LAYER_BOUNDARY_CELLS_H
 #define TM_LAYER_BOUNDARY_CELLS_H
 
-#include "interior_boundary.h"
+#include "../interior/interior_boundary.h"
 
 typedef struct tm_boundary_cells {
     const tm_interior_boundary *boundary;

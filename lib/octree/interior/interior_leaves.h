@@ -39,6 +39,16 @@ tm_status tm_interior_find_enclosed(tm_interior *enclosed, tm_interior *interior
                                     const tm_octree *octree, const tm_surface *surface,
                                     tm_error *error);
 
+/* The part, of so many, that has a leaf; `parts` where none has. */
+static inline size_t tm_interior_part_of(const tm_interior *part, size_t parts,
+                                         size_t leaf)
+{
+    size_t p = 0;
+    while (p < parts && !part[p].chosen[leaf])
+        p++;
+    return p;
+}
+
 /* Makes a leaf chosen that is not, or the other way, with the masks of its nodes; used
  * and count are then as tm_interior_find_used() says again. */
 void tm_interior_flip(tm_interior *interior, const tm_octree *octree, size_t leaf);

@@ -10,7 +10,9 @@ enum { LEAF_FACES = 6, LEAF_EDGES = 12 };
 
 typedef struct {
     const tm_octree *octree;
-    const tm_interior *interior;
+    const tm_interior *part;
+    size_t parts;
+    const tm_interior *interior; /* the part whose faces are found */
     tm_interior_boundary *boundary;
     uint32_t *boundary_node; /* [nodes of the octree]: TM_NONE where it is none */
     size_t face_room, leaf_room, piece_room;
@@ -32,14 +34,15 @@ tm_leaf_state tm_interior_leaf_state(const tm_interior *interior, const tm_octre
 static tm_status number_nodes(finder *find, tm_error *error)
 {
     const tm_octree *octree = find->octree;
-    const tm_interior *interior = find->interior;
     tm_interior_boundary *boundary = find->boundary;
     find->boundary_node = tm_new(octree->nodes, sizeof *find->boundary_node);
     if (!find->boundary_node)
         return tm_fail_memory(error);
     for (size_t n = 0; n < octree->nodes; n++) {
-        const bool on_boundary = interior->used[n] && interior->mask[n] != 0 &&
-                                 interior->mask[n] != TM_ALL_OCTANTS;
+        bool on_boundary = false;
+        for (size_t p = 0; p < find->parts; p++)
+            on_boundary |= find->part[p].used[n] && find->part[p].mask[n] != 0 &&
+                           find->part[p].mask[n] != TM_ALL_OCTANTS;
         find->boundary_node[n] = on_boundary ? (uint32_t)boundary->nodes++ : TM_NONE;
     }
     boundary->grid_node = tm_new(boundary->nodes, sizeof *boundary->grid_node);
@@ -78,14 +81,18 @@ static tm_status find_sizes(tm_interior_boundary *boundary, const tm_octree *oct
     return TM_OK;
 }
 
-/* Whether nothing is chosen beyond face f of a leaf at its corner. */
+/* Whether nothing of the same part, nor of one before, is beyond face f of a leaf at its
+ * corner. */
 static bool is_open(const finder *find, size_t leaf, unsigned f, unsigned corner)
 {
     const uint32_t node = find->octree->node[leaf][corner];
     const unsigned own = tm_point_octants[corner];
     const unsigned step = 1u << f / 2;
     const unsigned beyond = f % 2 ? own << step : own >> step;
-    return !(find->interior->mask[node] & beyond);
+    for (const tm_interior *p = find->part; p <= find->interior; p++)
+        if (p->mask[node] & beyond)
+            return false;
+    return true;
 }
 
 /* A corner of the leaf on face f that a piece has, or where it has none, any one: then
@@ -176,23 +183,33 @@ static tm_status find_around(tm_interior_boundary *boundary, tm_error *error)
     return TM_OK;
 }
 
-tm_status tm_interior_boundary_find(tm_interior_boundary *boundary,
-                                    const tm_octree *octree, const tm_interior *interior,
-                                    tm_error *error)
+tm_status tm_interior_boundary_of_parts(tm_interior_boundary *boundary,
+                                        const tm_octree *octree, const tm_interior *part,
+                                        size_t parts, tm_error *error)
 {
     *boundary = (tm_interior_boundary){.side = octree->side, .finest = octree->finest};
     memcpy(boundary->low, octree->low, sizeof boundary->low);
-    finder find = {.octree = octree, .interior = interior, .boundary = boundary};
+    finder find = {.octree = octree, .part = part, .parts = parts, .boundary = boundary};
     tm_status status = number_nodes(&find, error);
-    for (size_t l = 0; status == TM_OK && l < octree->leaves; l++)
-        if (interior->chosen[l])
-            status = add_faces_of(&find, l, error);
+    for (size_t p = 0; status == TM_OK && p < parts; p++) {
+        find.interior = &part[p];
+        for (size_t l = 0; status == TM_OK && l < octree->leaves; l++)
+            if (part[p].chosen[l])
+                status = add_faces_of(&find, l, error);
+    }
     if (status == TM_OK)
         status = find_sizes(boundary, octree, error);
     if (status == TM_OK)
         status = find_around(boundary, error);
     free(find.boundary_node);
     return status;
+}
+
+tm_status tm_interior_boundary_find(tm_interior_boundary *boundary,
+                                    const tm_octree *octree, const tm_interior *interior,
+                                    tm_error *error)
+{
+    return tm_interior_boundary_of_parts(boundary, octree, interior, 1, error);
 }
 
 void tm_interior_boundary_free(tm_interior_boundary *boundary)
