@@ -15,7 +15,7 @@ typedef struct {
     const tm_interior *interior; /* the part whose faces are found */
     tm_interior_boundary *boundary;
     uint32_t *boundary_node; /* [nodes of the octree]: TM_NONE where it is none */
-    size_t face_room, leaf_room, piece_room;
+    size_t face_room, leaf_room, piece_room, region_room;
 } finder;
 
 tm_leaf_state tm_interior_leaf_state(const tm_interior *interior, const tm_octree *octree,
@@ -105,6 +105,25 @@ static unsigned corner_of(unsigned f, const tm_piece *piece)
     return f % 2 ? 1u << f / 2 : 0;
 }
 
+/* The regions on both sides of a piece of face f of a leaf, which has that corner. */
+static tm_status add_regions(finder *find, size_t leaf, unsigned f, unsigned corner,
+                             tm_error *error)
+{
+    tm_interior_boundary *boundary = find->boundary;
+    if (!find->part->label)
+        return TM_OK;
+    void *region = tm_grow(boundary->region, &find->region_room, boundary->faces + 1,
+                           sizeof *boundary->region);
+    if (!region)
+        return tm_fail_memory(error);
+    boundary->region = region;
+    const unsigned step = 1u << f / 2, own = 7 - corner;
+    boundary->region[boundary->faces][0] = find->part->label[leaf];
+    boundary->region[boundary->faces][1] =
+        find->part->octant[find->octree->node[leaf][corner]][own ^ step];
+    return TM_OK;
+}
+
 static tm_status add_face(finder *find, size_t leaf, const tm_piece *piece,
                           unsigned which, tm_error *error)
 {
@@ -151,10 +170,12 @@ static tm_status add_faces_of(finder *find, size_t leaf, tm_error *error)
         tm_piece piece[TM_FACE_PIECES];
         const unsigned pieces = tm_face_pieces(state, f, piece);
         for (unsigned i = 0; i < pieces; i++) {
-            if (!is_open(find, leaf, f, corner_of(f, &piece[i])))
+            const unsigned corner = corner_of(f, &piece[i]);
+            if (!is_open(find, leaf, f, corner))
                 continue;
-            const tm_status status =
-                add_face(find, leaf, &piece[i], TM_FACE_PIECES * f + i, error);
+            tm_status status = add_regions(find, leaf, f, corner, error);
+            if (status == TM_OK)
+                status = add_face(find, leaf, &piece[i], TM_FACE_PIECES * f + i, error);
             if (status != TM_OK)
                 return status;
         }
@@ -220,6 +241,7 @@ void tm_interior_boundary_free(tm_interior_boundary *boundary)
     free(boundary->face);
     free(boundary->leaf);
     free(boundary->piece);
+    free(boundary->region);
     free(boundary->cut);
     free(boundary->around_start);
     free(boundary->around);

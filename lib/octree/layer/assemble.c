@@ -302,8 +302,7 @@ static void share_cut(const assembler *a, side *s, size_t f)
 /* What a part has of the interior boundary. */
 static tm_status find_own(const assembler *a, side *s, tm_error *error)
 {
-    tm_status status =
-        tm_interior_boundary_find(&s->own, a->octree, s->interior, error);
+    tm_status status = tm_interior_boundary_find(&s->own, a->octree, s->interior, error);
     if (status != TM_OK)
         return status;
     uint32_t *number = tm_new(a->octree->nodes, sizeof *number);

@@ -4,29 +4,133 @@
 #include "../../base/array.h"
 #include "../../base/disjoint_sets.h"
 #include "../../surface/surface_tree.h"
+#include "../interior/region_leaves.h"
 #include "octree_mesh_parts.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Where the interior boundary's nodes are closest to the surface. Neighbours in number
- * are mostly close to each other, so that each begins where the last one ended. */
-static tm_status find_closest(tm_octree_mesh *m, const tm_surface *surface,
-                              tm_error *error)
+static int compare_keys(const void *a, const void *b)
+{
+    const uint64_t p = *(const uint64_t *)a, q = *(const uint64_t *)b;
+    return (p > q) - (p < q);
+}
+
+/* The place of the first such key of a sorted list, or TM_NONE. */
+static uint32_t find_key(const uint64_t *key, size_t count, uint64_t which)
+{
+    size_t begin = 0, end = count;
+    while (begin < end) {
+        const size_t middle = begin + (end - begin) / 2;
+        if (key[middle] < which)
+            begin = middle + 1;
+        else
+            end = middle;
+    }
+    return begin < count && key[begin] == which ? (uint32_t)begin : TM_NONE;
+}
+
+/* Where walls meet nodes between two regions go to the walls between these: all such
+ * walls are made one patch for a while. pair[s] becomes that patch, TM_NONE of a node
+ * between more regions. */
+static tm_status join_walls(const tm_interior_boundary *boundary, tm_surface *surface,
+                            uint32_t *pair, tm_error *error)
+{
+    const uint64_t past = surface->cells + 1;
+    const size_t count = surface->triangles;
+    uint64_t *key = tm_new(count, sizeof *key);
+    if (!key)
+        return tm_fail_memory(error);
+    for (size_t t = 0; t < count; t++)
+        key[t] = surface->side[t][0] * past + surface->side[t][1];
+    qsort(key, count, sizeof *key, compare_keys);
+    for (size_t t = 0; t < count; t++)
+        surface->patch[t] =
+            find_key(key, count, surface->side[t][0] * past + surface->side[t][1]);
+    tm_surface_tree_refresh(surface);
+    for (size_t s = 0; s < boundary->nodes; s++) {
+        const size_t first = boundary->around[boundary->around_start[s]];
+        const uint32_t *a = boundary->region[first];
+        const uint64_t low = a[0] < a[1] ? a[0] : a[1], high = a[0] + a[1] - low;
+        bool same = true;
+        for (size_t i = boundary->around_start[s]; i < boundary->around_start[s + 1];
+             i++) {
+            const uint32_t *b = boundary->region[boundary->around[i]];
+            same &= (a[0] == b[0] && a[1] == b[1]) || (a[0] == b[1] && a[1] == b[0]);
+        }
+        pair[s] = same ? find_key(key, count, low * past + high) : TM_NONE;
+    }
+    free(key);
+    return TM_OK;
+}
+
+static void set_patches(tm_surface *surface, const uint32_t *patch)
+{
+    memcpy(surface->patch, patch, surface->triangles * sizeof *patch);
+    tm_surface_tree_refresh(surface);
+}
+
+/* Where the interior boundary's nodes are closest to the surface, of the patches that are
+ * given; NULL: to any. Neighbours in number are mostly close to each other, so that each
+ * begins where the last one ended. */
+static void find_closest_on(tm_octree_mesh *m, const tm_surface *surface,
+                            const uint32_t *patch)
+{
+    uint32_t guess = TM_NONE;
+    for (size_t s = 0; s < m->boundary.nodes; s++) {
+        const uint32_t of = patch ? patch[s] : TM_NONE;
+        double xyz[3];
+        tm_boundary_node_point(&m->boundary, s, xyz);
+        if (of != TM_NONE && guess != TM_NONE && surface->patch[guess] != of)
+            guess = TM_NONE;
+        m->at[s].triangle = guess;
+        tm_surface_closest(surface, xyz, of, &m->at[s]);
+        guess = m->at[s].triangle;
+    }
+}
+
+static tm_status find_closest(tm_octree_mesh *m, tm_surface *surface, tm_error *error)
 {
     m->at = tm_new(m->boundary.nodes, sizeof *m->at);
     m->off_surface = calloc(m->boundary.nodes + 1, sizeof *m->off_surface);
     if (!m->at || !m->off_surface)
         return tm_fail_memory(error);
-    uint32_t guess = TM_NONE;
-    for (size_t s = 0; s < m->boundary.nodes; s++) {
-        double xyz[3];
-        tm_boundary_node_point(&m->boundary, s, xyz);
-        m->at[s].triangle = guess;
-        tm_surface_closest(surface, xyz, TM_NONE, &m->at[s]);
-        guess = m->at[s].triangle;
+    if (!surface->walls) {
+        find_closest_on(m, surface, NULL);
+        return TM_OK;
     }
-    return TM_OK;
+    uint32_t *pair = tm_new(m->boundary.nodes, sizeof *pair);
+    uint32_t *patch = tm_new(surface->triangles, sizeof *patch);
+    const bool ok = pair && patch;
+    tm_status status = TM_OK;
+    if (ok) {
+        memcpy(patch, surface->patch, surface->triangles * sizeof *patch);
+        status = join_walls(&m->boundary, surface, pair, error);
+    } else {
+        status = tm_fail_memory(error);
+    }
+    if (ok && status == TM_OK) {
+        find_closest_on(m, surface, pair);
+        set_patches(surface, patch);
+    }
+    free(pair);
+    free(patch);
+    return status;
+}
+
+/* The first face with the edge from corner i of a face on. */
+static size_t first_at_edge(const tm_interior_boundary *boundary, size_t f, unsigned i)
+{
+    const unsigned k = tm_boundary_face_corners(boundary, f);
+    const uint32_t s = boundary->face[f][i], t = boundary->face[f][(i + 1) % k];
+    size_t first = f;
+    for (size_t j = boundary->around_start[s]; j < boundary->around_start[s + 1]; j++) {
+        const size_t g = boundary->around[j];
+        for (unsigned c = 0; c < tm_boundary_face_corners(boundary, g); c++)
+            if (boundary->face[g][c] == t && g < first)
+                first = g;
+    }
+    return first;
 }
 
 /* The pieces of the boundary, and its Euler number. */
@@ -38,23 +142,26 @@ static tm_status measure_boundary(tm_octree_mesh *m, tm_error *error)
         return tm_fail_memory(error);
     for (size_t s = 0; s < boundary->nodes; s++)
         parent[s] = (uint32_t)s;
-    int64_t half_edges = 0;
+    int64_t edges = 0, half_edges = 0;
     for (size_t f = 0; f < boundary->faces; f++) {
         const unsigned k = tm_boundary_face_corners(boundary, f);
         half_edges += k;
+        for (unsigned i = 0; boundary->region && i < k; i++)
+            edges += first_at_edge(boundary, f, i) == f;
         for (unsigned i = 1; i < k; i++)
             tm_set_unite(parent, boundary->face[f][0], boundary->face[f][i]);
     }
     for (size_t s = 0; s < boundary->nodes; s++)
         m->report.components += tm_set_root(parent, (uint32_t)s) == s;
-    m->report.euler =
-        (int64_t)boundary->nodes - half_edges / 2 + (int64_t)boundary->faces;
+    if (!boundary->region) /* each has two faces */
+        edges = half_edges / 2;
+    m->report.euler = (int64_t)boundary->nodes - edges + (int64_t)boundary->faces;
     free(parent);
     return TM_OK;
 }
 
 static tm_status find_boundary_once(tm_octree_mesh *m, const tm_octree *octree,
-                                    const tm_surface *surface, tm_error *error)
+                                    tm_surface *surface, tm_error *error)
 {
     tm_interior_boundary_free(&m->boundary);
     free(m->at);
@@ -73,13 +180,18 @@ static tm_status find_boundary_once(tm_octree_mesh *m, const tm_octree *octree,
 
 /* The interior boundary, without pieces that the surface does not have. */
 static tm_status find_boundary(tm_octree_mesh *m, const tm_octree *octree,
-                               const tm_surface *surface, tm_error *error)
+                               tm_surface *surface, tm_error *error)
 {
     bool changed = false;
-    tm_status status = find_boundary_once(m, octree, surface, error);
+    tm_status status = TM_OK;
+    if (surface->walls) {
+        status = tm_interior_divide(&m->part, &m->parts, octree, surface->cells, error);
+        return status == TM_OK ? find_boundary_once(m, octree, surface, error) : status;
+    }
+    status = find_boundary_once(m, octree, surface, error);
     if (status == TM_OK && m->report.components > surface->components)
-        status = tm_spurious_components_remove(m->part, octree, &m->boundary,
-                                               surface, m->at, &changed, error);
+        status = tm_spurious_components_remove(m->part, octree, &m->boundary, surface,
+                                               m->at, &changed, error);
     if (status == TM_OK && changed)
         status = find_boundary_once(m, octree, surface, error);
     if (status != TM_OK || !surface->regions)
@@ -184,6 +296,26 @@ static tm_status find_regions(tm_octree_mesh *m, const tm_octree *octree,
     return done ? TM_OK : tm_fail_memory(error);
 }
 
+/* The same where walls meet: leaves know their regions. */
+static tm_status count_labels(tm_octree_mesh *m, const tm_octree *octree,
+                              const tm_surface *surface, tm_error *error)
+{
+    bool *met = calloc(surface->cells + 1, sizeof *met);
+    m->region = tm_new(octree->leaves, sizeof *m->region);
+    if (!met || !m->region) {
+        free(met);
+        return tm_fail_memory(error);
+    }
+    memcpy(m->region, m->part->label, octree->leaves * sizeof *m->region);
+    for (size_t l = 0; l < octree->leaves; l++)
+        met[m->region[l]] = true;
+    for (size_t r = 1; r <= surface->cells; r++)
+        m->report.regions += met[r];
+    m->report.regions_lost = surface->cells - m->report.regions;
+    free(met);
+    return TM_OK;
+}
+
 /* The regions that leaves are in, where there are several, or the file numbers them; and
  * how many are not there: shells in others, or around such, but for holes. */
 static tm_status count_regions(tm_octree_mesh *m, const tm_octree *octree,
@@ -223,15 +355,17 @@ static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *su
         status = tm_feature_find(&m->feature, &m->boundary, surface, m->at, error);
     tm_progress_stage(progress, "assembling elements");
     if (status == TM_OK)
-        status = tm_assemble(&m->assembly, octree, m->part, m->parts, &m->boundary,
-                             error);
+        status =
+            tm_assemble(&m->assembly, octree, m->part, m->parts, &m->boundary, error);
     tm_progress_stage(progress, "projecting the layer");
     if (status == TM_OK)
         status = tm_project_layer(&m->assembly, &m->boundary, &m->feature, surface, m->at,
                                   error);
     if (status == TM_OK)
         status = tm_untangle_layer(m, octree, surface, progress, error);
-    if (status == TM_OK && surface->regions)
+    if (status == TM_OK && surface->walls)
+        status = count_labels(m, octree, surface, error);
+    else if (status == TM_OK && surface->regions)
         status = count_regions(m, octree, surface, error);
     if (status != TM_OK)
         return status;
