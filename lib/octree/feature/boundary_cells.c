@@ -92,7 +92,7 @@ void tm_boundary_cells_near(const tm_boundary_cells *cells, const double point[3
 typedef struct {
     const tm_boundary_cells *cells;
     const double *point;
-    const uint8_t *taken;
+    tm_boundary_filter filter;
     uint32_t node;
     double distance2;
 } nearest;
@@ -101,7 +101,8 @@ static void compare_nearest(void *context, uint32_t s)
 {
     nearest *n = context;
     double xyz[3];
-    if (n->taken && n->taken[s])
+    if ((n->filter.taken && n->filter.taken[s]) ||
+        (n->filter.set && n->filter.set[s] != n->filter.which))
         return;
     tm_boundary_node_point(n->cells->boundary, s, xyz);
     const double distance2 = tm_distance2(n->point, xyz);
@@ -112,9 +113,9 @@ static void compare_nearest(void *context, uint32_t s)
 }
 
 uint32_t tm_boundary_cells_nearest(const tm_boundary_cells *cells, const double point[3],
-                                   const uint8_t *taken, double *distance2)
+                                   tm_boundary_filter filter, double *distance2)
 {
-    nearest n = {cells, point, taken, TM_NONE, INFINITY};
+    nearest n = {cells, point, filter, TM_NONE, INFINITY};
     tm_boundary_cells_near(cells, point, compare_nearest, &n);
     *distance2 = n.distance2;
     return n.node;

@@ -4,7 +4,7 @@
 #ifndef TM_SURFACE_SURFACE_DISTANCE_H
 #define TM_SURFACE_SURFACE_DISTANCE_H
 
-#include "surface.h"
+#include "../surface.h"
 
 TM_EXTERN_C_BEGIN
 

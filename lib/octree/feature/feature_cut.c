@@ -46,6 +46,20 @@ static void normal_at(const tm_surface *surface, const tm_surface_point *at,
                        surface->xyz[t[2]]);
 }
 
+/* Whether a curve where walls meet goes around corner i of a face: its nodes are on edges
+ * there, and only later spread along it. */
+static bool is_passed_by_walls(const tm_feature *feature, const tm_surface *surface,
+                               const uint32_t face[4], unsigned i)
+{
+    const uint32_t before = face[(i + 3) % 4], after = face[(i + 1) % 4];
+    if (feature->kind[face[i]] != TM_ON_CURVE ||
+        !tm_curve_is_of_walls(surface, feature->of[face[i]]))
+        return false;
+    const uint32_t *along = feature->along[face[i]];
+    return (along[0] == before && along[1] == after) ||
+           (along[0] == after && along[1] == before);
+}
+
 void tm_feature_cut_wide(const tm_feature *feature, tm_interior_boundary *boundary,
                          const tm_surface *surface, const uint8_t *on_path,
                          const tm_surface_point *at)
@@ -66,7 +80,10 @@ void tm_feature_cut_wide(const tm_feature *feature, tm_interior_boundary *bounda
             point_of(feature, boundary, surface, boundary->face[f][i], p[1]);
             point_of(feature, boundary, surface, boundary->face[f][after], p[2]);
             normal_at(surface, &at[boundary->face[f][(i + 2) % 4]], normal);
-            const double cosine = cosine_at(p[0], p[1], p[2], normal);
+            const double cosine =
+                is_passed_by_walls(feature, surface, boundary->face[f], i)
+                    ? -1
+                    : cosine_at(p[0], p[1], p[2], normal);
             if (cosine < widest) {
                 widest = cosine;
                 boundary->cut[f] = i % 2 ? TM_CUT_13 : TM_CUT_02;

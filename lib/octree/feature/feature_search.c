@@ -73,12 +73,21 @@ static bool may_pass(const tm_path_finder *p, const tm_path_visit *v, uint32_t s
                      const tm_path_stop *from, const tm_path_stop *to)
 {
     const double size = p->boundary->size[s];
+    if (p->sets && p->sets->node[s] != p->sets->curve[p->curve])
+        return false;
     if (p->feature->kind[s] != TM_ON_PATCH ||
         v->distance2 > p->tube * p->tube * size * size)
         return false;
     const double middle = (from->param + to->param) / 2;
     const double half = (to->param - from->param) / 2 + p->tube * size;
     return along_curve(p, v->param, middle) <= half;
+}
+
+/* Whether the path may go from one node to the next: only between the curve's regions. */
+static bool may_step(const tm_path_finder *p, uint32_t s, uint32_t t)
+{
+    return !p->sets ||
+           tm_region_set_between(p->boundary, s, t) == p->sets->curve[p->curve];
 }
 
 /* The neighbours of s: along edges and, of faces that are not cut, diagonals. A
@@ -147,7 +156,8 @@ tm_status tm_path_search(tm_path_finder *p, const tm_path_stop *from,
                 face_neighbours(p->boundary, p->boundary->around[i], s, next);
             for (unsigned j = 0; status == TM_OK && j < n; j++) {
                 const tm_path_visit *v = look_at(p, next[j]);
-                if (next[j] == to->node || may_pass(p, v, next[j], from, to))
+                if ((next[j] == to->node || may_pass(p, v, next[j], from, to)) &&
+                    may_step(p, s, next[j]))
                     status = relax(p, s, next[j], error);
             }
         }

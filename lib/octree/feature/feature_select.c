@@ -111,7 +111,8 @@ static void drop_groups(chooser *c)
             curve_box(s, curve, box);
         else
             memcpy(box, c->box[tm_set_root(c->parent, from)], sizeof box);
-        c->choice->curve[curve] = extent(box) >= least_extent(c, curve, extent(whole));
+        c->choice->curve[curve] = tm_curve_is_of_walls(s, curve) ||
+                                  extent(box) >= least_extent(c, curve, extent(whole));
     }
 }
 
@@ -127,7 +128,8 @@ static void drop_ends(chooser *c)
         more = false;
         for (size_t curve = 0; curve < s->curves; curve++) {
             const uint32_t from = end_of(c, curve, 0), to = end_of(c, curve, 1);
-            if (!c->choice->curve[curve] || from == TM_NONE || to == TM_NONE ||
+            if (tm_curve_is_of_walls(s, curve) || !c->choice->curve[curve] ||
+                from == TM_NONE || to == TM_NONE ||
                 (c->degree[from] > 1 && c->degree[to] > 1) ||
                 s->curve_length[curve] >= short_end * c->size[curve])
                 continue;

@@ -5,7 +5,7 @@
 #define TM_LAYER_FEATURE_H
 
 #include "../../base/extern_c.h"
-#include "interior_boundary.h"
+#include "../interior/interior_boundary.h"
 
 TM_EXTERN_C_BEGIN
 

@@ -3,7 +3,7 @@
 #ifndef TM_LAYER_BOUNDARY_CELLS_H
 #define TM_LAYER_BOUNDARY_CELLS_H
 
-#include "interior_boundary.h"
+#include "../interior/interior_boundary.h"
 
 typedef struct tm_boundary_cells {
     const tm_interior_boundary *boundary;
@@ -22,10 +22,17 @@ void tm_boundary_cells_free(tm_boundary_cells *cells);
 void tm_boundary_cells_near(const tm_boundary_cells *cells, const double point[3],
                             void (*found)(void *context, uint32_t node), void *context);
 
-/* The closest of these nodes, of those with taken[node] == 0 where taken is not NULL;
- * TM_NONE where there is none. *distance2 is its squared distance on the lattice, or
- * infinite. */
+/* Which nodes are looked at: those with taken[node] == 0 and set[node] == which, where
+ * these are not NULL. */
+typedef struct tm_boundary_filter {
+    const uint8_t *taken;
+    const uint64_t *set;
+    uint64_t which;
+} tm_boundary_filter;
+
+/* The closest of these nodes that the filter lets pass; TM_NONE where there is none.
+ * *distance2 is its squared distance on the lattice, or infinite. */
 uint32_t tm_boundary_cells_nearest(const tm_boundary_cells *cells, const double point[3],
-                                   const uint8_t *taken, double *distance2);
+                                   tm_boundary_filter filter, double *distance2);
 
 #endif

@@ -22,14 +22,16 @@ typedef struct tm_interior_boundary {
     uint32_t (*grid)[3]; /* [nodes]: on the lattice */
     double *size;        /* [nodes]: side of the smallest leaf with a face there */
     size_t faces;
-    uint32_t (*face)[4];  /* interior boundary nodes; counter-clockwise seen from outside;
-                             TM_NONE as  the fourth of a triangle */
-    uint32_t *leaf;       /* [faces]: the chosen one that it is of, ascending */
-    uint8_t *piece;       /* [faces]: it is piece i of the leaf's face f (tm_face_pieces):
-                             TM_FACE_PIECES * f + i, ascending for each leaf */
-    uint8_t *cut;         /* [faces]: tm_cut; TM_UNCUT at first */
-    size_t *around_start; /* [nodes + 1] */
-    uint32_t *around;     /* the faces at node n: around[around_start[n]] … */
+    uint32_t (*face)[4]; /* interior boundary nodes; counter-clockwise seen from outside;
+                            TM_NONE as  the fourth of a triangle */
+    uint32_t *leaf;      /* [faces]: the chosen one that it is of, ascending */
+    uint8_t *piece;      /* [faces]: it is piece i of the leaf's face f (tm_face_pieces):
+                            TM_FACE_PIECES * f + i, ascending for each leaf */
+    uint32_t (*region)[2]; /* [faces]: of its leaf, and of what is beyond it; NULL where
+                              leaves have none (interior_leaves.h) */
+    uint8_t *cut;          /* [faces]: tm_cut; TM_UNCUT at first */
+    size_t *around_start;  /* [nodes + 1] */
+    uint32_t *around;      /* the faces at node n: around[around_start[n]] … */
 } tm_interior_boundary;
 
 /* The corners of a face: 3 or 4. */
@@ -73,6 +75,12 @@ tm_leaf_state tm_interior_leaf_state(const tm_interior *interior, const tm_octre
 tm_status tm_interior_boundary_find(tm_interior_boundary *boundary,
                                     const tm_octree *octree, const tm_interior *interior,
                                     tm_error *error);
+/* Finds the boundary of leaves in parts, which have the same nodes `used`: the faces that
+ * nothing is beyond, and those between two parts, once, as faces of the part that comes
+ * first. Nodes are numbered in the octree's order, faces part by part, leaf by leaf. */
+tm_status tm_interior_boundary_of_parts(tm_interior_boundary *boundary,
+                                        const tm_octree *octree, const tm_interior *part,
+                                        size_t parts, tm_error *error);
 void tm_interior_boundary_free(tm_interior_boundary *boundary);
 
 TM_EXTERN_C_END

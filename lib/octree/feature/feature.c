@@ -42,7 +42,10 @@ static void consider(void *context, uint32_t s)
     const double reach = 3.5; /* sides of a leaf */
     finder *find = context;
     const tm_surface *surface = find->path.surface;
+    const tm_region_sets *sets = find->path.sets;
     double xyz[3];
+    if (sets && sets->node[s] != sets->corner[find->corner])
+        return;
     tm_boundary_node_point(find->path.boundary, s, xyz);
     const double *corner = surface->xyz[surface->corner[find->corner]];
     const double size = find->path.boundary->size[s];
@@ -241,7 +244,7 @@ static tm_status choose(finder *find, tm_error *error)
         const uint32_t middle = surface->curve_node[(begin + end) / 2];
         double distance2;
         const uint32_t n = tm_boundary_cells_nearest(
-            find->path.cells, surface->xyz[middle], NULL, &distance2);
+            find->path.cells, surface->xyz[middle], (tm_boundary_filter){0}, &distance2);
         size[c] = n == TM_NONE ? find->path.boundary->side : find->path.boundary->size[n];
     }
     const tm_status status = tm_feature_choose(&find->choice, surface, size, error);
@@ -283,10 +286,14 @@ tm_status tm_feature_find(tm_feature *feature, tm_interior_boundary *boundary,
     if (status != TM_OK || surface->corners + surface->curves == 0)
         return status;
     tm_boundary_cells cells;
+    tm_region_sets sets = {0};
     status = tm_boundary_cells_sort(&cells, boundary, error);
+    if (status == TM_OK && surface->walls)
+        status = tm_region_sets_find(&sets, boundary, surface, error);
     finder find = {.path = {.surface = surface,
                             .cells = &cells,
                             .boundary = boundary,
+                            .sets = surface->walls ? &sets : NULL,
                             .feature = feature}};
     find.path.on_path = calloc(boundary->faces + 1, 1);
     find.path.visit = calloc(boundary->nodes + 1, sizeof *find.path.visit);
@@ -304,6 +311,7 @@ tm_status tm_feature_find(tm_feature *feature, tm_interior_boundary *boundary,
     if (status == TM_OK)
         tm_feature_cut_wide(feature, boundary, surface, find.path.on_path, at);
     free_finder(&find);
+    tm_region_sets_free(&sets);
     tm_boundary_cells_free(&cells);
     return status;
 }

@@ -10,10 +10,12 @@ enum { LEAF_FACES = 6, LEAF_EDGES = 12 };
 
 typedef struct {
     const tm_octree *octree;
-    const tm_interior *interior;
+    const tm_interior *part;
+    size_t parts;
+    const tm_interior *interior; /* the part whose faces are found */
     tm_interior_boundary *boundary;
     uint32_t *boundary_node; /* [nodes of the octree]: TM_NONE where it is none */
-    size_t face_room, leaf_room, piece_room;
+    size_t face_room, leaf_room, piece_room, region_room;
 } finder;
 
 tm_leaf_state tm_interior_leaf_state(const tm_interior *interior, const tm_octree *octree,
@@ -32,14 +34,15 @@ tm_leaf_state tm_interior_leaf_state(const tm_interior *interior, const tm_octre
 static tm_status number_nodes(finder *find, tm_error *error)
 {
     const tm_octree *octree = find->octree;
-    const tm_interior *interior = find->interior;
     tm_interior_boundary *boundary = find->boundary;
     find->boundary_node = tm_new(octree->nodes, sizeof *find->boundary_node);
     if (!find->boundary_node)
         return tm_fail_memory(error);
     for (size_t n = 0; n < octree->nodes; n++) {
-        const bool on_boundary = interior->used[n] && interior->mask[n] != 0 &&
-                                 interior->mask[n] != TM_ALL_OCTANTS;
+        bool on_boundary = false;
+        for (size_t p = 0; p < find->parts; p++)
+            on_boundary |= find->part[p].used[n] && find->part[p].mask[n] != 0 &&
+                           find->part[p].mask[n] != TM_ALL_OCTANTS;
         find->boundary_node[n] = on_boundary ? (uint32_t)boundary->nodes++ : TM_NONE;
     }
     boundary->grid_node = tm_new(boundary->nodes, sizeof *boundary->grid_node);
@@ -78,14 +81,18 @@ static tm_status find_sizes(tm_interior_boundary *boundary, const tm_octree *oct
     return TM_OK;
 }
 
-/* Whether nothing is chosen beyond face f of a leaf at its corner. */
+/* Whether nothing of the same part, nor of one before, is beyond face f of a leaf at its
+ * corner. */
 static bool is_open(const finder *find, size_t leaf, unsigned f, unsigned corner)
 {
     const uint32_t node = find->octree->node[leaf][corner];
     const unsigned own = tm_point_octants[corner];
     const unsigned step = 1u << f / 2;
     const unsigned beyond = f % 2 ? own << step : own >> step;
-    return !(find->interior->mask[node] & beyond);
+    for (const tm_interior *p = find->part; p <= find->interior; p++)
+        if (p->mask[node] & beyond)
+            return false;
+    return true;
 }
 
 /* A corner of the leaf on face f that a piece has, or where it has none, any one: then
@@ -96,6 +103,25 @@ static unsigned corner_of(unsigned f, const tm_piece *piece)
         if (piece->point[i] < TM_LEAF_EDGE)
             return piece->point[i];
     return f % 2 ? 1u << f / 2 : 0;
+}
+
+/* The regions on both sides of a piece of face f of a leaf, which has that corner. */
+static tm_status add_regions(finder *find, size_t leaf, unsigned f, unsigned corner,
+                             tm_error *error)
+{
+    tm_interior_boundary *boundary = find->boundary;
+    if (!find->part->label)
+        return TM_OK;
+    void *region = tm_grow(boundary->region, &find->region_room, boundary->faces + 1,
+                           sizeof *boundary->region);
+    if (!region)
+        return tm_fail_memory(error);
+    boundary->region = region;
+    const unsigned step = 1u << f / 2, own = 7 - corner;
+    boundary->region[boundary->faces][0] = find->part->label[leaf];
+    boundary->region[boundary->faces][1] =
+        find->part->octant[find->octree->node[leaf][corner]][own ^ step];
+    return TM_OK;
 }
 
 static tm_status add_face(finder *find, size_t leaf, const tm_piece *piece,
@@ -144,10 +170,12 @@ static tm_status add_faces_of(finder *find, size_t leaf, tm_error *error)
         tm_piece piece[TM_FACE_PIECES];
         const unsigned pieces = tm_face_pieces(state, f, piece);
         for (unsigned i = 0; i < pieces; i++) {
-            if (!is_open(find, leaf, f, corner_of(f, &piece[i])))
+            const unsigned corner = corner_of(f, &piece[i]);
+            if (!is_open(find, leaf, f, corner))
                 continue;
-            const tm_status status =
-                add_face(find, leaf, &piece[i], TM_FACE_PIECES * f + i, error);
+            tm_status status = add_regions(find, leaf, f, corner, error);
+            if (status == TM_OK)
+                status = add_face(find, leaf, &piece[i], TM_FACE_PIECES * f + i, error);
             if (status != TM_OK)
                 return status;
         }
@@ -176,23 +204,33 @@ static tm_status find_around(tm_interior_boundary *boundary, tm_error *error)
     return TM_OK;
 }
 
-tm_status tm_interior_boundary_find(tm_interior_boundary *boundary,
-                                    const tm_octree *octree, const tm_interior *interior,
-                                    tm_error *error)
+tm_status tm_interior_boundary_of_parts(tm_interior_boundary *boundary,
+                                        const tm_octree *octree, const tm_interior *part,
+                                        size_t parts, tm_error *error)
 {
     *boundary = (tm_interior_boundary){.side = octree->side, .finest = octree->finest};
     memcpy(boundary->low, octree->low, sizeof boundary->low);
-    finder find = {.octree = octree, .interior = interior, .boundary = boundary};
+    finder find = {.octree = octree, .part = part, .parts = parts, .boundary = boundary};
     tm_status status = number_nodes(&find, error);
-    for (size_t l = 0; status == TM_OK && l < octree->leaves; l++)
-        if (interior->chosen[l])
-            status = add_faces_of(&find, l, error);
+    for (size_t p = 0; status == TM_OK && p < parts; p++) {
+        find.interior = &part[p];
+        for (size_t l = 0; status == TM_OK && l < octree->leaves; l++)
+            if (part[p].chosen[l])
+                status = add_faces_of(&find, l, error);
+    }
     if (status == TM_OK)
         status = find_sizes(boundary, octree, error);
     if (status == TM_OK)
         status = find_around(boundary, error);
     free(find.boundary_node);
     return status;
+}
+
+tm_status tm_interior_boundary_find(tm_interior_boundary *boundary,
+                                    const tm_octree *octree, const tm_interior *interior,
+                                    tm_error *error)
+{
+    return tm_interior_boundary_of_parts(boundary, octree, interior, 1, error);
 }
 
 void tm_interior_boundary_free(tm_interior_boundary *boundary)
@@ -203,6 +241,7 @@ void tm_interior_boundary_free(tm_interior_boundary *boundary)
     free(boundary->face);
     free(boundary->leaf);
     free(boundary->piece);
+    free(boundary->region);
     free(boundary->cut);
     free(boundary->around_start);
     free(boundary->around);

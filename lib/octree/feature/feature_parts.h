@@ -6,6 +6,7 @@
 
 #include "boundary_cells.h"
 #include "feature.h"
+#include "../interior/region_sets.h"
 
 /* feature_select.c: which curves of a surface are worth a path. On a rough surface sharp
  * edges come singly and in small groups that are not edges of the shape. */
@@ -17,12 +18,12 @@ typedef struct tm_feature_choice {
     uint32_t *corner_of; /* [nodes of the surface]: the corner there, or TM_NONE */
 } tm_feature_choice;
 
-/* Leaves out curves that hang together with none of the others over more than a few
- * sides of a leaf (or half of the surface), then, again and again, curves of less than
- * two sides that end freely; and the corners that have lost all their curves. Corners
- * without curves, the tips of cones, stay. size[c] is the side of the leaves near curve
- * c. TM_ERROR_SYSTEM where memory is out. *choice is to be freed, after an error too.
- * O(n). */
+/* Leaves out, of those where no walls meet, curves that hang together with none of the
+ * others over more than a few sides of a leaf (or half of the surface), then, again and
+ * again, curves of less than two sides that end freely; and the corners that have lost
+ * all their curves. Corners without curves, the tips of cones, stay. size[c] is the side
+ * of the leaves near curve c. TM_ERROR_SYSTEM where memory is out. *choice is to be
+ * freed, after an error too. O(n). */
 tm_status tm_feature_choose(tm_feature_choice *choice, const tm_surface *surface,
                             const double *size, tm_error *error);
 void tm_feature_choice_free(tm_feature_choice *choice);
@@ -60,6 +61,7 @@ typedef struct tm_path_finder {
     const tm_surface *surface;
     const tm_boundary_cells *cells;
     tm_interior_boundary *boundary;
+    const tm_region_sets *sets; /* NULL where no walls meet */
     tm_feature *feature;
     uint8_t *on_path; /* [faces]: bit i where the edge from corner i is on one */
     /* of the search that is under way */

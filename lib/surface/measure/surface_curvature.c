@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "surface_curvature.h"
 
-#include "../geom/vector.h"
-#include "surface_parts.h"
+#include "../../geom/vector.h"
+#include "../surface_parts.h"
 
 #include <math.h>
 

@@ -27,6 +27,13 @@ static uint32_t half_at(const regions *r, size_t f, unsigned i)
     return (uint32_t)(2 * f + (turned >= 2));
 }
 
+/* Whether faces are between the same regions. */
+static bool is_same_wall(const tm_interior_boundary *boundary, size_t f, size_t g)
+{
+    return !boundary->region || (boundary->region[f][0] == boundary->region[g][0] &&
+                                 boundary->region[f][1] == boundary->region[g][1]);
+}
+
 /* Joins the halves on both sides of each edge that is on no path. */
 static void join_edge(regions *r, size_t f, unsigned i)
 {
@@ -36,7 +43,7 @@ static void join_edge(regions *r, size_t f, unsigned i)
     for (size_t j = boundary->around_start[a]; j < boundary->around_start[a + 1]; j++) {
         const uint32_t g = boundary->around[j];
         const unsigned n = tm_boundary_face_corners(boundary, g);
-        for (unsigned c = 0; g != f && c < n; c++)
+        for (unsigned c = 0; g != f && is_same_wall(boundary, f, g) && c < n; c++)
             if (boundary->face[g][c] == b && boundary->face[g][(c + 1) % n] == a)
                 tm_set_unite(r->parent, half_at(r, f, i), half_at(r, g, c));
     }

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "surface_distance.h"
 
-#include "../base/array.h"
-#include "../geom/vector.h"
-#include "../stream/coordinates.h"
-#include "surface_parts.h"
+#include "../../base/array.h"
+#include "../../geom/vector.h"
+#include "../../stream/coordinates.h"
+#include "../surface_parts.h"
 #include "surface_sharp.h"
-#include "surface_tree.h"
+#include "../surface_tree.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -3,8 +3,8 @@
 #ifndef TM_SURFACE_SURFACE_CURVATURE_H
 #define TM_SURFACE_SURFACE_CURVATURE_H
 
-#include "../base/extern_c.h"
-#include "surface.h"
+#include "../../base/extern_c.h"
+#include "../surface.h"
 
 TM_EXTERN_C_BEGIN
 

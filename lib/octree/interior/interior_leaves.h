@@ -17,14 +17,17 @@ typedef struct tm_interior {
                                leaf, or in the middle of an edge of a face with a centre */
     size_t count;           /* leaves chosen */
     size_t filled, removed; /* changed so that the boundary is a manifold */
+    uint32_t *label;        /* [leaves]: of a surface with walls, the region, 0 outside;
+                               else NULL */
+    uint32_t (*octant)[8];  /* [nodes]: the same of the octants around it */
 } tm_interior;
 
 /* Chooses the leaves whose centres are inside the surface, then adds and takes away some
  * until at each node of their boundary (1) the faces of it make one fan and (2) no two of
  * them face each other, so that the node can move inward and away from all of them. The
- * fewest and those whose centres are closest to the surface are changed.
- * TM_ERROR_SYSTEM where memory is out. *interior is to be freed, after an error too.
- * Expected O(leaves). */
+ * fewest and those whose centres are closest to the surface are changed. Of a surface
+ * with walls it is what tm_interior_label() does. TM_ERROR_SYSTEM where memory is out.
+ * *interior is to be freed, after an error too. Expected O(leaves). */
 tm_status tm_interior_choose(tm_interior *interior, const tm_octree *octree,
                              const tm_surface *surface, tm_error *error);
 void tm_interior_free(tm_interior *interior);
@@ -38,6 +41,25 @@ void tm_interior_free(tm_interior *interior);
 tm_status tm_interior_find_enclosed(tm_interior *enclosed, tm_interior *interior,
                                     const tm_octree *octree, const tm_surface *surface,
                                     tm_error *error);
+
+/* The part, of so many, that has a leaf; `parts` where none has. */
+static inline size_t tm_interior_part_of(const tm_interior *part, size_t parts,
+                                         size_t leaf)
+{
+    size_t p = 0;
+    while (p < parts && !part[p].chosen[leaf])
+        p++;
+    return p;
+}
+
+/* How far the surface is from a leaf's centre, in its sides; those that it does not cross
+ * are farther than any that it does. */
+double tm_leaf_depth(const tm_octree *octree, const tm_surface *surface, size_t leaf);
+
+/* Whether a leaf, not the first, is on the same side of all surface as the one before it:
+ * between two leaves that touch and that the surface does not meet there is none of it.
+ */
+bool tm_leaf_is_as_before(const tm_octree *octree, size_t leaf);
 
 /* Makes a leaf chosen that is not, or the other way, with the masks of its nodes; used
  * and count are then as tm_interior_find_used() says again. */

@@ -3,7 +3,7 @@
 #ifndef TM_SURFACE_SURFACE_SHARP_H
 #define TM_SURFACE_SURFACE_SHARP_H
 
-#include "surface.h"
+#include "../surface.h"
 
 /* Both as triangles of the nodes a b b and a a a: sets of triangles without area. Their
  * arrays xyz and triangle, and trees where they are not empty, are made here. */

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "surface_sharp.h"
 
-#include "../base/array.h"
-#include "../geom/vector.h"
-#include "../mesh/polygon_edges.h"
-#include "surface_parts.h"
-#include "surface_tree.h"
+#include "../../base/array.h"
+#include "../../geom/vector.h"
+#include "../../mesh/polygon_edges.h"
+#include "../surface_parts.h"
+#include "../surface_tree.h"
 
 #include <stdlib.h>
 #include <string.h>

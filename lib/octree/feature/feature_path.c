@@ -76,7 +76,8 @@ static void take_off_curve(tm_path_finder *p, uint32_t s)
 }
 
 /* Appends the nodes after the first stop up to the second, and takes them. Two edges of
- * one face would be flattened to a straight angle, so their third side is taken. */
+ * one face would be flattened to a straight angle, so their third side is taken; not
+ * where walls meet, which is along the edges. */
 static tm_status take(tm_path_finder *p, const tm_path_stop *from, const tm_path_stop *to,
                       tm_error *error)
 {
@@ -94,7 +95,7 @@ static tm_status take(tm_path_finder *p, const tm_path_stop *from, const tm_path
     size_t kept = begin;
     for (size_t i = begin; i < p->path_count; i++) {
         const uint32_t previous = kept > begin ? p->path[kept - 1] : from->node;
-        if (i + 1 < p->path_count &&
+        if (i + 1 < p->path_count && !tm_curve_is_of_walls(p->surface, p->curve) &&
             can_cut_short(p->boundary, previous, p->path[i], p->path[i + 1]))
             continue;
         p->path[kept++] = p->path[i];
@@ -204,8 +205,12 @@ static uint32_t node_near(const tm_path_finder *p, double param)
     double point[3];
     point_on_curve(p, param, point);
     double distance2;
-    const uint32_t s =
-        tm_boundary_cells_nearest(p->cells, point, p->feature->kind, &distance2);
+    tm_boundary_filter filter = {.taken = p->feature->kind};
+    if (p->sets) {
+        filter.set = p->sets->node;
+        filter.which = p->sets->curve[p->curve];
+    }
+    const uint32_t s = tm_boundary_cells_nearest(p->cells, point, filter, &distance2);
     const double reach = s == TM_NONE ? 0 : p->tube * p->boundary->size[s];
     return distance2 <= reach * reach ? s : TM_NONE;
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "interior_leaves.h"
+#include "region_leaves.h"
 
 #include "../../base/array.h"
 #include "../../base/disjoint_sets.h"
@@ -23,15 +24,18 @@ static bool touch(const tm_octree *octree, const tm_leaf *a, const tm_leaf *b)
     return true;
 }
 
-/* Between two leaves that touch and that the surface does not meet there is none of it,
- * so the second needs no test. */
+bool tm_leaf_is_as_before(const tm_octree *octree, size_t leaf)
+{
+    const tm_leaf *own = &octree->leaf[leaf];
+    return !own->crossed && !own[-1].crossed && touch(octree, own, own - 1);
+}
+
 static void classify(tm_interior *interior, const tm_octree *octree,
                      const tm_surface *surface)
 {
     for (size_t l = 0; l < octree->leaves; l++) {
         const tm_leaf *leaf = &octree->leaf[l];
-        if (l > 0 && !leaf->crossed && !leaf[-1].crossed &&
-            touch(octree, leaf, leaf - 1)) {
+        if (l > 0 && tm_leaf_is_as_before(octree, l)) {
             interior->chosen[l] = interior->chosen[l - 1];
             continue;
         }
@@ -113,19 +117,17 @@ static tm_status find_contacts(cleaner *c, tm_error *error)
     return TM_OK;
 }
 
-/* How far the surface is from a leaf's centre, in its sides; those that it does not cross
- * are farther than any that it does. */
-static double depth(const cleaner *c, size_t l)
+double tm_leaf_depth(const tm_octree *octree, const tm_surface *surface, size_t l)
 {
-    const tm_leaf *leaf = &c->octree->leaf[l];
+    const tm_leaf *leaf = &octree->leaf[l];
     const double farther_than_crossed = 1;
     if (!leaf->crossed)
         return farther_than_crossed;
     double centre[3];
-    tm_leaf_centre(c->octree, leaf, centre);
+    tm_leaf_centre(octree, leaf, centre);
     tm_surface_point at = {.triangle = TM_NONE};
-    tm_surface_closest(c->surface, centre, TM_NONE, &at);
-    return sqrt(at.distance2) / tm_leaf_side(c->octree, leaf);
+    tm_surface_closest(surface, centre, TM_NONE, &at);
+    return sqrt(at.distance2) / tm_leaf_side(octree, leaf);
 }
 
 /* How many of a leaf's nodes would have a bad mask if it changed, less those that have
@@ -155,7 +157,7 @@ static void mend(cleaner *c, const contact *around, size_t count, bool only_remo
         const size_t l = around[i].leaf;
         if (only_remove && !c->interior->chosen[l])
             continue;
-        const double cost = depth(c, l) + good * harm(c, l);
+        const double cost = tm_leaf_depth(c->octree, c->surface, l) + good * harm(c, l);
         if (cost < least) {
             least = cost;
             best = i;
@@ -213,6 +215,12 @@ tm_status tm_interior_choose(tm_interior *interior, const tm_octree *octree,
     };
     if (!interior->chosen || !interior->mask || !interior->used)
         return tm_fail_memory(error);
+    if (surface->walls) {
+        const tm_status labelled = tm_interior_label(interior, octree, surface, error);
+        if (labelled == TM_OK)
+            tm_interior_find_used(interior, octree);
+        return labelled;
+    }
     classify(interior, octree, surface);
     for (size_t l = 0; l < octree->leaves; l++)
         if (interior->chosen[l])
@@ -234,6 +242,8 @@ void tm_interior_free(tm_interior *interior)
     free(interior->chosen);
     free(interior->mask);
     free(interior->used);
+    free(interior->label);
+    free(interior->octant);
     *interior = (tm_interior){0};
 }
 
@@ -334,6 +344,15 @@ tm_status tm_interior_find_enclosed(tm_interior *enclosed, tm_interior *interior
     return TM_OK;
 }
 
+/* Whether octants around a node are of several regions. */
+static bool has_several(const uint32_t octant[8])
+{
+    bool several = false;
+    for (int o = 1; o < 8; o++)
+        several |= octant[o] != octant[0];
+    return several;
+}
+
 size_t tm_interior_find_lost(const tm_interior *interior, const tm_octree *octree,
                              const tm_surface *surface, uint8_t *lost)
 {
@@ -341,8 +360,10 @@ size_t tm_interior_find_lost(const tm_interior *interior, const tm_octree *octre
     for (size_t l = 0; l < octree->leaves; l++) {
         bool near = !octree->leaf[l].crossed || surface->by_winding;
         for (int p = 0; !near && p < TM_LEAF_EDGE; p++) {
-            const tm_octant_mask mask = interior->mask[octree->node[l][p]];
-            near = mask != 0 && mask != TM_ALL_OCTANTS;
+            const uint32_t node = octree->node[l][p];
+            const tm_octant_mask mask = interior->mask[node];
+            near = interior->octant ? has_several(interior->octant[node])
+                                    : mask != 0 && mask != TM_ALL_OCTANTS;
         }
         lost[l] = !near;
         count += !near;
