@@ -296,9 +296,11 @@ static void note_losses(const filter *f, const tm_surface *s,
     if (r->corners_lost + r->curves_lost)
         filter_note(f,
                     "%zu corners and %zu sharp edges of the surface are too close "
-                    "together for this level, as near (%g, %g, %g)",
-                    r->corners_lost, r->curves_lost, r->feature_lost_at[0],
-                    r->feature_lost_at[1], r->feature_lost_at[2]);
+                    "together for this level%s, as near (%g, %g, %g)",
+                    r->corners_lost, r->curves_lost,
+                    s->walls ? ", or more regions meet there than octants can follow"
+                             : "",
+                    r->feature_lost_at[0], r->feature_lost_at[1], r->feature_lost_at[2]);
     if (r->off_surface)
         filter_note(f,
                     "%zu boundary nodes are not on the surface yet: there they would "
