@@ -3,15 +3,10 @@
 
 #include "../../base/array.h"
 #include "../../base/disjoint_sets.h"
-#include "../../geom/kernel.h"
-#include "../../geom/vector.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* The kernel's ball has at least this part of the extent as its radius, or what is asked
- * for. */
-static const double least_ball = 1e-4, least_radius = 1e-8;
 
 void tm_growth_free(tm_growth *g)
 {
@@ -19,6 +14,10 @@ void tm_growth_free(tm_growth *g)
     free(g->piece);
     free(g->member);
     free(g->queue);
+    free(g->refused);
+    free(g->box);
+    free(g->new_nodes);
+    free(g->new_edges);
     free(g->node_in);
     free(g->edge_in);
     free(g->node_shared);
@@ -44,25 +43,27 @@ tm_status tm_growth_start(tm_growth *g, const tm_cluster_mesh *mesh,
     g->node_shared = calloc(mesh->nodes + 1, sizeof *g->node_shared);
     g->edge_in = calloc(g->edges.edges + 1, sizeof *g->edge_in);
     g->edge_shared = calloc(g->edges.edges + 1, sizeof *g->edge_shared);
+    g->refused = calloc(faces->cells + 1, sizeof *g->refused);
     g->edge_first = tm_new(g->edges.edges, sizeof *g->edge_first);
     if (!g->piece || !g->node_in || !g->node_shared || !g->edge_in || !g->edge_shared ||
-        !g->edge_first)
+        !g->edge_first || !g->refused || (options->star && !tm_growth_find_boxes(g)))
         return tm_fail_memory(error);
     for (size_t c = 0; c < faces->cells; c++)
         g->piece[c] = TM_NONE;
     return TM_OK;
 }
 
-/* The cell across a facet, or TM_NONE. */
-static uint32_t across(const tm_growth *g, uint32_t f, uint32_t c)
+/* Stamps a node and an edge as those of the piece. */
+static bool stamp(tm_growth *g, uint32_t v, uint32_t e)
 {
-    const uint32_t *side = g->mesh->faces->side[f];
-    return side[0] == c ? side[1] : side[0];
-}
-
-static bool is_in(const tm_growth *g, uint32_t c)
-{
-    return c != TM_NONE && g->piece[c] == g->id;
+    bool memory = true;
+    if (g->node_in[v] != g->stamp_in)
+        memory = tm_append(&g->new_nodes, &g->node_count, &g->node_room, v);
+    if (g->edge_in[e] != g->stamp_in && memory)
+        memory = tm_append(&g->new_edges, &g->edge_count, &g->edge_room, e);
+    g->node_in[v] = g->stamp_in;
+    g->edge_in[e] = g->stamp_in;
+    return memory;
 }
 
 /* Puts a cell into the piece, and those beside it into the queue. */
@@ -72,11 +73,14 @@ static bool put(tm_growth *g, uint32_t c)
     if (!tm_append(&g->member, &g->size, &g->member_room, c))
         return false;
     g->piece[c] = g->id;
+    g->version++;
+    if (g->options->star)
+        tm_growth_widen(g, c, g->low, g->high);
     for (size_t k = faces->cell_start[c]; k < faces->cell_start[c + 1]; k++) {
-        const uint32_t f = faces->cell_facet[k], other = across(g, f, c);
+        const uint32_t f = faces->cell_facet[k], other = tm_growth_across(g, f, c);
         for (size_t i = faces->start[f]; i < faces->start[f + 1]; i++) {
-            g->node_in[faces->node[i]] = g->stamp_in;
-            g->edge_in[g->edges.edge_of[i]] = g->stamp_in;
+            if (!stamp(g, faces->node[i], (uint32_t)g->edges.edge_of[i]))
+                return false;
         }
         if (other != TM_NONE && !g->kept[f] && g->piece[other] != g->id &&
             !tm_append(&g->queue, &g->queued, &g->queue_room, other))
@@ -87,9 +91,17 @@ static bool put(tm_growth *g, uint32_t c)
 
 bool tm_growth_begin(tm_growth *g, uint32_t id, const uint32_t *cell, size_t count)
 {
+    const tm_cell_faces *faces = g->mesh->faces;
+    const uint32_t f = faces->cell_facet[faces->cell_start[cell[0]]];
     bool memory = true;
+    memcpy(g->origin, g->mesh->xyz[faces->node[faces->start[f]]], sizeof g->origin);
+    for (int x = 0; x < 3; x++) {
+        g->low[x] = HUGE_VAL;
+        g->high[x] = -HUGE_VAL;
+    }
     g->id = id;
-    g->size = g->queued = 0;
+    g->size = g->queued = g->node_count = g->edge_count = 0;
+    g->depth = -1;
     g->stamp_in++;
     for (size_t k = 0; k < count && memory; k++)
         memory = put(g, cell[k]);
@@ -103,7 +115,7 @@ static bool find_shared(tm_growth *g, uint32_t c, bool *memory)
     g->shares = 0;
     for (size_t k = faces->cell_start[c]; k < faces->cell_start[c + 1]; k++) {
         const uint32_t f = faces->cell_facet[k];
-        if (!is_in(g, across(g, f, c)))
+        if (!tm_growth_has(g, tm_growth_across(g, f, c)))
             continue;
         *memory = tm_append(&g->shared, &g->shares, &g->shared_room, f);
         if (g->kept[f] || !*memory)
@@ -160,82 +172,8 @@ static bool touches_elsewhere(const tm_growth *g, uint32_t c)
     return false;
 }
 
-/* The plane of a facet, seen from cell c outward, through the innermost of its nodes,
- * from an origin; false where it has no area. */
-static bool plane_of(const tm_growth *g, uint32_t f, uint32_t c, const double origin[3],
-                     double plane[4])
-{
-    const tm_cell_faces *faces = g->mesh->faces;
-    const uint32_t *node = faces->node + faces->start[f];
-    const size_t count = faces->start[f + 1] - faces->start[f];
-    double part[3], to[3];
-    memset(plane, 0, 3 * sizeof *plane);
-    for (size_t i = 1; i + 1 < count; i++) {
-        tm_triangle_normal(part, g->mesh->xyz[node[0]], g->mesh->xyz[node[i]],
-                           g->mesh->xyz[node[i + 1]]);
-        for (int x = 0; x < 3; x++)
-            plane[x] += tm_facet_is_outward(faces, f, c) ? part[x] : -part[x];
-    }
-    const double length = tm_norm(plane);
-    for (int x = 0; x < 3; x++)
-        plane[x] /= length;
-    plane[3] = HUGE_VAL;
-    for (size_t i = 0; i < count; i++) {
-        tm_subtract(to, g->mesh->xyz[node[i]], origin);
-        plane[3] = fmin(plane[3], tm_dot(plane, to));
-    }
-    return length > 0;
-}
-
-/* Collects the planes of the piece with cell c, and its box; false where one has none. */
-static bool collect_planes(tm_growth *g, uint32_t c, size_t *count, double low[3],
-                           double high[3], bool *memory)
-{
-    const tm_cell_faces *faces = g->mesh->faces;
-    const double *origin =
-        g->mesh->xyz[faces->node[faces->start[faces->cell_facet[faces->cell_start[c]]]]];
-    *count = 0;
-    for (size_t m = 0; m <= g->size; m++) {
-        const uint32_t cell = m < g->size ? g->member[m] : c;
-        const size_t start = faces->cell_start[cell], end = faces->cell_start[cell + 1];
-        double(*plane)[4] =
-            tm_grow(g->plane, &g->plane_room, *count + end - start, sizeof *plane);
-        if (!plane) {
-            *memory = false;
-            return false;
-        }
-        g->plane = plane;
-        for (size_t k = start; k < end; k++) {
-            const uint32_t f = faces->cell_facet[k], other = across(g, f, cell);
-            if (is_in(g, other) || other == c)
-                continue;
-            for (size_t i = faces->start[f]; i < faces->start[f + 1]; i++)
-                for (int x = 0; x < 3; x++) {
-                    low[x] = fmin(low[x], g->mesh->xyz[faces->node[i]][x]);
-                    high[x] = fmax(high[x], g->mesh->xyz[faces->node[i]][x]);
-                }
-            if (!plane_of(g, f, cell, origin, plane[(*count)++]))
-                return false;
-        }
-    }
-    return true;
-}
-
-static bool stays_star(tm_growth *g, uint32_t c, bool *memory)
-{
-    double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL};
-    double high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-    double centre[3], radius;
-    size_t count;
-    const double least = g->options->star == TM_STAR_RADIUS
-                             ? fmax(g->options->radius, least_radius)
-                             : least_ball;
-    return collect_planes(g, c, &count, low, high, memory) &&
-           tm_kernel_ball((const double(*)[4])g->plane, count, centre, &radius) &&
-           radius >= least * sqrt(tm_distance2(low, high));
-}
-
-static bool fits(tm_growth *g, uint32_t c, bool *memory)
+/* Whether what a cell shares with the piece is a disc, and it stays a star. */
+static bool meets_well(tm_growth *g, uint32_t c, bool *memory)
 {
     if (!find_shared(g, c, memory) || g->shares == 0)
         return false;
@@ -246,7 +184,17 @@ static bool fits(tm_growth *g, uint32_t c, bool *memory)
         return false;
     g->shared = room;
     return is_disc(g) && !touches_elsewhere(g, c) &&
-           (!g->options->star || stays_star(g, c, memory));
+           (!g->options->star || tm_growth_stays_star(g, c, memory));
+}
+
+/* Whether a cell can be added. */
+static bool fits(tm_growth *g, uint32_t c, bool *memory)
+{
+    if (g->refused[c] == g->version || !meets_well(g, c, memory)) {
+        g->refused[c] = g->version;
+        return false;
+    }
+    return true;
 }
 
 bool tm_growth_grow(tm_growth *g, const uint32_t *label, uint32_t name)
@@ -260,12 +208,31 @@ bool tm_growth_grow(tm_growth *g, const uint32_t *label, uint32_t name)
     return memory;
 }
 
+/* Takes the last cells out again, down to the piece as it was; they were of `old`. */
+static void undo(tm_growth *g, const tm_growth *was, uint32_t old)
+{
+    for (size_t k = was->size; k < g->size; k++)
+        g->piece[g->member[k]] = old;
+    for (size_t k = 0; k < g->node_count; k++)
+        g->node_in[g->new_nodes[k]] = 0;
+    for (size_t k = 0; k < g->edge_count; k++)
+        g->edge_in[g->new_edges[k]] = 0;
+    g->version += g->size > was->size;
+    g->size = was->size;
+    g->queued = was->queued;
+    g->depth = was->depth;
+    memcpy(g->centre, was->centre, sizeof g->centre);
+    memcpy(g->low, was->low, sizeof g->low);
+    memcpy(g->high, was->high, sizeof g->high);
+}
+
 bool tm_growth_add(tm_growth *g, const uint32_t *cell, size_t count, bool *taken)
 {
-    const size_t was = g->size, queued = g->queued;
+    const tm_growth was = *g;
     const uint32_t old = g->piece[cell[0]];
     bool memory = true;
-    for (bool any = true; any && memory && g->size < was + count;) {
+    g->node_count = g->edge_count = 0;
+    for (bool any = true; any && memory && g->size < was.size + count;) {
         any = false;
         for (size_t k = 0; k < count && memory; k++)
             if (g->piece[cell[k]] != g->id && fits(g, cell[k], &memory)) {
@@ -273,18 +240,8 @@ bool tm_growth_add(tm_growth *g, const uint32_t *cell, size_t count, bool *taken
                 any = true;
             }
     }
-    *taken = g->size == was + count;
-    if (*taken || !memory)
-        return memory;
-    for (size_t k = was; k < g->size; k++)
-        g->piece[g->member[k]] = old;
-    if (g->size == was)
-        return true;
-    /* What was put in is stamped: the piece as it was is stamped anew. */
-    g->stamp_in++;
-    g->size = 0;
-    for (size_t k = 0; k < was && memory; k++)
-        memory = put(g, g->member[k]);
-    g->queued = queued;
+    *taken = g->size == was.size + count;
+    if (!*taken)
+        undo(g, &was, old);
     return memory;
 }
