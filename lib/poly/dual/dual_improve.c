@@ -212,8 +212,10 @@ tm_status tm_dual_improve(tm_dual *d, tm_dual_round round, tm_dual_report *repor
         status = tm_fail_memory(error);
     if (status == TM_OK) {
         finish(&m, sweeps > 0, report);
-        memcpy(d->tet_xyz, d->xyz, d->mesh->slots * sizeof *d->tet_xyz);
+        status = tm_dual_find_no_balls(d, &m.v.cells, error);
     }
+    if (status == TM_OK)
+        memcpy(d->tet_xyz, d->xyz, d->mesh->slots * sizeof *d->tet_xyz);
     tm_dual_vicinity_free(&m.v);
     free(m.active);
     free(m.missed);

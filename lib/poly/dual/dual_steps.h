@@ -48,6 +48,9 @@ tm_status tm_dual_make_facets(tm_dual *d, tm_error *error);
 /* Makes facets plane. O(n). */
 tm_status tm_dual_flatten(tm_dual *d, tm_error *error);
 
+/* Nodes with a cell that is no ball are to be taken apart. */
+tm_status tm_dual_find_no_balls(tm_dual *d, const tm_block *cells, tm_error *error);
+
 /* What a round of improvement does: looks only; moves points; moves the rest. */
 typedef enum tm_dual_round { TM_DUAL_LOOK, TM_DUAL_FIRST, TM_DUAL_NEXT } tm_dual_round;
 
