@@ -7,10 +7,12 @@
 
 #include <stdlib.h>
 
-enum { FEATURE_ANGLE = FILTER_OWN };
+enum { FEATURE_ANGLE = FILTER_OWN, CONVEX };
 
 static const struct option options[] = {
-    {"feature-angle", required_argument, NULL, FEATURE_ANGLE}, FILTER_OPTIONS};
+    {"feature-angle", required_argument, NULL, FEATURE_ANGLE},
+    {"convex", no_argument, NULL, CONVEX},
+    FILTER_OPTIONS};
 
 static const double most_feature_angle = 90;
 
@@ -19,17 +21,16 @@ static void put_blocks(filter *f, tm_stream *stream, tm_dual_blocks *made)
 {
     static const char *const gone[] = {".node", ".ele", ".face", ".edge"};
     const bool has_edges = tm_stream_find(stream, ".edge");
-    tm_block *const block[] = {&made->node, &made->edge, &made->facet, &made->cell};
+    const tm_block block[] = {made->node, made->facet, made->cell, made->edge};
+    const size_t blocks = has_edges ? 4 : 3;
     for (size_t k = 0; k < sizeof gone / sizeof *gone; k++)
         if (tm_stream_find(stream, gone[k]))
             tm_stream_remove(stream, tm_stream_find(stream, gone[k]));
-    for (size_t k = 0; k < sizeof block / sizeof *block; k++) {
-        if (block[k] == &made->edge && !has_edges)
-            continue;
-        tm_block *to = tm_stream_add(stream, block[k]->name);
+    for (size_t k = 0; k < blocks; k++) {
+        tm_block *to = tm_stream_add(stream, block[k].name);
         if (!to)
             filter_fail_memory(f);
-        *to = *block[k];
+        *to = block[k];
     }
 }
 
@@ -94,12 +95,14 @@ static void note(filter *f, const tm_dual_report *r)
 int main(int argc, char **argv)
 {
     filter f = {.name = "poly-dual",
-                .synopsis = "[--feature-angle DEG] [FILE]",
+                .synopsis = "[--feature-angle DEG] [--convex] [FILE]",
                 .purpose = "Makes the dual of tetrahedra: a polyhedron for each node.",
                 .help = "      --feature-angle DEG\n"
                         "                      the surface is smooth where it bends by "
                         "less: it may\n"
-                        "                      change there; 0, the default, keeps it\n",
+                        "                      change there; 0, the default, keeps it\n"
+                        "      --convex        move points until cells are convex: takes "
+                        "long\n",
                 .options = options,
                 .letters = FILTER_LETTERS};
     tm_dual_options o = {0};
@@ -109,6 +112,8 @@ int main(int argc, char **argv)
         if (c == FEATURE_ANGLE)
             o.feature_angle =
                 filter_number(&f, "--feature-angle", optarg, 0, most_feature_angle);
+        else if (c == CONVEX)
+            o.convex = true;
     o.progress = filter_progress(&f);
     filter_operands(&f);
     tm_stream stream;

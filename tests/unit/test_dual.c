@@ -224,9 +224,9 @@ static void test_regions(void **state)
             if (k % 2 || random_below(10) == 0)
                 ele->attribute[t] = 1 + random_below(regions);
         tm_block *face = tm_stream_find(&stream, ".face");
-        for (size_t f = 0; f < face->count; f++) {
+        for (size_t f = 0; f < face->count && ele->count > 0; f++) {
             /* A face of a tetrahedron, whichever: no row is there twice. */
-            const uint32_t *n = ele->integer + 4 * (f * 7 % ele->count);
+            const uint32_t *n = ele->integer + 4 * random_below((unsigned)ele->count);
             if (random_below(3) > 0)
                 continue;
             bool known = false;

@@ -18,6 +18,8 @@
 #include "../../stream/stream.h"
 #include "../../tet/mesh.h"
 
+#include <stdbool.h>
+
 TM_EXTERN_C_BEGIN
 
 typedef struct tm_dual_options {
@@ -26,6 +28,7 @@ typedef struct tm_dual_options {
      * (tm_facet_flatness()), so that the surface stays exactly what it is. With more,
      * cells are cut along all edges where the surface is bent inward by more. */
     double feature_angle;
+    bool convex; /* points of cells that are not convex are moved, too: takes long */
     const tm_progress *progress;
 } tm_dual_options;
 

@@ -48,7 +48,8 @@ static void number_cells(tm_dual *d, uint32_t *first)
 {
     const tm_tet_mesh *mesh = d->mesh;
     d->cells = 0;
-    memset(first, UINT8_MAX, mesh->nodes * sizeof *first);
+    for (size_t v = 0; v < mesh->nodes; v++)
+        first[v] = TM_NONE;
     for (uint32_t p = 0; p < 4 * mesh->slots; p++) {
         const uint32_t v = mesh->tet[p / 4][p % 4];
         /* Roots are the first of their sets, and numbered by then. */

@@ -218,6 +218,20 @@ static size_t largest_sector(const cutter *c)
     return largest;
 }
 
+/* Where there is nothing to cut, points may have been put too far. */
+static void put_at_centroids(tm_dual *d, const uint32_t *piece, size_t pieces)
+{
+    const tm_tet_mesh *mesh = d->mesh;
+    for (size_t k = 0; k < pieces; k++) {
+        const uint32_t t = piece[k] / 4;
+        for (int x = 0; x < 3; x++) {
+            d->tet_xyz[t][x] = 0;
+            for (int i = 0; i < 4; i++)
+                d->tet_xyz[t][x] += mesh->xyz[mesh->tet[t][i]][x] / 4;
+        }
+    }
+}
+
 /* Cuts a node until no sector turns too far; *done is false where that cannot be. */
 static bool cut_node(cutter *c, const uint32_t *piece, size_t pieces, bool *done)
 {
@@ -236,6 +250,8 @@ static bool cut_node(cutter *c, const uint32_t *piece, size_t pieces, bool *done
             return false;
         if (c->sectors == 0)
             *done = true;
+        if (c->sectors == 0 && first)
+            put_at_centroids(c->d, piece, pieces);
         if (c->sectors == 0 || !cut_sector(c, &c->sector[largest_sector(c)]))
             return true;
         c->d->cut_nodes += first;

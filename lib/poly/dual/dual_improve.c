@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_SWEEPS = 16, STEPS = 4 };
+enum { STEPS = 4, FIRST_SWEEPS = 8, MORE_SWEEPS = 2 };
 
 /* The least barycentric coordinate that a point may have. */
 static const double least_coordinate = 0.03;
@@ -145,7 +145,7 @@ static size_t mark_points(improver *m, bool all)
         for (int s = 0; s < 2 && all; s++)
             mark_cell(m, d->facet.integer[2 * f + (size_t)s]);
     }
-    for (uint32_t c = 0; c < d->cells; c++) {
+    for (uint32_t c = 0; c < d->cells && d->options->convex; c++) {
         double sum = 0;
         if (!(tm_dual_judge_cell(&m->v.m, c, &sum) > TM_DUAL_BAD))
             continue;
@@ -155,14 +155,14 @@ static size_t mark_points(improver *m, bool all)
     return count;
 }
 
-static bool improve(improver *m)
+static bool improve(improver *m, int sweeps)
 {
     static const double steps[STEPS] = {0.1, 0.2, 0.05, 0.3};
     const tm_dual *d = m->v.d;
     m->active = tm_new(d->points, sizeof *m->active);
     m->missed = calloc(d->points + 1, sizeof *m->missed);
     bool done = m->active && m->missed;
-    for (int sweep = 0; sweep < MOST_SWEEPS && done; sweep++) {
+    for (int sweep = 0; sweep < sweeps && done; sweep++) {
         if (mark_points(m, sweep > 1) == 0)
             break;
         for (uint32_t p = 0; p < d->points && done; p++)
@@ -201,16 +201,21 @@ static void finish(improver *m, bool move, tm_dual_report *report)
     report->moved += m->moved;
 }
 
-tm_status tm_dual_improve(tm_dual *d, bool move, tm_dual_report *report, tm_error *error)
+tm_status tm_dual_improve(tm_dual *d, tm_dual_round round, tm_dual_report *report,
+                          tm_error *error)
 {
+    static const int sweeps_of[] = {0, FIRST_SWEEPS, MORE_SWEEPS};
+    const int sweeps = sweeps_of[round];
     improver m = {0};
     tm_status status = tm_dual_vicinity_make(&m.v, d, error);
-    if (status == TM_OK && move && !improve(&m))
+    if (status == TM_OK && sweeps > 0 && !improve(&m, sweeps))
         status = tm_fail_memory(error);
     if (status == TM_OK) {
-        finish(&m, move, report);
-        memcpy(d->tet_xyz, d->xyz, d->mesh->slots * sizeof *d->tet_xyz);
+        finish(&m, sweeps > 0, report);
+        status = tm_dual_find_no_balls(d, &m.v.cells, error);
     }
+    if (status == TM_OK)
+        memcpy(d->tet_xyz, d->xyz, d->mesh->slots * sizeof *d->tet_xyz);
     tm_dual_vicinity_free(&m.v);
     free(m.active);
     free(m.missed);

@@ -134,7 +134,7 @@ static bool is_beaten(const tm_dual_score *s, const tm_dual_score *limit)
 static void add_cells(const tm_dual_vicinity *v, tm_dual_score *s,
                       const tm_dual_score *limit)
 {
-    for (size_t k = 0; k < v->cell_count; k++) {
+    for (size_t k = 0; k < v->cell_count && v->d->options->convex; k++) {
         s->concave |= tm_dual_judge_cell(&v->m, v->cell[k], &s->sum) > TM_DUAL_BAD;
         if (limit && s->sum >= limit->sum)
             return;
