@@ -117,4 +117,7 @@
 #include "poly/octant/join_octants.h"
 #include "poly/partition.h"
 
+/* view: a page that shows meshes */
+#include "view/view.h"
+
 #endif
