@@ -47,9 +47,14 @@ function pixelLength(pane) {
     return 2 * state.camera.distance * Math.tan(FIELD_OF_VIEW * Math.PI / 360) / least;
 }
 
+/* From where all is seen that is not exploded. */
+function fittingDistance() {
+    return 1.12 * view.radius / Math.sin(FIELD_OF_VIEW * Math.PI / 360);
+}
+
 function fit() {
     state.camera.target = [...view.middle];
-    state.camera.distance = 1.12 * view.radius / Math.sin(FIELD_OF_VIEW * Math.PI / 360);
+    state.camera.distance = fittingDistance() * (1 + state.explode);
     changed();
     draw();
 }

@@ -36,11 +36,11 @@ void main() {
     vec3 normal = normalize(cross(dFdx(vPlace), dFdy(vPlace)));
     if (dot(normal, vPlace) > 0.0)
         normal = -normal;
-    float light = 0.42 + 0.6 * max(dot(normal, vec3(0.267, 0.445, 0.855)), 0.0);
-    vec3 wide = fwidth(vCorner);
+    float light = 0.5 + 0.52 * max(dot(normal, vec3(0.267, 0.445, 0.855)), 0.0);
+    vec3 wide = max(fwidth(vCorner), vec3(1e-6));
     vec3 away = smoothstep(wide * (edgeWidth - 0.6), wide * (edgeWidth + 0.6), vCorner);
     float line = edges * (1.0 - min(min(away.x, away.y), away.z));
-    line *= clamp(1.6 - 5.0 * max(max(wide.x, wide.y), wide.z), 0.12, 1.0);
+    line *= clamp(1.7 - 6.0 * max(max(wide.x, wide.y), wide.z), 0.0, 1.0);
     vec3 colour = mix(vTint * light, edgeColour, line * (fill < 1.0 ? 1.0 : 0.75));
     gl_FragColor = vec4(colour, fill < 1.0 ? max(fill, line * 0.5) : 1.0);
 }`;

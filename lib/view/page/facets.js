@@ -56,43 +56,53 @@ function putKey(faces, h, a, b, c, d) {
     faces.last[h] = high;
 }
 
-/* order[first[v]] … order[first[v + 1] - 1]: the faces whose least node is v. */
+/* order[first[v]] … order[first[v + 1] - 1]: the faces whose least node is v, with next and
+ * last in this order, too: what is compared is side by side. */
 function bucketsOf(faces, nodes) {
-    const first = new Uint32Array(nodes + 1), order = new Uint32Array(faces.count);
-    for (let h = 0; h < faces.count; h++)
-        first[faces.least[h]]++;
+    const {count, least} = faces, first = new Uint32Array(nodes + 1);
+    const order = new Uint32Array(count), next = new Uint32Array(count);
+    const last = new Uint32Array(count), few = 500;
+    for (let h = 0; h < count; h++)
+        first[least[h]]++;
     for (let v = 0, sum = 0; v <= nodes; v++) {
         sum += first[v];
         first[v] = sum;
     }
-    for (let h = faces.count; h-- > 0;)
-        order[--first[faces.least[h]]] = h;
-    return {first, order};
+    for (let h = count; h-- > 0;)
+        order[--first[least[h]]] = h;
+    for (let v = 0; v < nodes; v++)
+        if (first[v + 1] - first[v] > few)
+            order.subarray(first[v], first[v + 1]).sort(
+                (g, h) => faces.next[g] - faces.next[h] || faces.last[g] - faces.last[h] || g - h);
+    for (let i = 0; i < count; i++) {
+        next[i] = faces.next[order[i]];
+        last[i] = faces.last[order[i]];
+    }
+    return {first, order, next, last, few};
 }
 
-/* mate[h]: the face that is the same as h; itself where there is none. */
-function matesOf(faces, buckets, nodes) {
-    const {next, last} = faces, {first, order} = buckets;
-    const mate = new Uint32Array(faces.count).fill(NONE);
-    const few = 64;
+/* mate[h]: the face that is the same as h; itself where there is none. Large buckets are
+ * sorted: what is the same follows. */
+function matesOf(count, buckets, nodes) {
+    const {first, order, next, last, few} = buckets;
+    const mate = new Uint32Array(count).fill(NONE);
     for (let v = 0; v < nodes; v++) {
-        const from = first[v], to = first[v + 1];
-        if (to - from > few)
-            order.subarray(from, to).sort(
-                (g, h) => next[g] - next[h] || last[g] - last[h] || g - h);
+        const from = first[v], to = first[v + 1], isSorted = to - from > few;
         for (let i = from; i < to; i++) {
-            const h = order[i];
+            const h = order[i], n = next[i], l = last[i];
             if (mate[h] !== NONE)
                 continue;
             mate[h] = h;
-            const end = to - from > few ? Math.min(i + 2, to) : to;
+            const end = isSorted && i + 2 < to ? i + 2 : to;
             for (let j = i + 1; j < end; j++) {
+                if (next[j] !== n || last[j] !== l)
+                    continue;
                 const g = order[j];
-                if (next[g] === next[h] && last[g] === last[h] && mate[g] === NONE) {
-                    mate[h] = g;
-                    mate[g] = h;
-                    break;
-                }
+                if (mate[g] !== NONE)
+                    continue;
+                mate[h] = g;
+                mate[g] = h;
+                break;
             }
         }
     }
@@ -102,7 +112,7 @@ function matesOf(faces, buckets, nodes) {
 function facetsOfElements(mesh, marked) {
     const {start, item, elements} = mesh;
     const faces = listFaces(mesh), buckets = bucketsOf(faces, mesh.nodes);
-    const mate = matesOf(faces, buckets, mesh.nodes);
+    const mate = matesOf(faces.count, buckets, mesh.nodes);
     const owner = new Uint32Array(faces.count), facet = new Uint32Array(faces.count);
     for (let e = 0; e < elements; e++)
         owner.fill(e, faces.from[e], faces.from[e + 1]);
@@ -126,18 +136,19 @@ function facetsOfElements(mesh, marked) {
             side[2 * f] = e;
             side[2 * f + 1] = mate[h] !== h ? owner[mate[h]]
                 : !mesh.outer || mesh.outer[e] >> i & 1 ? NONE : LEFT_OUT;
-            for (const t of table[i])
-                facetItem[k++] = item[s + t];
+            const t = table[i];
+            for (let j = 0; j < t.length; j++)
+                facetItem[k++] = item[s + t[j]];
             facetStart[++f] = k;
         }
     }
     Object.assign(mesh, {facets: count, side, facetStart, facetItem, facetMarker: null});
     if (marked.length > 0)
-        markFacets(mesh, marked, faces, buckets, facet);
+        markFacets(mesh, marked, buckets, facet);
 }
 
 /* Markers of the stream's rows go to the facets that have their nodes. */
-function markFacets(mesh, marked, faces, buckets, facet) {
+function markFacets(mesh, marked, buckets, facet) {
     const key = {least: [0], next: [0], last: [0]};
     mesh.facetMarker = new Int32Array(mesh.facets);
     for (const {size, item, marker} of marked) {
@@ -148,7 +159,7 @@ function markFacets(mesh, marked, faces, buckets, facet) {
             const v = key.least[0];
             for (let j = buckets.first[v]; j < buckets.first[v + 1]; j++) {
                 const h = buckets.order[j];
-                if (faces.next[h] === key.next[0] && faces.last[h] === key.last[0] >>> 0)
+                if (buckets.next[j] === key.next[0] && buckets.last[j] === key.last[0])
                     mesh.facetMarker[facet[h]] = marker[r];
             }
         }

@@ -25,9 +25,9 @@ const KEYS = [
     {keys: ['f'], what: 'the other side of the plane', run: flip},
     {keys: ['<', '>'], what: 'peel a layer less, more',
      run: key => set({peel: Math.max(0, Math.min(view.layers(), state.peel + (key === '<' ? -1 : 1)))})},
-    {keys: ['('], run: () => set({explode: Math.max(0, state.explode - 0.1)})},
+    {keys: ['('], run: () => setExplode(state.explode - 0.1)},
     {keys: [')'], what: 'pull elements apart; with ( together',
-     run: () => set({explode: Math.min(1.5, state.explode + 0.1)})},
+     run: () => setExplode(state.explode + 0.1)},
     {keys: ['n'], what: 'colour by the next thing', run: () => {
         const keys = [...view.fields.keys()];
         setField(keys[(keys.indexOf(state.field) + 1) % keys.length]);

@@ -58,7 +58,7 @@ async function start() {
     view.meshes.forEach(makeScene);
     chooseField();
     state.show = view.meshes.length > 1 ? 'both' : 'a';
-    state.camera.distance = 1.12 * view.radius / Math.sin(FIELD_OF_VIEW * Math.PI / 360);
+    state.camera.distance = fittingDistance();
     state.camera.target = [...view.middle];
     readHash(location.hash);
     fillPanel();
@@ -107,7 +107,7 @@ window.meshView = {
         throw error;
     }),
     state, view, set, setField, setCut, setNormal, setOffset, select, selectWorst, selectAll,
-    lookFrom, fit, pick, update: updateNow, pixelsOf, elementAt, hashOfState,
+    setExplode, lookFrom, fit, pick, update: updateNow, pixelsOf, elementAt, hashOfState,
     /* The numbers, in the stream, of the elements that are shown of mesh i. */
     shown: i => {
         const mesh = view.meshes[i], list = [];

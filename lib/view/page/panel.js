@@ -89,7 +89,7 @@ function listenToPanel() {
     on('facing', 'click', () => setNormal(frameOf(state.camera).back));
     on('flip', 'click', flip);
     on('peel', 'input', () => set({peel: Number(byId('peel').value)}));
-    on('explode', 'input', () => set({explode: Number(byId('explode').value)}));
+    on('explode', 'input', () => setExplode(Number(byId('explode').value)));
     on('edges', 'change', () => set({edges: byId('edges').checked}));
     on('ghost', 'change', () => set({ghost: byId('ghost').checked}));
     on('fit', 'click', fit);

@@ -153,6 +153,15 @@ function setOffset(offset) {
     refresh();
 }
 
+/* What is pulled apart is seen from farther away. */
+function setExplode(explode) {
+    const most = 1.5, now = Math.max(0, Math.min(most, explode));
+    state.camera.distance *= (1 + now) / (1 + state.explode);
+    state.explode = now;
+    changed();
+    refresh();
+}
+
 function select(low, high) {
     state.worst = 0;
     state.select = [low, high];
