@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* mesh-view: one page of HTML that shows a mesh, or two. */
+#include "common/input/left_out.h"
 #include "common/input/mesh_input.h"
 
 #include "../lib/view/view.h"
@@ -54,10 +55,11 @@ static const char *short_name(const filter *f)
 static void say_what_is_missing(const filter *f, const tm_view_mesh *mesh)
 {
     if (mesh->shown < mesh->elements)
-        filter_note(f,
-                    "%s: %zu of %zu elements are in the page: those at the boundary and "
-                    "the worst (--most)",
-                    filter_input_name(f), mesh->shown, mesh->elements);
+        filter_leave_out(f,
+                         "%zu of %zu elements, neither at the boundary nor the worst "
+                         "(--most)",
+                         mesh->elements - mesh->shown, mesh->elements);
+    mesh_leave_out(f, mesh->stream);
 }
 
 static void write_json(filter *f, const tm_view_mesh *mesh, size_t meshes)

@@ -43,7 +43,7 @@ static int compare(const void *a, const void *b)
     return (p > q) - (p < q);
 }
 
-/* keep[e] of the worst hundredth, and of those that are as bad. */
+/* keep[e] of the worst hundredth; of those that are equally bad the first. */
 static tm_status mark_worst(const view_source *s, unsigned threads, bool *keep,
                             tm_error *error)
 {
@@ -55,8 +55,15 @@ static tm_status mark_worst(const view_source *s, unsigned threads, bool *keep,
         for (size_t e = 0; e < count; e++)
             sorted[e] = value[e];
         qsort(sorted, count, sizeof *sorted, compare);
-        for (size_t e = 0; e < count; e++)
-            keep[e] = value[e] <= sorted[count / WORST_PART];
+        const double limit = sorted[count / WORST_PART];
+        size_t equal = count / WORST_PART;
+        while (equal > 0 && sorted[equal - 1] == limit)
+            equal--;
+        equal = count / WORST_PART - equal;
+        for (size_t e = 0; e < count; e++) {
+            keep[e] = value[e] < limit || (value[e] == limit && equal > 0);
+            equal -= keep[e] && value[e] == limit;
+        }
     }
     free(sorted);
     free(value);

@@ -221,6 +221,7 @@ static void add_history(view_writer *w, const view_source *s)
         tm_text clean = {0};
         tm_group_clean(&clean, line + skip, size - skip);
         tm_json_string(&w->json, NULL, clean.byte ? clean.byte : "");
+        w->data->failed |= clean.failed;
         tm_text_free(&clean);
         from += size + 1;
     }
