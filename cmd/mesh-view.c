@@ -43,13 +43,26 @@ static void read_options(filter *f, options *o)
         filter_usage_error(f, "only one of the two files can be standard input");
 }
 
-/* The file without its folders, or "standard input". */
-static const char *short_name(const filter *f)
+/* The file without its folders; of standard input what the last line of the stream's
+ * history says of the filter before this one, up to what that counted. */
+static void name_mesh(const filter *f, const tm_stream *stream, tm_text *name)
 {
-    if (!f->input)
-        return "standard input";
-    const char *slash = strrchr(f->input, '/');
-    return slash && slash[1] ? slash + 1 : f->input;
+    const tm_text *history = &stream->history;
+    const char *slash = f->input ? strrchr(f->input, '/') : NULL;
+    size_t from = history->size, to;
+    if (f->input || from == 0) {
+        tm_text_string(name, f->input ? (slash && slash[1] ? slash + 1 : f->input)
+                                      : "standard input");
+        return;
+    }
+    for (from--; from > 0 && history->byte[from - 1] != '\n'; from--)
+        ;
+    while (strchr("# ", history->byte[from]) && from + 1 < history->size)
+        from++;
+    for (to = from; to < history->size && history->byte[to] != '\n'; to++)
+        if (strncmp(history->byte + to, ": ", 2) == 0)
+            break;
+    tm_text_append(name, history->byte + from, to - from);
 }
 
 static void say_what_is_missing(const filter *f, const tm_view_mesh *mesh)
@@ -106,12 +119,18 @@ int main(int argc, char **argv)
 
     tm_stream stream[TM_VIEW_MESHES];
     tm_view_mesh mesh[TM_VIEW_MESHES];
+    tm_text name[TM_VIEW_MESHES] = {0};
     for (size_t m = 0; m < o.meshes; m++) {
         mesh_input_read_to_compute(of[m], &stream[m]);
-        mesh[m] = (tm_view_mesh){.stream = &stream[m], .name = short_name(of[m])};
+        name_mesh(of[m], &stream[m], &name[m]);
+        if (name[m].failed)
+            filter_fail_memory(&f);
+        mesh[m] = (tm_view_mesh){.stream = &stream[m], .name = name[m].byte};
     }
     if (!o.page.title)
-        o.page.title = short_name(&f);
+        o.page.title = name[0].byte;
+    if (o.meshes == 1)
+        mesh[0].name = o.page.title;
     tm_text page = {0};
     tm_error error;
     filter_stage(&f, "packing");
@@ -122,7 +141,9 @@ int main(int argc, char **argv)
     write_json(&f, mesh, o.meshes);
     filter_write_text(&f, &page);
     tm_text_free(&page);
-    for (size_t m = 0; m < o.meshes; m++)
+    for (size_t m = 0; m < o.meshes; m++) {
         tm_stream_free(&stream[m]);
+        tm_text_free(&name[m]);
+    }
     return filter_finish(&f, 0);
 }

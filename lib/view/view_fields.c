@@ -102,7 +102,7 @@ static void measure_chunk(void *context, size_t chunk)
         const uint32_t *node = tm_row_nodes(m->source->cell, e, &k);
         const double value = m->of(xyz, node, k);
         if (m->bits)
-            m->bits[i] = view_float_rounded(value);
+            m->bits[i] = tm_view_float_rounded(value);
         else
             m->value[i] = value;
     }
@@ -131,8 +131,8 @@ static tm_status measure_polyhedra(const view_source *s, unsigned threads,
     return status;
 }
 
-tm_status view_quality(const view_source *s, unsigned threads, double **value,
-                       tm_error *error)
+tm_status tm_view_quality(const view_source *s, unsigned threads, double **value,
+                          tm_error *error)
 {
     const tm_content content = s->content;
     *value = NULL;
@@ -169,7 +169,7 @@ static void add_field(view_writer *w, const field *f, const uint32_t *bits, size
     tm_json_string(&w->json, "unit", f->unit ? f->unit : "");
     tm_json_string(&w->json, "of", f->of);
     tm_json_bool(&w->json, "quality", f->quality);
-    view_numbers(w, "values", type, bits, count);
+    tm_view_numbers(w, "values", type, bits, count);
     tm_json_close(&w->json, '}');
 }
 
@@ -189,7 +189,7 @@ static void take_values(const view_source *s, const double *value, uint32_t *bit
 {
     for (size_t k = 0; k < s->kept; k++) {
         const double v = value[view_element(s, k)];
-        bits[k] = view_float_rounded(isfinite(v) ? v : 0);
+        bits[k] = tm_view_float_rounded(isfinite(v) ? v : 0);
     }
 }
 
@@ -260,7 +260,7 @@ static void add_attributes(view_writer *w, const view_source *s, const tm_block 
                          "", nodes ? "node" : "element", false};
         for (size_t k = 0; k < count; k++) {
             const size_t row = nodes ? k : view_element(s, k);
-            bits[k] = view_float(block->attribute[row * block->attributes + a]);
+            bits[k] = tm_view_float(block->attribute[row * block->attributes + a]);
         }
         add_field(w, &f, bits, count, "f32");
     }
@@ -282,7 +282,7 @@ static void add_markers(view_writer *w, const view_source *s, uint32_t *bits)
               s->node->count, "i32");
 }
 
-tm_status view_fields(view_writer *w, const view_source *s, tm_error *error)
+tm_status tm_view_fields(view_writer *w, const view_source *s, tm_error *error)
 {
     const size_t room = s->kept > s->node->count ? s->kept : s->node->count;
     uint32_t *bits = tm_new(room, sizeof *bits);

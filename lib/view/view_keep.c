@@ -50,7 +50,7 @@ static tm_status mark_worst(const view_source *s, unsigned threads, bool *keep,
     const size_t count = s->cell->count;
     double *value = NULL, *sorted = tm_new(count, sizeof *sorted);
     tm_status status =
-        sorted ? view_quality(s, threads, &value, error) : tm_fail_memory(error);
+        sorted ? tm_view_quality(s, threads, &value, error) : tm_fail_memory(error);
     if (status == TM_OK) {
         for (size_t e = 0; e < count; e++)
             sorted[e] = value[e];
@@ -89,7 +89,7 @@ static tm_status list(view_source *s, const bool *keep, const uint8_t *outer,
     return TM_OK;
 }
 
-tm_status view_keep(view_source *s, size_t most, unsigned threads, tm_error *error)
+tm_status tm_view_keep(view_source *s, size_t most, unsigned threads, tm_error *error)
 {
     const size_t count = s->cell->count;
     s->kept = count;

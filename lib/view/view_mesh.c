@@ -35,8 +35,8 @@ static tm_status add_nodes(view_writer *w, const view_source *s, tm_error *error
     if (!bits)
         return tm_fail_memory(error);
     for (size_t i = 0; i < count; i++)
-        bits[i] = view_float((s->node->real[i] - w->centre[i % 3]) / w->scale);
-    view_numbers(w, "xyz", "f32", bits, count);
+        bits[i] = tm_view_float((s->node->real[i] - w->centre[i % 3]) / w->scale);
+    tm_view_numbers(w, "xyz", "f32", bits, count);
     free(bits);
     return TM_OK;
 }
@@ -55,9 +55,9 @@ static tm_status add_elements(view_writer *w, const view_source *s, tm_error *er
         list_add(&item, node, k);
         size[e] = (uint8_t)k;
     }
-    view_numbers(w, "item", "u32", item.number, item.count);
+    tm_view_numbers(w, "item", "u32", item.number, item.count);
     if (s->content == TM_CONTENT_MIXED)
-        view_bytes(w, "size", size, s->kept);
+        tm_view_bytes(w, "size", size, s->kept);
     free(item.number);
     free(size);
     return TM_OK;
@@ -120,11 +120,11 @@ static tm_status add_facets(view_writer *w, const view_source *s, tm_error *erro
                       list_new(&l.marker, facet->count);
     if (room && place) {
         take_facets(&l, facet, place, s->cell->count);
-        view_numbers(w, "side", "u32", l.side.number, l.side.count);
-        view_numbers(w, "facetSize", "u32", l.size.number, l.size.count);
-        view_numbers(w, "facetItem", "u32", l.item.number, l.item.count);
+        tm_view_numbers(w, "side", "u32", l.side.number, l.side.count);
+        tm_view_numbers(w, "facetSize", "u32", l.size.number, l.size.count);
+        tm_view_numbers(w, "facetItem", "u32", l.item.number, l.item.count);
         if (facet->marker)
-            view_numbers(w, "facetMarker", "i32", l.marker.number, l.marker.count);
+            tm_view_numbers(w, "facetMarker", "i32", l.marker.number, l.marker.count);
     }
     free(l.side.number);
     free(l.size.number);
@@ -169,9 +169,9 @@ static tm_status add_marks(view_writer *w, const view_source *s, tm_error *error
             status = tm_fail_memory(error);
         if (status == TM_OK && l.marker.count > 0) {
             tm_json_open(&w->json, NULL, '{');
-            view_numbers(w, "size", "u32", l.size.number, l.size.count);
-            view_numbers(w, "item", "u32", l.item.number, l.item.count);
-            view_numbers(w, "marker", "i32", l.marker.number, l.marker.count);
+            tm_view_numbers(w, "size", "u32", l.size.number, l.size.count);
+            tm_view_numbers(w, "item", "u32", l.item.number, l.item.count);
+            tm_view_numbers(w, "marker", "i32", l.marker.number, l.marker.count);
             tm_json_close(&w->json, '}');
         }
         free(l.size.number);
@@ -184,7 +184,7 @@ static tm_status add_marks(view_writer *w, const view_source *s, tm_error *error
 
 /* Words ------------------------------------------------------------------------------ */
 
-void view_string(tm_json *json, const char *key, const char *bytes)
+void tm_view_string(tm_json *json, const char *key, const char *bytes)
 {
     tm_text clean = {0};
     tm_group_clean(&clean, bytes, strlen(bytes));
@@ -202,7 +202,7 @@ static void add_names(view_writer *w, const view_source *s)
         tm_json_open(&w->json, NULL, '[');
         tm_json_integer(&w->json, NULL, tm_group_dimension_of(group, g));
         tm_json_integer(&w->json, NULL, tm_group_value(group, g));
-        view_string(&w->json, NULL, tm_group_name(group, g));
+        tm_view_string(&w->json, NULL, tm_group_name(group, g));
         tm_json_close(&w->json, ']');
     }
     tm_json_close(&w->json, ']');
@@ -261,19 +261,19 @@ static tm_status add_arrays(view_writer *w, const view_source *s, tm_error *erro
     else if (status == TM_OK && s->content > TM_CONTENT_POINTS)
         status = add_elements(w, s, error);
     if (s->number)
-        view_numbers(w, "number", "u32", s->number, s->kept);
+        tm_view_numbers(w, "number", "u32", s->number, s->kept);
     if (s->number && s->content != TM_CONTENT_POLYHEDRA)
-        view_bytes(w, "outer", s->outer, s->kept);
+        tm_view_bytes(w, "outer", s->outer, s->kept);
     return status;
 }
 
-tm_status view_mesh(view_writer *w, const view_source *s, const char *name,
-                    tm_error *error)
+tm_status tm_view_put_mesh(view_writer *w, const view_source *s, const char *name,
+                           tm_error *error)
 {
     static const char *const content[] = {"nothing",    "points", "surface",
                                           "tetrahedra", "mixed",  "polyhedra"};
     tm_json_open(&w->json, NULL, '{');
-    view_string(&w->json, "name", name);
+    tm_view_string(&w->json, "name", name);
     tm_json_string(&w->json, "content", content[s->content]);
     tm_json_integer(&w->json, "base", s->stream->base);
     tm_json_integer(&w->json, "nodes", (int64_t)s->node->count);
@@ -289,7 +289,7 @@ tm_status view_mesh(view_writer *w, const view_source *s, const char *name,
         (s->content == TM_CONTENT_TETRAHEDRA || s->content == TM_CONTENT_MIXED))
         status = add_marks(w, s, error);
     if (status == TM_OK)
-        status = view_fields(w, s, error);
+        status = tm_view_fields(w, s, error);
     tm_json_close(&w->json, '}');
     return status;
 }

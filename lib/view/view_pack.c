@@ -137,20 +137,20 @@ static void describe(view_writer *w, const char *key, const char *type, size_t c
     tm_json_close(&w->json, '}');
 }
 
-void view_numbers(view_writer *w, const char *key, const char *type,
-                  const uint32_t *number, size_t count)
+void tm_view_numbers(view_writer *w, const char *key, const char *type,
+                     const uint32_t *number, size_t count)
 {
     describe(w, key, type, count);
     pack(w, &(packing){.number = number, .count = count, .size = PLANES * count});
 }
 
-void view_bytes(view_writer *w, const char *key, const uint8_t *byte, size_t count)
+void tm_view_bytes(view_writer *w, const char *key, const uint8_t *byte, size_t count)
 {
     describe(w, key, "u8", count);
     pack(w, &(packing){.byte = byte, .count = count, .size = count});
 }
 
-uint32_t view_float(double value)
+uint32_t tm_view_float(double value)
 {
     const float nearest = value > FLT_MAX    ? FLT_MAX
                           : value < -FLT_MAX ? -FLT_MAX
@@ -160,9 +160,9 @@ uint32_t view_float(double value)
     return bits;
 }
 
-uint32_t view_float_rounded(double value)
+uint32_t tm_view_float_rounded(double value)
 {
     const uint32_t dropped = 0xff, half = 0x80, infinite = 0x7f800000;
-    const uint32_t bits = view_float(value), rounded = (bits + half) & ~dropped;
+    const uint32_t bits = tm_view_float(value), rounded = (bits + half) & ~dropped;
     return (rounded & infinite) == infinite ? bits & ~dropped : rounded;
 }

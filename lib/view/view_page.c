@@ -78,7 +78,7 @@ static tm_status find_sources(view_source *s, tm_view_mesh *mesh, size_t meshes,
                              .content = content,
                              .node = tm_stream_find(mesh[m].stream, ".node"),
                              .cell = tm_content_block(mesh[m].stream, content)};
-        status = view_keep(&s[m], options->most, threads, error);
+        status = tm_view_keep(&s[m], options->most, threads, error);
         mesh[m].elements = s[m].cell->count;
         mesh[m].shown = s[m].kept;
     }
@@ -93,7 +93,7 @@ static tm_status write_meshes(view_writer *w, const view_source *s,
     tm_status status = TM_OK;
     tm_json_open(&w->json, NULL, '{');
     tm_json_string(&w->json, "version", TM_VERSION);
-    view_string(&w->json, "title", options->title);
+    tm_view_string(&w->json, "title", options->title);
     tm_json_open(&w->json, "centre", '[');
     for (size_t i = 0; i < 3; i++)
         tm_json_double(&w->json, NULL, w->centre[i]);
@@ -101,7 +101,7 @@ static tm_status write_meshes(view_writer *w, const view_source *s,
     tm_json_double(&w->json, "scale", w->scale);
     tm_json_open(&w->json, "meshes", '[');
     for (size_t m = 0; m < meshes && status == TM_OK; m++)
-        status = view_mesh(w, &s[m], mesh[m].name, error);
+        status = tm_view_put_mesh(w, &s[m], mesh[m].name, error);
     tm_json_close(&w->json, ']');
     tm_json_close(&w->json, '}');
     return status;

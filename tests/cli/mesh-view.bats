@@ -95,7 +95,7 @@ END
 page = Page('page.html')
 assert page.header['title'] == '</script><script>alert("1")</script> & \\x01 ÿ', page.header['title']
 head = page.header['meshes'][0]
-assert head['name'] == '<i>.tm' and head['names'][0][2] == '</SCRIPT><b onclick="x">&"\'', head
+assert head['names'][0][2] == '</SCRIPT><b onclick="x">&"\'', head
 inside = page.text[page.text.index('id="header"'):page.text.index('id="array-0"')]
 assert inside.lower().count('</script') == 1
 assert '<title>\n&#60;/script&#62;' in page.text
@@ -172,6 +172,13 @@ both = Page('both.html').header['meshes']
 assert [m['content'] for m in both] == ['tetrahedra', 'polyhedra']
 assert [m['name'] for m in both] == ['a.tm', 'b.tm']
 assert [m['name'] for m in Page('standard.html').header['meshes']] == ['a.tm', 'standard input']
+END
+    # of a pipe the name is what made it
+    lepp-improve -q a.tm | mesh-view -o pipe.html
+    look <<'END'
+page = Page('pipe.html')
+assert page.header['title'] == page.header['meshes'][0]['name']
+assert page.header['title'].startswith('lepp-improve ') and ': ' not in page.header['title']
 END
 }
 
