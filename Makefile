@@ -55,6 +55,13 @@ left_out := octree-mesh octree-repair \
 		tests/unit/test_*.c)))
 endif
 
+# three.js, release 111 (Debian: libjs-three), which draws in the pages of mesh-view and is
+# put into them. Where it is not installed, mesh-view is left out.
+THREE = /usr/share/javascript/three/three.min.js
+ifeq ($(wildcard $(THREE)),)
+left_out += mesh-view $(wildcard lib/view/*.c)
+endif
+
 FUZZ_CASES = 20000
 BUILD = build
 
@@ -95,7 +102,11 @@ fuzzer := $(BUILD)/fuzz/fuzz
 solver := $(BUILD)/solve/poisson
 benchers := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/*.c))
 shapes := $(BUILD)/bench/shapes
-generated := $(BUILD)/generated/powers.h $(BUILD)/generated/transitions.h
+page := lib/view/page/page.html lib/view/page/page.css $(addprefix lib/view/page/,\
+	data.js facets.js colour.js cut.js section.js draw.js controls.js pick.js \
+	histogram.js state.js panel.js keys.js main.js)
+generated := $(BUILD)/generated/powers.h $(BUILD)/generated/transitions.h \
+	$(if $(wildcard $(THREE)),$(BUILD)/generated/view_page.h)
 pages := $(wildcard man/*.[157])
 sources := $(wildcard lib/*.h lib/*/*.[ch] lib/*/*/*.[ch] lib/*/*/*/*.[ch] cmd/*.c \
 	cmd/common/*/*.[ch] tests/*/*.[ch] tests/*/*.cc examples/*.c examples/*.cc)
@@ -104,8 +115,11 @@ sources := $(wildcard lib/*.h lib/*/*.[ch] lib/*/*/*.[ch] lib/*/*/*/*.[ch] cmd/*
 .SECONDARY:
 
 all: $(bin) $(completions) $(library) $(shared)
-ifdef left_out
+ifndef has_p4est
 	@echo "There is no p4est, or no mpicc: octree-mesh and octree-repair are left out." >&2
+endif
+ifeq ($(wildcard $(THREE)),)
+	@echo "There is no $(THREE): mesh-view is left out." >&2
 endif
 
 # Programs of the tree that write tables of the library.
@@ -123,6 +137,16 @@ $(BUILD)/generate/transitions: $(wildcard lib/octree/transition/generate/*.[ch])
 		lib/octree/transition/transition.h lib/element/shape.c
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $(filter %.c,$^) $(LDFLAGS) $(LDLIBS)
+
+# The page of mesh-view, but for the mesh.
+$(BUILD)/generated/view_page.h: $(BUILD)/generate/embed $(THREE) $(page) Makefile
+	@mkdir -p $(@D)
+	$< $(THREE) $(page) >$@.new
+	mv $@.new $@
+
+$(BUILD)/generate/embed: lib/view/generate/embed.c
+	@mkdir -p $(@D)
+	$(CC) $(TM_CFLAGS) -o $@ $< $(LDFLAGS) $(LDLIBS)
 
 $(BUILD)/%.o: %.c Makefile | $(generated)
 	@mkdir -p $(@D)

@@ -117,4 +117,7 @@
 #include "poly/partition.h"
 #include "poly/dual/dual.h"
 
+/* view: a page that shows meshes */
+#include "view/view.h"
+
 #endif

@@ -87,8 +87,7 @@ notices() {
 floors="base number text geom stream element mesh surface surface/measure examine
 examine/poly format format/vtk optimise tet tet/envelope tet/operation tet/delaunay
 tet/improve tet/lepp octree/forest octree/transition octree/interior octree/feature
-octree/layer octree/repair poly/fit poly poly/dual
-poly/cluster poly/octant"
+octree/layer octree/repair poly/fit poly poly/dual poly/cluster poly/octant view"
 
 # Who has no use for a tm_error gives NULL: none but lib/base/error.c looks into one that a
 # caller gave.

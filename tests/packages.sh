@@ -5,9 +5,10 @@
 
 # shellcheck disable=SC2034 # used by those who source this
 {
-    build_packages="gcc libc6-dev libgmp-dev libopenmpi-dev libp4est-dev make zlib1g-dev"
+    build_packages="gcc libc6-dev libgmp-dev libopenmpi-dev libjs-three libp4est-dev make
+        zlib1g-dev"
     run_packages="gnuplot-nox tetgen"
-    test_packages="bats bsdutils g++ libcmocka-dev libsuitesparse-dev locales mandoc
+    test_packages="bats bsdutils chromium g++ libcmocka-dev libsuitesparse-dev locales mandoc
         pkg-config python3 python3-meshio python3-vtk9 valgrind"
     lint_packages="clang-format clang-tidy cppcheck mandoc shellcheck"
 }

@@ -3,9 +3,9 @@
 # shellcheck shell=bash
 # shellcheck disable=SC2154 # run sets stderr
 
-# Whether a filter needs p4est, and there is none.
+# Whether a filter is not built: there is no p4est, or no three.js.
 is_left_out() {
-    needs_p4est "$1" && ! [ -x "$TM_BUILD/bin/$1" ]
+    { needs_p4est "$1" || [ "$1" = mesh-view ]; } && ! [ -x "$TM_BUILD/bin/$1" ]
 }
 
 # Only these may.

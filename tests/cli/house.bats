@@ -32,9 +32,11 @@ load filters
     reads_standard_input() {
         # tetgen-import reads several files.
         if [ "$1" = tetgen-import ] || writes_files "$1"; then return 0; fi
-        "$1" --no-history "$(input "$1")" >from-file
-        "$1" --no-history <"$(input "$1")" >from-pipe
-        "$1" --no-history - <"$(input "$1")" >from-dash
+        local options=(--no-history)
+        if [ "$1" = mesh-view ]; then options+=(--title "a name"); fi # else the file's
+        "$1" "${options[@]}" "$(input "$1")" >from-file
+        "$1" "${options[@]}" <"$(input "$1")" >from-pipe
+        "$1" "${options[@]}" - <"$(input "$1")" >from-dash
         cmp from-file from-dash
         cmp from-file from-pipe
     }

@@ -59,6 +59,7 @@ jens-stats      3 3 3 3 0 0 0 0 3
 lepp-improve    3 3 3 3 0 0 3 3 3
 m3d-export      3 3 3 3 0 3 0 0 3
 mesh-check      3 3 3 3 0 0 0 0 0
+mesh-view       3 3 0 0 0 0 0 0 0
 mvm-export      3 3 3 3 0 3 0 0 3
 oct-export      3 3 3 3 3 3 3 3 3
 octree-mesh     3 0 3 0 3 3 3 3 3
@@ -99,7 +100,7 @@ END
 @test "the words: what is there, what is right, which filters take it" {
     run -3 lepp-improve mixed.tm
     [ "$output" = 'lepp-improve: mixed.tm: holds mixed elements (.mix), but lepp-improve takes '\
-'tetrahedra (.ele) (what it holds is for polylla3d, octree-repair, jens-stats, mesh-check and exporters)' ]
+'tetrahedra (.ele) (what it holds is for polylla3d, octree-repair, jens-stats, mesh-check, mesh-view and exporters)' ]
     run -3 tet-stats nothing.tm
     [ "$output" = 'tet-stats: nothing.tm: holds nothing, but tet-stats takes tetrahedra (.ele)' ]
     run -3 polylla3d mixed-facets.tm

@@ -74,6 +74,7 @@ static const command commands[] = {
     {"visf-export", {"--per-cell", "--binary", "big", INPUT}, false},
     {"vtu-export", {INPUT}, false},
     {"vtk-export", {INPUT}, false},
+    {"mesh-view", {"-o", "out.html", "--most", "2", INPUT}, false},
     {"getfem-export", {INPUT}, false},
     {"mvm-export", {INPUT}, false},
     {"m3d-export", {"-o", "out.m3d", INPUT}, false},

@@ -34,6 +34,7 @@ static const struct {
     {"jens-stats", TETRAHEDRA | MIXED},
     {"poly-stats", POLYHEDRA},
     {"mesh-check", CELLS},
+    {"mesh-view", ALL},
     {"getfem-export", SURFACE | TETRAHEDRA | MIXED},
     {"m3d-export", TETRAHEDRA | MIXED},
     {"mvm-export", TETRAHEDRA | MIXED},

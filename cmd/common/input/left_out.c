@@ -38,6 +38,8 @@ static const struct {
 } formats[] = {
     {"getfem-export", FACES | REGIONS | FACE_NAMES | REGION_NAMES},
     {"m3d-export", 0},
+    {"mesh-view", NODE_ATTRIBUTES | NODE_MARKERS | FACES | FACES_BELOW_0 | ALL_REGIONS |
+                      ATTRIBUTES | NODE_NAMES | FACE_NAMES | REGION_NAMES},
     {"mvm-export", 0},
     {"oct-export", NODE_ATTRIBUTES | NODE_MARKERS | EDGES | ALL_REGIONS | ATTRIBUTES},
     {"off-export", ALL_REGIONS | ATTRIBUTES | REGION_NAMES},
