@@ -4,6 +4,7 @@
 
 #include "../../base/array.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,8 +21,7 @@ enum { VAIN_ROUNDS = 2 };
 /* How often a leaf may change where that does neither good nor harm. */
 enum { MOST_CHANGES = 3 };
 
-/* The labels of the octants around a node; changes one, and how many of the labels then
- * have a bad mask. */
+/* How many of the labels of the octants around a node have a bad mask. */
 static unsigned count_bad(const uint32_t octant[OCTANTS])
 {
     unsigned bad = 0, done = 0;
@@ -241,50 +241,83 @@ static unsigned badness_with(const cleaner *c, size_t l, uint32_t label)
     return bad;
 }
 
-/* Gives one of the leaves contact[0 … count) around a node one of the other labels there:
- * what does most good, and of that the leaf closest to the surface. Where all masks are
- * good it must do some. */
-static bool mend(cleaner *c, const contact *around, size_t count, bool only_smaller)
+/* The labels of the octants around a node, each once. */
+typedef struct {
+    unsigned count;
+    uint32_t label[OCTANTS];
+} label_list;
+
+static label_list labels_around(const uint32_t octant[OCTANTS])
 {
-    const double good = 1; /* a fault less is worth a side of a leaf */
-    const uint32_t *octant = c->interior->octant[around->node];
-    const bool must = count_bad(octant) > 0;
-    size_t best = count;
-    uint32_t best_label = 0;
-    double least = INFINITY;
+    label_list list = {0};
+    for (unsigned o = 0; o < OCTANTS; o++) {
+        unsigned k = 0;
+        while (k < list.count && list.label[k] != octant[o])
+            k++;
+        if (k == list.count)
+            list.label[list.count++] = octant[o];
+    }
+    return list;
+}
+
+/* A leaf that gets another label, and how much worse it is then; a fault less is worth a
+ * side of a leaf. */
+typedef struct {
+    size_t leaf; /* TM_NONE: none */
+    uint32_t label;
+    int more;
+    double cost;
+} change;
+
+/* The best change of one of the leaves contact[0 … count) around a node that makes it
+ * worse by no more than `most`: what does most good, and of that the leaf closest to the
+ * surface. */
+static change find_change(const cleaner *c, const contact *around, size_t count,
+                          const label_list *to, int most, bool only_smaller)
+{
+    change best = {.leaf = TM_NONE, .cost = INFINITY};
     for (size_t i = 0; i < count; i++) {
         const size_t l = around[i].leaf;
         const double depth = tm_leaf_depth(c->octree, c->surface, l);
         const int before = (int)badness(c, l);
         const uint32_t now = c->interior->label[l];
-        uint32_t tried[OCTANTS];
-        memcpy(tried, octant, sizeof tried);
-        for (unsigned o = 0; o < OCTANTS; o++) {
-            bool again = tried[o] == now || (only_smaller && tried[o] > now);
-            for (unsigned k = 0; k < o; k++)
-                again |= tried[k] == tried[o];
-            if (again)
+        for (unsigned k = 0; k < to->count; k++) {
+            const uint32_t label = to->label[k];
+            if (label == now || (only_smaller && label > now))
                 continue;
-            const int more = (int)badness_with(c, l, tried[o]) - before;
-            const double cost = depth + good * more;
-            if (cost < least &&
-                (must || more < 0 || (more == 0 && c->changes[l] < MOST_CHANGES))) {
-                least = cost;
-                best = i;
-                best_label = tried[o];
-            }
+            const int more = (int)badness_with(c, l, label) - before;
+            const bool idle = more == 0 && most == 0;
+            if (more <= most && depth + more < best.cost &&
+                !(idle && c->changes[l] == MOST_CHANGES))
+                best = (change){l, label, more, depth + more};
         }
     }
-    if (best == count)
-        return false;
-    if (best_label == 0)
+    return best;
+}
+
+static void make_change(cleaner *c, const change *made)
+{
+    if (made->label == 0)
         c->interior->removed++;
     else
         c->interior->filled++;
-    if (c->changes[around[best].leaf] < MOST_CHANGES)
-        c->changes[around[best].leaf]++;
-    put(c->interior, c->octree, around[best].leaf, best_label);
-    return true;
+    if (c->changes[made->leaf] < MOST_CHANGES)
+        c->changes[made->leaf]++;
+    put(c->interior, c->octree, made->leaf, made->label);
+}
+
+/* Gives one of the leaves around a node one of the other labels there. Where all masks
+ * are good that must do no harm. */
+static bool mend(cleaner *c, const contact *around, size_t count, bool only_smaller)
+{
+    const uint32_t *octant = c->interior->octant[around->node];
+    const bool must = count_bad(octant) > 0;
+    const label_list to = labels_around(octant);
+    const change best =
+        find_change(c, around, count, &to, must ? INT_MAX : 0, only_smaller);
+    if (best.leaf != TM_NONE)
+        make_change(c, &best);
+    return best.leaf != TM_NONE;
 }
 
 /* Whether something is wrong at a node still: also with the leaves around it. */
@@ -373,127 +406,5 @@ tm_status tm_interior_label(tm_interior *interior, const tm_octree *octree,
     free(c.bad);
     free(c.changes);
     free(c.contact);
-    return status;
-}
-
-/* Parts --------------------------------------------------------------------------- */
-
-/* Two regions that have a node in common, the larger one first. */
-typedef struct {
-    uint32_t large, small;
-} neighbours;
-
-typedef struct {
-    size_t count, room;
-    neighbours *pair;
-} neighbour_list;
-
-static int compare_neighbours(const void *a, const void *b)
-{
-    const neighbours *p = a, *q = b;
-    if (p->large != q->large)
-        return p->large < q->large ? -1 : 1;
-    return (p->small > q->small) - (p->small < q->small);
-}
-
-static bool add_neighbours(neighbour_list *list, uint32_t a, uint32_t b)
-{
-    const neighbours pair = {a > b ? a : b, a > b ? b : a};
-    if (a == b || pair.small == 0 ||
-        (list->count > 0 && compare_neighbours(&pair, &list->pair[list->count - 1]) == 0))
-        return true;
-    void *more = tm_grow(list->pair, &list->room, list->count + 1, sizeof *list->pair);
-    if (!more)
-        return false;
-    list->pair = more;
-    list->pair[list->count++] = pair;
-    return true;
-}
-
-static bool find_neighbours(neighbour_list *list, const tm_interior *interior,
-                            const tm_octree *octree)
-{
-    for (size_t n = 0; n < octree->nodes; n++)
-        for (unsigned i = 0; i < OCTANTS; i++)
-            for (unsigned j = 0; j < i; j++)
-                if (!add_neighbours(list, interior->octant[n][i], interior->octant[n][j]))
-                    return false;
-    if (list->count > 0)
-        qsort(list->pair, list->count, sizeof *list->pair, compare_neighbours);
-    return true;
-}
-
-/* The colours of regions, which are as many as the result says. */
-static size_t colour(const neighbour_list *list, size_t regions, uint32_t *of,
-                     uint32_t *taken)
-{
-    size_t colours = 1, i = 0;
-    for (uint32_t r = 1; r <= regions; r++) {
-        for (; i < list->count && list->pair[i].large == r; i++)
-            taken[of[list->pair[i].small]] = r;
-        of[r] = 0;
-        while (taken[of[r]] == r)
-            of[r]++;
-        if (of[r] >= colours)
-            colours = of[r] + 1;
-    }
-    return colours;
-}
-
-static tm_status fill_parts(tm_interior *part, size_t parts, const tm_interior *whole,
-                            const tm_octree *octree, const uint32_t *colour_of,
-                            tm_error *error)
-{
-    for (size_t p = 0; p < parts; p++) {
-        tm_interior *of = &part[p];
-        of->chosen = calloc(octree->leaves + 1, sizeof *of->chosen);
-        of->mask = calloc(octree->nodes + 1, sizeof *of->mask);
-        of->used = tm_new(octree->nodes, sizeof *of->used);
-        if (!of->chosen || !of->mask || !of->used)
-            return tm_fail_memory(error);
-        memcpy(of->used, whole->used, octree->nodes * sizeof *of->used);
-        for (size_t l = 0; l < octree->leaves; l++) {
-            const uint32_t label = whole->label[l];
-            of->chosen[l] = label != 0 && colour_of[label] == p;
-            of->count += of->chosen[l];
-            for (int i = 0; of->chosen[l] && i < TM_LEAF_NODES; i++)
-                if (octree->node[l][i] != TM_NONE)
-                    of->mask[octree->node[l][i]] |= tm_point_octants[i];
-        }
-    }
-    return TM_OK;
-}
-
-tm_status tm_interior_divide(tm_interior **part, size_t *parts, const tm_octree *octree,
-                             size_t regions, tm_error *error)
-{
-    tm_interior whole = **part, *made = NULL;
-    neighbour_list list = {0};
-    size_t colours = 0;
-    uint32_t *of = tm_new(regions + 1, sizeof *of);
-    uint32_t *taken = calloc(regions + 2, sizeof *taken);
-    bool ok = of && taken && find_neighbours(&list, &whole, octree);
-    if (ok) {
-        colours = colour(&list, regions, of, taken);
-        made = calloc(colours, sizeof *made);
-        ok = made != NULL;
-    }
-    tm_status status =
-        ok ? fill_parts(made, colours, &whole, octree, of, error) : tm_fail_memory(error);
-    if (made) {
-        made->label = whole.label;
-        made->octant = whole.octant;
-        made->filled = whole.filled;
-        made->removed = whole.removed;
-        whole.label = NULL;
-        whole.octant = NULL;
-        tm_interior_free(&whole);
-        free(*part);
-        *part = made;
-        *parts = colours;
-    }
-    free(list.pair);
-    free(of);
-    free(taken);
     return status;
 }
