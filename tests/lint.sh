@@ -85,7 +85,7 @@ notices() {
 
 # The floors of lib/, from the ground up: a folder includes from those before it only.
 floors="base number text geom stream element mesh surface examine examine/poly format format/vtk optimise tet
-tet/envelope tet/operation tet/delaunay tet/improve tet/lepp octree/forest octree/transition octree/layer octree/repair poly"
+tet/envelope tet/operation tet/delaunay tet/improve tet/lepp octree/forest octree/transition octree/layer octree/repair poly poly/cluster"
 
 # Who has no use for a tm_error gives NULL: none but lib/base/error.c looks into one that a
 # caller gave.
