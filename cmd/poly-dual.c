@@ -21,17 +21,19 @@ static void put_blocks(filter *f, tm_stream *stream, tm_dual_blocks *made)
 {
     static const char *const gone[] = {".node", ".ele", ".face", ".edge"};
     const bool has_edges = tm_stream_find(stream, ".edge");
-    const tm_block block[] = {made->node, made->facet, made->cell, made->edge};
+    tm_block *const block[] = {&made->node, &made->facet, &made->cell, &made->edge};
     const size_t blocks = has_edges ? 4 : 3;
-    for (size_t k = 0; k < sizeof gone / sizeof *gone; k++)
+    for (size_t k = 0; k < 4; k++)
         if (tm_stream_find(stream, gone[k]))
             tm_stream_remove(stream, tm_stream_find(stream, gone[k]));
     for (size_t k = 0; k < blocks; k++) {
-        tm_block *to = tm_stream_add(stream, block[k].name);
+        tm_block *to = tm_stream_add(stream, block[k]->name);
         if (!to)
             filter_fail_memory(f);
-        *to = block[k];
+        *to = *block[k];
+        *block[k] = (tm_block){.kind = block[k]->kind};
     }
+    tm_dual_blocks_free(made);
 }
 
 static void convert(filter *f, tm_stream *stream, tm_dual_options *o, tm_dual_report *r)

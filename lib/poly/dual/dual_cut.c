@@ -259,6 +259,20 @@ static bool cut_node(cutter *c, const uint32_t *piece, size_t pieces, bool *done
     }
 }
 
+static bool is_to_be_cut(const tm_dual *d, uint32_t v)
+{
+    return d->level[v] == TM_DUAL_TO_CUT || d->level[v] == TM_DUAL_TO_CUT_MORE;
+}
+
+tm_dual_level tm_dual_next_level(tm_dual_level level)
+{
+    static const tm_dual_level next[TM_DUAL_LEVELS] = {
+        [TM_DUAL_WHOLE] = TM_DUAL_TO_CUT,    [TM_DUAL_TO_CUT] = TM_DUAL_TO_CUT,
+        [TM_DUAL_CUT] = TM_DUAL_TO_CUT_MORE, [TM_DUAL_TO_CUT_MORE] = TM_DUAL_TO_CUT_MORE,
+        [TM_DUAL_CUT_MORE] = TM_DUAL_PIECES, [TM_DUAL_PIECES] = TM_DUAL_PIECES};
+    return next[level];
+}
+
 /* Lists the pieces of the nodes that are to be cut, those of node v from start[v] on. */
 static uint32_t *list_pieces(const tm_dual *d, size_t *start)
 {
@@ -268,7 +282,7 @@ static uint32_t *list_pieces(const tm_dual *d, size_t *start)
     for (int pass = 0; pass < 2; pass++) {
         for (uint32_t p = 0; p < 4 * mesh->slots; p++) {
             const uint32_t v = mesh->tet[p / 4][p % 4];
-            if (d->level[v] != TM_DUAL_TO_CUT)
+            if (!is_to_be_cut(d, v))
                 continue;
             if (pass == 0)
                 start[v + 2]++;
@@ -287,19 +301,20 @@ static uint32_t *list_pieces(const tm_dual *d, size_t *start)
 
 tm_status tm_dual_cut(tm_dual *d, tm_error *error)
 {
-    const double half_turn = 180, least = 20;
+    const double half_turn = 180, least = 20, little = 3;
     const double beyond = fmax(least, d->options->feature_angle);
-    cutter c = {.d = d, .most = pi + beyond * pi / half_turn};
+    cutter c = {.d = d};
     size_t *start = tm_new(d->mesh->nodes + 2, sizeof *start);
     uint32_t *piece = start ? list_pieces(d, start) : NULL;
     bool done = piece;
     for (size_t v = 0; v < d->mesh->nodes && done; v++) {
         bool is_cut = true;
-        if (d->level[v] != TM_DUAL_TO_CUT)
+        if (!is_to_be_cut(d, (uint32_t)v))
             continue;
+        c.most = pi + (d->level[v] == TM_DUAL_TO_CUT ? beyond : little) * pi / half_turn;
         if (start[v] < start[v + 1])
             done = cut_node(&c, piece + start[v], start[v + 1] - start[v], &is_cut);
-        d->level[v] = is_cut ? TM_DUAL_CUT : TM_DUAL_PIECES;
+        d->level[v] = (uint8_t)(is_cut ? d->level[v] + 1 : TM_DUAL_PIECES);
     }
     tm_dual_link_free(&c.link);
     free(c.sector);

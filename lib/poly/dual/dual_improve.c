@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { STEPS = 4, FIRST_SWEEPS = 8, MORE_SWEEPS = 2 };
+enum { STEPS = 4, FIRST_SWEEPS = 12, MORE_SWEEPS = 2 };
 
 /* The least barycentric coordinate that a point may have. */
 static const double least_coordinate = 0.03;
@@ -157,14 +157,19 @@ static size_t mark_points(improver *m, bool all)
 
 static bool improve(improver *m, int sweeps)
 {
+    const double enough =
+        0.9; /* are left by a sweep after which another one is worth it */
     static const double steps[STEPS] = {0.1, 0.2, 0.05, 0.3};
     const tm_dual *d = m->v.d;
     m->active = tm_new(d->points, sizeof *m->active);
     m->missed = calloc(d->points + 1, sizeof *m->missed);
     bool done = m->active && m->missed;
+    size_t before = SIZE_MAX;
     for (int sweep = 0; sweep < sweeps && done; sweep++) {
-        if (mark_points(m, sweep > 1) == 0)
+        const size_t left = mark_points(m, sweep > 1);
+        if (left == 0 || (sweep > STEPS && (double)left > enough * (double)before))
             break;
+        before = left;
         for (uint32_t p = 0; p < d->points && done; p++)
             if (m->active[p] && m->missed[p] < STEPS)
                 done = improve_point(m, p, steps[sweep % STEPS]);
@@ -187,10 +192,10 @@ static void finish(improver *m, bool move, tm_dual_report *report)
                 continue;
             report->wrong_pyramids++;
             uint8_t *level = &d->level[d->cell_node[c]];
-            if (*level == TM_DUAL_PIECES || *level == TM_DUAL_TO_CUT ||
-                (!move && *level != TM_DUAL_WHOLE))
+            const tm_dual_level next = tm_dual_next_level((tm_dual_level)*level);
+            if (next == *level || (!move && *level != TM_DUAL_WHOLE))
                 continue;
-            *level = *level == TM_DUAL_WHOLE ? TM_DUAL_TO_CUT : TM_DUAL_PIECES;
+            *level = (uint8_t)next;
             d->again = true;
         }
     }

@@ -18,7 +18,9 @@ typedef enum tm_dual_level {
     TM_DUAL_WHOLE,  /* a cell for each fan */
     TM_DUAL_TO_CUT, /* the next one, but still to be done */
     TM_DUAL_CUT,    /* cells are cut at edges that are bent inward */
-    TM_DUAL_PIECES, /* a cell for each tetrahedron */
+    TM_DUAL_TO_CUT_MORE,
+    TM_DUAL_CUT_MORE, /* at all such edges */
+    TM_DUAL_PIECES,   /* a cell for each tetrahedron */
     TM_DUAL_LEVELS
 } tm_dual_level;
 

@@ -8,7 +8,10 @@
 /* Whether the face opposite a corner of a piece's tetrahedron is cut at the piece. */
 bool tm_dual_is_cut(const tm_dual *d, uint32_t piece, uint32_t face);
 
-/* Cuts the nodes that are TM_DUAL_TO_CUT, by paths of faces from each edge that is bent
+/* The level after one; that to be cut stays until it is done. */
+tm_dual_level tm_dual_next_level(tm_dual_level level);
+
+/* Cuts the nodes that are to be cut, by paths of faces from each edge that is bent
  * inward to where the other side of the fan is; those that cannot be are TM_DUAL_PIECES.
  */
 tm_status tm_dual_cut(tm_dual *d, tm_error *error);
