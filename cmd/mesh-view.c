@@ -65,6 +65,16 @@ static void name_mesh(const filter *f, const tm_stream *stream, tm_text *name)
     tm_text_append(name, history->byte + from, to - from);
 }
 
+static void read_mesh(const filter *f, tm_stream *stream, tm_text *name,
+                      tm_view_mesh *mesh)
+{
+    mesh_input_read_to_compute(f, stream);
+    name_mesh(f, stream, name);
+    if (name->failed)
+        filter_fail_memory(f);
+    *mesh = (tm_view_mesh){.stream = stream, .name = name->byte};
+}
+
 static void say_what_is_missing(const filter *f, const tm_view_mesh *mesh)
 {
     if (mesh->shown < mesh->elements)
@@ -115,18 +125,12 @@ int main(int argc, char **argv)
     read_options(&f, &o);
     filter of_second = f;
     of_second.input = o.second;
-    const filter *const of[TM_VIEW_MESHES] = {&f, &of_second};
-
     tm_stream stream[TM_VIEW_MESHES];
     tm_view_mesh mesh[TM_VIEW_MESHES];
     tm_text name[TM_VIEW_MESHES] = {0};
-    for (size_t m = 0; m < o.meshes; m++) {
-        mesh_input_read_to_compute(of[m], &stream[m]);
-        name_mesh(of[m], &stream[m], &name[m]);
-        if (name[m].failed)
-            filter_fail_memory(&f);
-        mesh[m] = (tm_view_mesh){.stream = &stream[m], .name = name[m].byte};
-    }
+    read_mesh(&f, &stream[0], &name[0], &mesh[0]);
+    if (o.meshes == TM_VIEW_MESHES)
+        read_mesh(&of_second, &stream[1], &name[1], &mesh[1]);
     if (!o.page.title)
         o.page.title = name[0].byte;
     if (o.meshes == 1)
@@ -136,8 +140,9 @@ int main(int argc, char **argv)
     filter_stage(&f, "packing");
     if (tm_view_write(&page, mesh, o.meshes, &o.page, f.threads, &error) != TM_OK)
         mesh_input_fail(&f, &error);
-    for (size_t m = 0; m < o.meshes; m++)
-        say_what_is_missing(of[m], &mesh[m]);
+    say_what_is_missing(&f, &mesh[0]);
+    if (o.meshes == TM_VIEW_MESHES)
+        say_what_is_missing(&of_second, &mesh[1]);
     write_json(&f, mesh, o.meshes);
     filter_write_text(&f, &page);
     tm_text_free(&page);

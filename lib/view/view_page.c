@@ -9,12 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The page's frame is page.html, cut where something goes in: see embed.c. */
-static void append_frame(tm_text *page, const unsigned char *part, size_t size)
-{
-    tm_text_append(page, (const char *)part, size);
-}
-
 /* Text that stands between tags. */
 static void append_escaped(tm_text *page, const char *bytes)
 {
@@ -110,15 +104,15 @@ static tm_status write_meshes(view_writer *w, const view_source *s,
 static void write_page(tm_text *page, const tm_text *header, const tm_text *data,
                        const tm_view_options *options)
 {
-    append_frame(page, view_before_title, sizeof view_before_title);
+    tm_text_string(page, view_before_title);
     append_escaped(page, options->title);
-    append_frame(page, view_before_header, sizeof view_before_header);
+    tm_text_string(page, view_before_header);
     append_json(page, header);
-    append_frame(page, view_before_arrays, sizeof view_before_arrays);
+    tm_text_string(page, view_before_arrays);
     page->failed |= data->failed;
     if (data->byte)
         tm_text_append(page, data->byte, data->size);
-    append_frame(page, view_after_arrays, sizeof view_after_arrays);
+    tm_text_string(page, view_after_arrays);
 }
 
 tm_status tm_view_write(tm_text *page, tm_view_mesh *mesh, size_t meshes,

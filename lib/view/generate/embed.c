@@ -20,6 +20,8 @@ static void fail(const char *what, const char *file)
 
 static void append(text *to, const char *bytes, size_t size)
 {
+    if (size == 0)
+        return;
     char *byte = realloc(to->byte, to->size + size + 1);
     if (!byte)
         fail("out of memory", "");
@@ -71,13 +73,22 @@ static void append_packed(text *to, const text *from)
     free(packed);
 }
 
+/* As strings of some bytes each, which compilers and checkers read faster than numbers.
+ */
 static void put_array(const char *name, const text *bytes)
 {
-    const size_t a_line = 24;
-    printf("static const unsigned char view_%s[] = {", name);
-    for (size_t i = 0; i < bytes->size; i++)
-        printf("%s%d,", i % a_line == 0 ? "\n" : "", (unsigned char)bytes->byte[i]);
-    printf("\n};\n");
+    const size_t a_line = 96;
+    printf("static const char view_%s[] =\n    \"", name);
+    for (size_t i = 0; i < bytes->size; i++) {
+        const unsigned char c = (unsigned char)bytes->byte[i];
+        if (i > 0 && i % a_line == 0)
+            printf("\"\n    \"");
+        if (c < ' ' || c > '~' || strchr("\"\\?", c))
+            printf("\\%03o", c);
+        else
+            putchar(c);
+    }
+    printf("\";\n");
 }
 
 int main(int argc, char **argv)
