@@ -131,6 +131,16 @@ END
     run -0 poly-stats --for fv "$out/dual.tm"
 }
 
+@test "--convex leaves hardly a cell that is not convex, and as many cells" {
+    poly-dual --quiet --feature-angle 30 --json "$out/fast.json" gear.tm >"$out/fast.tm"
+    poly-dual --quiet --feature-angle 30 --convex --json "$out/report.json" gear.tm \
+        >"$out/dual.tm"
+    mesh-check "$out/dual.tm"
+    [ "$(json "$out/report.json" polyhedra)" = "$(json "$out/fast.json" polyhedra)" ]
+    [ $((5 * $(json "$out/report.json" concave))) -lt "$(json "$out/fast.json" concave)" ]
+    run -0 poly-stats --for fv "$out/dual.tm"
+}
+
 @test "names stay; blocks that are not known go; a part stays" {
     awk '/^\.end/ { print ".group\n1 0\n1 2 11 bottom side\n.mine\n1 0\n1 2\nsurface.node\n1 3 0 0\n1 0 0 0" }
         { print }' boxes.tm >"$out/named.tm"

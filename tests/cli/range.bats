@@ -57,7 +57,7 @@ mesh-check
 octree-mesh -s 2
 octree-repair -t .2 -i 1
 poly-dual
-poly-dual --feature-angle 30
+poly-dual --feature-angle 30 --convex
 poly-stats
 polylla3d
 polylla3d --mode cavity --star --merge-coplanar

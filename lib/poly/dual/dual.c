@@ -45,6 +45,7 @@ static void free_dual(tm_dual *d)
 static tm_status build(tm_dual *d, tm_error *error)
 {
     tm_status status;
+    tm_progress_stage(d->options->progress, "finding cells");
     do {
         status = tm_dual_find_cells(d, error);
         if (status == TM_OK)
@@ -207,6 +208,7 @@ tm_status tm_dual_make(tm_dual_blocks *made, const tm_tet_mesh *mesh,
     for (bool more = true; more && status == TM_OK; more = d.again) {
         if (d.again)
             status = build(&d, error);
+        tm_progress_stage(options->progress, "moving points");
         if (status == TM_OK)
             status = tm_dual_improve(&d, round, report, error);
         round = TM_DUAL_NEXT;
