@@ -91,7 +91,8 @@ static void make_surface(tm_surface *surface, unsigned *label, tm_polygon_surfac
     const tm_surface_options options = {
         .feature_angle = TM_FEATURE_ANGLE, .regions = true, .walls = true};
     tm_error error;
-    for (bool walls = false; !walls; walls = surface->walls) {
+    bool walls = false;
+    while (!walls) {
         for (int i = 0; i < CUBES; i++)
             label[i] = random_below(4);
         label[0] = 1;
@@ -100,7 +101,8 @@ static void make_surface(tm_surface *surface, unsigned *label, tm_polygon_surfac
         add_walls(p, label);
         assert_ok(tm_surface_build(surface, p, &options, &error), &error);
         assert_ok(tm_surface_check(surface, &error), &error);
-        if (!surface->walls) {
+        walls = surface->walls;
+        if (!walls) {
             tm_surface_free(surface);
             tm_polygon_surface_free(p);
         }

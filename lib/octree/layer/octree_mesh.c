@@ -127,7 +127,7 @@ static size_t first_at_edge(const tm_interior_boundary *boundary, size_t f, unsi
     for (size_t j = boundary->around_start[s]; j < boundary->around_start[s + 1]; j++) {
         const size_t g = boundary->around[j];
         for (unsigned c = 0; c < tm_boundary_face_corners(boundary, g); c++)
-            if (boundary->face[g][c] == t && g < first)
+            if (g < first && boundary->face[g][c] == t)
                 first = g;
     }
     return first;
