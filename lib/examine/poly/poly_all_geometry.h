@@ -17,6 +17,11 @@ void tm_poly_all_geometry(const tm_poly_centroids *m, tm_poly_finite_volume *out
 double tm_facet_weight(const tm_poly_centroids *m, size_t f);
 double tm_facet_volume_ratio(const tm_poly_centroids *m, size_t f);
 
+/* How far the line between the centroids misses the facet's, by the facet's extent that
+ * way; on the boundary the line along its normal: to be below TM_FV_SKEWNESS. In
+ * poly_finite_volume.c. */
+double tm_facet_skewness(const tm_poly_centroids *m, size_t f);
+
 /* The least of the volumes of tetrahedra, by their scale, that triangles of a facet make
  * with the centroid of its first (s = 0) or second cell: of the triangles around the
  * facet's centroid; and of those around the corner where the least for both is largest.

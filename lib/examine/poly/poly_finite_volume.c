@@ -29,9 +29,27 @@ static double skewness_of(const tm_poly_centroids *m, size_t f, const double fro
     return extent > 0 ? length / extent : 0;
 }
 
+double tm_facet_skewness(const tm_poly_centroids *m, size_t f)
+{
+    const double inner = 0.2, outer = 0.4;
+    const uint32_t *side = m->mesh->side[f];
+    const tm_cell_centroid *c = &m->cell[side[0]];
+    const double *area = m->face[f].area;
+    double to[3], d[3];
+    if (side[1] != TM_NONE) {
+        tm_subtract(d, m->cell[side[1]].centre, c->centre);
+        return skewness_of(m, f, c->centre, d, inner);
+    }
+    const double area2 = tm_norm2(area);
+    tm_subtract(to, m->face[f].centre, c->centre);
+    for (int x = 0; x < 3; x++)
+        d[x] = area2 > 0 ? area[x] * tm_dot(area, to) / area2 : 0;
+    return skewness_of(m, f, c->centre, d, outer);
+}
+
 static void judge_inner(const tm_poly_centroids *m, size_t f, tm_poly_finite_volume *out)
 {
-    const double half_turn = 180, pi = acos(-1), least = 0.2, rounding = 1e-15;
+    const double half_turn = 180, pi = acos(-1), rounding = 1e-15;
     const tm_cell_centroid *c = &m->cell[m->mesh->side[f][0]],
                            *e = &m->cell[m->mesh->side[f][1]];
     double d[3];
@@ -39,28 +57,10 @@ static void judge_inner(const tm_poly_centroids *m, size_t f, tm_poly_finite_vol
     double lengths = tm_norm(d) * tm_norm(m->face[f].area);
     double cosine = lengths > 0 ? tm_dot(d, m->face[f].area) / lengths : 1;
     double angle = acos(fmax(-1, fmin(1, cosine))) * half_turn / pi;
-    double skew = skewness_of(m, f, c->centre, d, least);
     out->max_non_orthogonality = fmax(out->max_non_orthogonality, angle);
     out->mean_non_orthogonality += angle;
     out->non_orthogonal += angle > TM_FV_NON_ORTHOGONALITY;
     out->reversed += !(cosine > rounding);
-    out->max_skewness = fmax(out->max_skewness, skew);
-    out->skew += skew > TM_FV_SKEWNESS;
-}
-
-/* On the boundary the line is along the normal. */
-static void judge_outer(const tm_poly_centroids *m, size_t f, tm_poly_finite_volume *out)
-{
-    const double least = 0.4;
-    const tm_cell_centroid *c = &m->cell[m->mesh->side[f][0]];
-    const double *area = m->face[f].area, area2 = tm_norm2(area);
-    double to[3], d[3];
-    tm_subtract(to, m->face[f].centre, c->centre);
-    for (int x = 0; x < 3; x++)
-        d[x] = area2 > 0 ? area[x] * tm_dot(area, to) / area2 : 0;
-    double skew = skewness_of(m, f, c->centre, d, least);
-    out->max_skewness = fmax(out->max_skewness, skew);
-    out->skew += skew > TM_FV_SKEWNESS;
 }
 
 static void judge_facets(const tm_poly_centroids *m, tm_poly_finite_volume *out)
@@ -80,13 +80,13 @@ static void judge_facets(const tm_poly_centroids *m, tm_poly_finite_volume *out)
             out->min_pyramid = fmin(out->min_pyramid, pyramid);
             out->wrong_pyramids += !(pyramid > 0);
         }
-        if (m->mesh->side[f][1] != TM_NONE) {
-            inner++;
+        const double skew = tm_facet_skewness(m, f);
+        out->max_skewness = fmax(out->max_skewness, skew);
+        out->skew += skew > TM_FV_SKEWNESS;
+        outer += m->mesh->side[f][1] == TM_NONE;
+        inner += m->mesh->side[f][1] != TM_NONE;
+        if (m->mesh->side[f][1] != TM_NONE)
             judge_inner(m, f, out);
-        } else {
-            outer++;
-            judge_outer(m, f, out);
-        }
     }
     if (inner + outer == 0)
         out->min_pyramid = 0;

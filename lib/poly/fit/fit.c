@@ -208,28 +208,42 @@ static double edge_length(const fitter *w, uint32_t v)
     return sqrt(least);
 }
 
-/* Steps along the axes, shorter and shorter. Whether the node moved. */
+/* One step of a node along an axis; whether that is better. */
+static bool try_step(fitter *w, uint32_t v, int direction, double length,
+                     tm_fit_sum *best)
+{
+    double at[3], old[3];
+    memcpy(old, w->xyz[v], sizeof old);
+    memcpy(at, old, sizeof at);
+    at[direction / 2] += direction % 2 ? -length : length;
+    save(w, v);
+    put(w, v, at);
+    const tm_fit_sum now = judge(w);
+    if (!is_better(&now, best)) {
+        restore(w, v, old);
+        return false;
+    }
+    *best = now;
+    return true;
+}
+
+/* Steps along the axes, shorter and shorter until some lengths have gained nothing.
+ * Whether the node moved. */
 static bool move_node(fitter *w, uint32_t v)
 {
-    const double longest = 0.2, shortest = 0.001;
-    const double edge = edge_length(w, v);
+    const double longest = 0.2;
+    const int directions = 6, lengths = 8, most_idle = 4;
+    double length = longest * edge_length(w, v);
     tm_fit_sum best = judge(w);
     bool moved = false;
-    for (double step = longest; step > shortest && best.missing > 0; step /= 2) {
-        for (int d = 0; d < 6 && best.missing > 0; d++) {
-            double at[3], old[3];
-            memcpy(old, w->xyz[v], sizeof old);
-            memcpy(at, old, sizeof at);
-            at[d / 2] += (d % 2 ? -1 : 1) * step * edge;
-            save(w, v);
-            put(w, v, at);
-            const tm_fit_sum now = judge(w);
-            if (is_better(&now, &best)) {
-                best = now;
-                moved = true;
-            } else
-                restore(w, v, old);
-        }
+    if (sum_of(best.count) == 0)
+        return false;
+    for (int i = 0, idle = 0; i < lengths && idle < most_idle; i++, length /= 2) {
+        bool gains = false;
+        for (int d = 0; d < directions && best.missing > 0; d++)
+            gains |= try_step(w, v, d, length, &best);
+        idle = gains ? 0 : idle + 1;
+        moved |= gains;
     }
     return moved;
 }
@@ -250,25 +264,27 @@ static bool widen(fitter *w)
     return true;
 }
 
+/* Rounds over the nodes at faults, then over those around them, too; until two have
+ * mended few. */
 static bool fit(fitter *w, tm_fit_report *r)
 {
-    const int near = 4, wide = 4; /* rounds */
-    size_t moved = 1;
+    const int near = 4, wide = 4, most_idle = 2; /* rounds */
+    const double few = 0.9;
     bool done = true;
     memcpy(r->after, r->before, sizeof r->after);
-    for (int i = 0; i < near + wide && sum_of(r->after) > 0 && done; i++) {
-        if (moved == 0 && i >= near)
+    for (int i = 0, idle = 0; i < near + wide && idle < most_idle && done; i++) {
+        const size_t before = sum_of(r->after);
+        if (before == 0)
             break;
-        moved = 0;
         done = i < near || widen(w);
         for (uint32_t v = 0; v < w->m.mesh->nodes && done; v++) {
             if (!w->tried[v])
                 continue;
             done = gather(w, v);
-            moved += done && move_node(w, v);
+            r->moved += done && move_node(w, v);
         }
-        r->moved += moved;
         find_faults(w, r->after);
+        idle = (double)sum_of(r->after) < few * (double)before ? 0 : idle + 1;
     }
     return done;
 }
@@ -302,6 +318,7 @@ void tm_fit_faults_say(const tm_fit_report *report, char *text, size_t size)
         [TM_FIT_TETRAHEDRA] = "facets that do not divide into tetrahedra",
         [TM_FIT_CONCAVE] = "concave cells",
         [TM_FIT_OBLIQUE] = "facets above 70 degrees",
+        [TM_FIT_SKEW] = "skew facets",
         [TM_FIT_UNEVEN] = "facets much closer to one cell than to the other",
         [TM_FIT_UNEQUAL] = "facets between cells of very unequal size",
         [TM_FIT_UNDETERMINED] = "cells with their facets in one direction"};

@@ -24,8 +24,9 @@ typedef enum tm_fit_fault {
     TM_FIT_CONCAVE,    /* a cell has facets with another's centroid beyond their plane */
     TM_FIT_OBLIQUE,    /* a facet is more than 70 degrees from normal to the line between
                           the centroids */
-    TM_FIT_UNEVEN,     /* … or 19 times as far from one of them as from the other */
-    TM_FIT_UNEQUAL,    /* of the cells beside a facet one is 100 times as large */
+    TM_FIT_SKEW,       /* that line misses its centroid by more than 4 times its extent */
+    TM_FIT_UNEVEN,  /* … or it is 19 times as far from one of them as from the other */
+    TM_FIT_UNEQUAL, /* of the cells beside a facet one is 100 times as large */
     TM_FIT_UNDETERMINED, /* the inner facets of a cell are all in nearly one direction */
     TM_FIT_FAULTS
 } tm_fit_fault;

@@ -52,6 +52,7 @@ void tm_fit_judge_facet(const tm_poly_centroids *m, size_t f, tm_fit_sum *sum)
         ask(sum, TM_FIT_BENT, least_sine(m, f, s), 0, margin);
     }
     ask(sum, TM_FIT_TETRAHEDRA, least, 0, sight);
+    ask(sum, TM_FIT_SKEW, 1 - tm_facet_skewness(m, f) / TM_FV_SKEWNESS, 0, 10 * margin);
     if (m->mesh->side[f][1] == TM_NONE)
         return;
     ask(sum, TM_FIT_OBLIQUE, cosine_of_line(m, f), least_cosine, margin);
