@@ -111,7 +111,9 @@
 #include "octree/repair/repair_trace.h"
 
 /* poly: polyhedra made of tetrahedra */
+#include "poly/cluster/clusters.h"
 #include "poly/facets.h"
+#include "poly/given.h"
 #include "poly/join_cells.h"
 #include "poly/partition.h"
 
