@@ -438,6 +438,7 @@ static void write_json(filter *f, const result *r)
                                          ROW("polyhedra", poly.cells),
                                          ROW("facets", facets),
                                          ROW("facets_joined", joined),
+                                         ROW("levels", levels),
                                          ROW("unfit", unfit),
                                          {0}};
     filter_write_json(f, rows, r);

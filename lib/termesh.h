@@ -110,12 +110,14 @@
 #include "octree/repair/repair_trace.h"
 
 /* poly: polyhedra made of tetrahedra */
+#include "poly/cluster/clusters.h"
+#include "poly/dual/dual.h"
 #include "poly/facets.h"
 #include "poly/fit/fit.h"
+#include "poly/given.h"
 #include "poly/join_cells.h"
 #include "poly/octant/join_octants.h"
 #include "poly/partition.h"
-#include "poly/dual/dual.h"
 
 /* view: a page that shows meshes */
 #include "view/view.h"

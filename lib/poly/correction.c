@@ -10,7 +10,11 @@
 
 /* The gain of a cell is at most so much: then its neighbours' may add some to it. */
 static const double most_gain = 0.6;
-enum { ROUNDS_MAX = 20 };
+enum { ROUNDS_MAX = 100 };
+
+/* The cosine of 70 degrees: between centroids that are further off the normal of a face
+ * than that, checkMesh calls it severely non-orthogonal. */
+static const double steepest = 0.342020143325669;
 
 typedef struct {
     double volume, centre[3];
@@ -18,6 +22,7 @@ typedef struct {
     double solved, back;
     size_t tets;
     bool is_flat;   /* in part */
+    bool is_steep;  /* seen from the worst one */
     uint32_t worst; /* the cell beside it by which most comes back */
     double most;
 } cell_state;
@@ -36,6 +41,7 @@ typedef struct {
     double rest[3];   /* k */
     double solved;    /* |Δ| / |d| */
     double weight[2]; /* of the cells in the value at the face */
+    bool is_steep;
 } face;
 
 /* How far a cell's centroid is from the plane of a face, times its area. */
@@ -51,6 +57,7 @@ static void measure_inner(const calmer *m, face *f)
     double d[3], distances[2];
     tm_subtract(d, m->state[f->cell[1]].centre, m->state[f->cell[0]].centre);
     const double along = tm_dot(d, f->area);
+    f->is_steep = along < steepest * tm_norm(d) * tm_norm(f->area) * (1 - 1e-9);
     f->solved = along > 0 ? tm_norm2(f->area) / along : 0;
     for (int x = 0; x < 3; x++)
         f->rest[x] = f->area[x] - d[x] * f->solved;
@@ -141,8 +148,10 @@ static void add_back(const calmer *m, const face *f)
             beside = -f->weight[1 - i] * f->weight[i] * tm_dot(f->rest, f->area) /
                      other->volume;
         c->back += own + beside;
-        if (other->tets > 1 && !other->is_flat && fabs(own) + fabs(beside) > c->most) {
-            c->most = fabs(own) + fabs(beside);
+        const double share = f->is_steep ? HUGE_VAL : fabs(own) + fabs(beside);
+        if (other->tets > 1 && !other->is_flat && share > c->most) {
+            c->most = share;
+            c->is_steep = f->is_steep;
             c->worst = f->cell[1 - i];
         }
     }
@@ -154,7 +163,7 @@ static bool mark(const calmer *m, bool *apart, size_t cells)
     bool any = false;
     for (size_t c = 0; c < cells; c++) {
         const cell_state *s = &m->state[c];
-        if (fabs(s->back) <= most_gain * s->solved)
+        if (!s->is_steep && fabs(s->back) <= most_gain * s->solved)
             continue;
         if (s->worst != TM_NONE)
             apart[s->worst] = true;

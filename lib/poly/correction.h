@@ -15,8 +15,9 @@
 
 #include "../tet/mesh.h"
 
-/* Takes cells apart into tetrahedra, until those have no large gain that are of more than
- * one, or have cells beside them that are. cell[slots] are 0 … *cells-1, each of one
+/* Takes cells apart into tetrahedra, until those have no large gain, and no centroid
+ * beside them that is more than 70 degrees off the normal of the face, that are of more
+ * than one, or have cells beside them that are. cell[slots] are 0 … *cells-1, each of one
  * tetrahedron at least; so they are afterwards. Those with flat tetrahedra stay. O(slots)
  * for each of some rounds. */
 tm_status tm_calm_cells(const tm_tet_mesh *mesh, uint32_t *cell, size_t *cells,
