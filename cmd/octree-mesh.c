@@ -11,7 +11,7 @@
 #include "../lib/octree/layer/adaptive_refinement.h"
 #include "../lib/element/jens.h"
 #include "../lib/poly/octant/join_octants.h"
-#include "../lib/surface/surface_curvature.h"
+#include "../lib/surface/measure/surface_curvature.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -145,6 +145,7 @@ static settings read_options(filter *f)
         else
             octree_rules_option(f, &o.rules, c);
     }
+    o.surface.walls = o.surface.regions && !o.surface.lenient;
     if (o.rules.rules.count == 0)
         octree_rules_add_level(f, &o.rules, TM_RULE_SURFACE, default_level);
     for (size_t r = 0; r < o.rules.rules.count; r++)
@@ -285,19 +286,21 @@ static void note_losses(const filter *f, const tm_surface *s,
             "as near (%g, %g, %g)",
             r->dropped, r->dropped_at[0], r->dropped_at[1], r->dropped_at[2]);
     if (r->regions_lost)
-        filter_note(
-            f,
-            "%zu of %zu regions, one within another, are not in the mesh: they, or "
-            "a wall around them, are too thin for this level",
-            r->regions_lost, s->components);
+        filter_note(f,
+                    "%zu of %zu regions%s are not in the mesh: they, or "
+                    "a wall around them, are too thin for this level",
+                    r->regions_lost, s->walls ? s->cells : s->components,
+                    s->walls ? "" : ", one within another,");
     if (!s->by_winding && (r->components != s->components || r->euler != s->euler))
         note_topology(f, s, r, leaf_side);
     if (r->corners_lost + r->curves_lost)
         filter_note(f,
                     "%zu corners and %zu sharp edges of the surface are too close "
-                    "together for this level, as near (%g, %g, %g)",
-                    r->corners_lost, r->curves_lost, r->feature_lost_at[0],
-                    r->feature_lost_at[1], r->feature_lost_at[2]);
+                    "together for this level%s, as near (%g, %g, %g)",
+                    r->corners_lost, r->curves_lost,
+                    s->walls ? ", or more regions meet there than octants can follow"
+                             : "",
+                    r->feature_lost_at[0], r->feature_lost_at[1], r->feature_lost_at[2]);
     if (r->off_surface)
         filter_note(f,
                     "%zu boundary nodes are not on the surface yet: there they would "

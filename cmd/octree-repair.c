@@ -131,9 +131,18 @@ static void build_surface(program *p, const tm_stream *stream)
         return;
     }
     tm_polygon_surface_init(&polygons);
-    if (surface_input_of_stream(stream, filter_input_name(&p->f), &polygons, &error) !=
-            TM_OK ||
-        tm_surface_build(&p->boundary, &polygons, &p->surface, &error) != TM_OK)
+    tm_status status =
+        surface_input_of_stream(stream, filter_input_name(&p->f), &polygons, &error);
+    p->surface.walls = true;
+    while (status == TM_OK) {
+        status = tm_surface_build(&p->boundary, &polygons, &p->surface, &error);
+        if (status != TM_ERROR_INPUT || !p->boundary.walls)
+            break;
+        tm_surface_free(&p->boundary); /* not what walls are: edges to be cut open */
+        p->surface.walls = false;
+        status = TM_OK;
+    }
+    if (status != TM_OK)
         fail(p, &error);
     tm_polygon_surface_free(&polygons);
 }

@@ -5,6 +5,7 @@
 #include "common/app/output_files.h"
 
 #include "../lib/format/mesh_format.h"
+#include "../lib/stream/coordinates.h"
 
 #include <dirent.h>
 #include <stdio.h>
@@ -98,6 +99,85 @@ static void write_json(filter *f, const tm_openfoam_counts *counts)
     filter_write_json(f, rows, counts);
 }
 
+/* One line of what checkMesh finds. */
+typedef struct {
+    size_t count;
+    const char *what;
+    double worst;
+} finding;
+
+/* Says the findings of which there are any; returns whether there was one. */
+static bool say(const filter *f, const char *check, const finding *found, size_t count)
+{
+    bool any = false;
+    for (size_t i = 0; i < count; i++) {
+        if (found[i].count > 0)
+            filter_note(f, "%s would fail: %zu %s, the worst %.3g", check, found[i].count,
+                        found[i].what, found[i].worst);
+        any |= found[i].count > 0;
+    }
+    return any;
+}
+
+static const char *help_for(tm_content content)
+{
+    switch (content) {
+    case TM_CONTENT_TETRAHEDRA:
+        return "lepp-improve, or poly-dual, which makes polyhedra of them";
+    case TM_CONTENT_MIXED:
+        return "octree-mesh --polyhedra";
+    default:
+        return "of the tetrahedra polylla3d --star=centroid, or poly-dual";
+    }
+}
+
+/* Whether checkMesh would take the mesh, and what may help; with -v also what it looks at
+ * with -allGeometry only. */
+static void say_what_fails(const filter *f, const tm_poly_finite_volume *m,
+                           tm_content content)
+{
+    const finding always[] = {
+        {m->wrong_pyramids, "pyramids of a face and a cell's centroid without volume",
+         m->min_pyramid},
+        {m->reversed, "faces with a non-orthogonality of 90 degrees and more",
+         m->max_non_orthogonality},
+        {m->skew, "faces with a skewness above 4", m->max_skewness}};
+    const finding all[] = {
+        {m->small_weights, "faces with a weight below 0.05", m->min_weight},
+        {m->small_volume_ratios, "faces between volumes with a ratio below 0.01",
+         m->min_volume_ratio},
+        {m->small_determinants, "cells with a determinant below 0.001",
+         m->min_determinant}};
+    bool fails = say(f, "checkMesh", always, sizeof always / sizeof *always);
+    if (f->verbosity > 0) {
+        fails |= say(f, "checkMesh -allGeometry", all, sizeof all / sizeof *all);
+        if (m->concave > 0)
+            filter_note(f, "checkMesh -allGeometry would fail: %zu concave cells",
+                        m->concave);
+        const size_t faces = m->no_fan > m->unseen ? m->no_fan : m->unseen;
+        if (faces > 0)
+            filter_note(f,
+                        "checkMesh -allGeometry would fail: %zu faces whose tetrahedra "
+                        "are not all positive",
+                        faces);
+        fails |= m->concave + faces > 0;
+    }
+    if (fails)
+        filter_note(f, "what may help: %s", help_for(content));
+}
+
+/* Not where that is not asked for, or coordinates are too large or too small. */
+static bool can_be_measured(const filter *f, const tm_stream *stream)
+{
+    tm_error error;
+    if (f->verbosity < 0)
+        return false;
+    if (tm_stream_check_coordinates(stream, &error) == TM_OK)
+        return true;
+    filter_note(f, "not measured for checkMesh: %s", error.what);
+    return false;
+}
+
 int main(int argc, char **argv)
 {
     filter f = {
@@ -115,12 +195,17 @@ int main(int argc, char **argv)
     tm_stream stream;
     tm_text file[TM_OPENFOAM_FILES] = {0};
     tm_openfoam_counts counts;
+    tm_poly_finite_volume measures;
     tm_error error;
-    mesh_input_read(&f, &stream);
-    if (tm_openfoam_write(file, &stream, &counts, &error) != TM_OK)
+    const tm_content content = mesh_input_read(&f, &stream);
+    const bool wanted = can_be_measured(&f, &stream);
+    if (tm_openfoam_write(file, &stream, &counts, wanted ? &measures : NULL,
+                          f.verbosity > 0, &error) != TM_OK)
         mesh_input_fail(&f, &error);
     mesh_leave_out(&f, &stream);
     write_folder(&f, folder, file, &counts);
+    if (wanted)
+        say_what_fails(&f, &measures, content);
     write_json(&f, &counts);
     for (int i = 0; i < TM_OPENFOAM_FILES; i++)
         tm_text_free(&file[i]);

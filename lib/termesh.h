@@ -52,10 +52,9 @@
 /* surface: triangulated surfaces */
 #include "surface/polygon_surface.h"
 #include "surface/surface.h"
-#include "surface/surface_curvature.h"
-#include "surface/surface_curvature.h"
 #include "surface/surface_defects.h"
-#include "surface/surface_distance.h"
+#include "surface/measure/surface_curvature.h"
+#include "surface/measure/surface_distance.h"
 
 /* examine: what is wrong with a mesh, and how good it is */
 #include "examine/element_examine.h"
@@ -97,10 +96,10 @@
 #include "octree/transition/transition.h"
 #include "octree/layer/adaptive_refinement.h"
 #include "octree/layer/assemble.h"
-#include "octree/layer/feature.h"
-#include "octree/layer/interior_boundary.h"
-#include "octree/layer/interior_leaves.h"
-#include "octree/layer/octant_mask.h"
+#include "octree/feature/feature.h"
+#include "octree/interior/interior_boundary.h"
+#include "octree/interior/interior_leaves.h"
+#include "octree/interior/octant_mask.h"
 #include "octree/layer/octree_mesh.h"
 #include "octree/layer/octree_mesh_stream.h"
 #include "octree/repair/repair.h"
@@ -116,6 +115,7 @@
 #include "poly/join_cells.h"
 #include "poly/octant/join_octants.h"
 #include "poly/partition.h"
+#include "poly/dual/dual.h"
 
 /* view: a page that shows meshes */
 #include "view/view.h"

@@ -84,8 +84,10 @@ notices() {
 }
 
 # The floors of lib/, from the ground up: a folder includes from those before it only.
-floors="base number text geom stream element mesh surface examine examine/poly format format/vtk optimise tet
-tet/envelope tet/operation tet/delaunay tet/improve tet/lepp octree/forest octree/transition octree/layer octree/repair poly/fit poly poly/octant view"
+floors="base number text geom stream element mesh surface surface/measure examine
+examine/poly format format/vtk optimise tet tet/envelope tet/operation tet/delaunay
+tet/improve tet/lepp octree/forest octree/transition octree/interior octree/feature
+octree/layer octree/repair poly/fit poly poly/dual poly/cluster poly/octant view"
 
 # Who has no use for a tm_error gives NULL: none but lib/base/error.c looks into one that a
 # caller gave.

@@ -6,6 +6,7 @@
 #define TM_FORMAT_MESH_FORMAT_H
 
 #include "../base/extern_c.h"
+#include "../examine/poly/poly_finite_volume.h"
 #include "../text/text.h"
 #include "../stream/stream.h"
 
@@ -114,10 +115,13 @@ typedef struct tm_openfoam_counts {
  * faces, cells of a region (tm_group_region()) with a name, or another than 0, a zone of
  * cells, named alike, else marker_N and region_N. What a word of OpenFOAM cannot have
  * becomes '_', and a name that is taken gets the value behind it. Nodes that no cell has
- * are left out. TM_ERROR_INPUT as tm_cell_faces_find(), or where there are no
- * cells. Expected O(n + b log b) for b facets of the boundary. */
+ * are left out. What checkMesh will measure goes to *measures, if that is not NULL; with
+ * all_geometry what it does with that option, too. TM_ERROR_INPUT as
+ * tm_cell_faces_find(), or where there are no cells. Expected O(n + b log b) for b facets
+ * of the boundary, and what the measures take. */
 tm_status tm_openfoam_write(tm_text file[TM_OPENFOAM_FILES], const tm_stream *stream,
-                            tm_openfoam_counts *counts, tm_error *error);
+                            tm_openfoam_counts *counts, tm_poly_finite_volume *measures,
+                            bool all_geometry, tm_error *error);
 
 TM_EXTERN_C_END
 

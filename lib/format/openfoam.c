@@ -424,8 +424,26 @@ static tm_status write_all(writer *w)
     return status;
 }
 
+static tm_status measure(const writer *w, tm_poly_finite_volume *measures,
+                         bool all_geometry)
+{
+    const tm_cell_faces *faces = &w->faces;
+    const tm_poly_arrays mesh = {.nodes = w->node->count,
+                                 .xyz = (const double(*)[3])w->node->real,
+                                 .facets = faces->facets,
+                                 .side = (const uint32_t(*)[2])faces->side,
+                                 .facet_start = faces->start,
+                                 .facet_node = faces->node,
+                                 .cells = faces->cells,
+                                 .cell_start = faces->cell_start,
+                                 .cell_facet = faces->cell_facet};
+    return all_geometry ? tm_poly_finite_volume_measure(measures, &mesh, w->error)
+                        : tm_poly_finite_volume_check(measures, &mesh, w->error);
+}
+
 tm_status tm_openfoam_write(tm_text file[TM_OPENFOAM_FILES], const tm_stream *stream,
-                            tm_openfoam_counts *counts, tm_error *error)
+                            tm_openfoam_counts *counts, tm_poly_finite_volume *measures,
+                            bool all_geometry, tm_error *error)
 {
     writer w = {.node = tm_stream_find(stream, ".node"),
                 .cells = tm_content_block(stream, tm_content_of(stream)),
@@ -437,6 +455,8 @@ tm_status tm_openfoam_write(tm_text file[TM_OPENFOAM_FILES], const tm_stream *st
         status = tm_fail(error, TM_ERROR_INPUT, "has no cells (.cell, .mix or .ele)");
     if (status == TM_OK)
         status = write_all(&w);
+    if (status == TM_OK && measures)
+        status = measure(&w, measures, all_geometry);
     *counts = (tm_openfoam_counts){.points = w.points,
                                    .cells = w.faces.cells,
                                    .faces = w.faces.facets,

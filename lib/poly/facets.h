@@ -33,6 +33,8 @@ void tm_cells_count_elements(tm_block *cell, const uint32_t *cell_of, size_t ele
 typedef struct tm_coplanar {
     double degrees;  /* their normals differ by so much at most, or, with 0: */
     double flatness; /* their nodes are so near to the plane of the first one */
+    double radius;   /* cells with such a kernel keep it, by their diameter; 0: any */
+    bool centroid;   /* those that their centroids see whole keep that */
 } tm_coplanar;
 
 /* Joins triangles to polygons where they have the same two cells and marker and are in

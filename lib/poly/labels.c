@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How tetrahedra are joined to regions: the modes of the partition. */
+#include "best_faces.h"
 #include "compact.h"
 
 #include "../base/array.h"
-#include "../base/disjoint_sets.h"
 #include "../geom/vector.h"
 #include "../tet/mesh_measure.h"
 #include "../tet/operation/ball.h"
@@ -174,60 +174,6 @@ static tm_status label_longest_edge(const tm_tet_mesh *mesh,
     return done ? TM_OK : tm_fail_memory(error);
 }
 
-/* By faces ------------------------------------------------------------------------- */
-
-/* Each tetrahedron is joined to its neighbour across its best face, if that is not
- * constrained; as POLYLLA does with the longest edges of triangles. */
-
-/* Squared: it is only compared. */
-static double metric_of(const tm_tet_mesh *mesh, uint32_t t, uint32_t i,
-                        tm_face_metric metric)
-{
-    uint32_t n[3];
-    tm_tet_face_below(mesh, t, i, n);
-    const double *a = mesh->xyz[n[0]], *b = mesh->xyz[n[1]], *c = mesh->xyz[n[2]];
-    double area = tm_triangle_area(a, b, c);
-    if (metric == TM_FACE_AREA)
-        return area;
-    double around =
-        sqrt(tm_distance2(a, b)) + sqrt(tm_distance2(b, c)) + sqrt(tm_distance2(c, a));
-    return around > 0 ? 2 * area / around : 0;
-}
-
-static uint32_t best_face(const tm_tet_mesh *mesh, uint32_t t, tm_face_metric metric)
-{
-    uint32_t best = 0;
-    double most = -1;
-    for (uint32_t i = 0; i < 4; i++) {
-        double value = metric_of(mesh, t, i, metric);
-        if (value <= most)
-            continue;
-        most = value;
-        best = i;
-    }
-    return best;
-}
-
-static tm_status label_best_face(const tm_tet_mesh *mesh, const tm_poly_options *options,
-                                 uint32_t *label, size_t *regions, tm_error *error)
-{
-    (void)error;
-    for (uint32_t t = 0; t < mesh->slots; t++)
-        label[t] = t;
-    for (uint32_t t = 0; t < mesh->slots; t++) {
-        uint32_t across = mesh->neighbour[t][best_face(mesh, t, options->face_metric)];
-        if (!(across & TM_FACE_BIT))
-            tm_set_unite(label, t, across / 4); /* the first tetrahedron is the root */
-    }
-    for (uint32_t t = 0; t < mesh->slots; t++)
-        label[t] = tm_set_root(label, t);
-    /* Roots come before the rest of their trees: number them on the way. */
-    *regions = 0;
-    for (uint32_t t = 0; t < mesh->slots; t++)
-        label[t] = label[t] == t ? (uint32_t)(*regions)++ : label[label[t]];
-    return TM_OK;
-}
-
 /* By circumscribed spheres --------------------------------------------------------- */
 
 /* From seeds by growing circumradius, tetrahedra are flooded whose circumcentre is in the
@@ -318,7 +264,8 @@ static tm_status label_cavity(const tm_tet_mesh *mesh, const tm_poly_options *op
 const tm_poly_mode_row tm_poly_modes[TM_POLY_MODES] = {
     [TM_POLY_TERMINAL] = {"terminal", label_terminal},
     [TM_POLY_EDGE] = {"edge", label_longest_edge},
-    [TM_POLY_FACE] = {"face", label_best_face},
+    [TM_POLY_FACE] = {"face", tm_poly_faces},
+    [TM_POLY_TERMINAL_FACE] = {"terminal-face", tm_poly_terminal_faces},
     [TM_POLY_CAVITY] = {"cavity", label_cavity},
     [TM_POLY_COMPACT] = {"compact", tm_poly_compact},
 };

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CORNERS = 3, LEAST_FACETS = 4 };
+enum { CORNERS = 3, LEAST_FACETS = 4, MEASURES = 3 };
 
 typedef struct {
     const tm_tet_mesh *mesh;
@@ -281,7 +281,8 @@ static tm_status write(const merger *m, size_t polygons, tm_block *merged, tm_bl
     return status;
 }
 
-/* Measures the cells of some facets: their volumes, then their kernels' radii. */
+/* Measures the cells of some facets: their volumes, then their kernels' radii, then, if
+ * that is asked for, whether their centroids see all. */
 static tm_status measure(const merger *m, const tm_block *facet, const tm_block *cell,
                          double *measured, tm_error *error)
 {
@@ -295,7 +296,16 @@ static tm_status measure(const merger *m, const tm_block *facet, const tm_block 
                                  .cells = cell->count,
                                  .cell_start = cell->start,
                                  .cell_facet = cell->item};
-    return tm_poly_measure_each(measured, measured + m->cells, &mesh, threads, error);
+    tm_status status =
+        tm_poly_measure_each(measured, measured + m->cells, &mesh, threads, error);
+    if (status != TM_OK || !m->plane->centroid)
+        return status;
+    bool *unseen = tm_new(m->cells, sizeof *unseen);
+    status = unseen ? tm_poly_find_unseen(unseen, &mesh, error) : tm_fail_memory(error);
+    for (size_t c = 0; c < m->cells && status == TM_OK; c++)
+        measured[2 * m->cells + c] = unseen[c] ? 0 : 1;
+    free(unseen);
+    return status;
 }
 
 /* Whether a cell has lost its volume or its star by facets that are not plane; it is to
@@ -304,8 +314,11 @@ static bool find_bent_cells(merger *m, const double *before, const double *now)
 {
     bool found = false;
     for (size_t c = 0; c < m->cells; c++) {
-        bool lost = (before[c] > 0 && !(now[c] > 0)) ||
-                    (before[m->cells + c] > 0 && !(now[m->cells + c] > 0));
+        bool lost = false;
+        for (size_t k = c; k < MEASURES * m->cells; k += m->cells) {
+            const double least = k / m->cells == 1 ? m->plane->radius : 0;
+            lost |= before[k] > least && !(now[k] > least);
+        }
         found |= lost && !m->stays[c];
         m->stays[c] |= lost;
     }
@@ -325,8 +338,8 @@ static tm_status merge(merger *m, const tm_block *was, tm_block *merged, tm_bloc
                        tm_error *error)
 {
     const bool bends = m->plane->degrees > 0;
-    double *measured = tm_new(4 * m->cells, sizeof *measured);
-    double *before = measured, *now = measured ? measured + 2 * m->cells : NULL;
+    double *measured = calloc(2 * MEASURES * m->cells + 1, sizeof *measured);
+    double *before = measured, *now = measured ? measured + MEASURES * m->cells : NULL;
     tm_status status = measured ? TM_OK : tm_fail_memory(error);
     bool again = status == TM_OK;
     if (again && bends)

@@ -2,9 +2,9 @@
 #include "partition.h"
 
 #include "../base/array.h"
-#include "../geom/predicates.h"
 #include "../geom/vector.h"
-#include "shelling.h"
+#include "correction.h"
+#include "shelling_star.h"
 #include "simple.h"
 
 #include <stdlib.h>
@@ -203,19 +203,38 @@ static tm_status absorb(repair *r)
     return status;
 }
 
-/* Numbers the sets in the order of their first tetrahedra; `sets` is above all. */
-static tm_status renumber(uint32_t *set, size_t tets, size_t sets, size_t *count,
-                          tm_error *error)
+/* Counts pieces that are no stars: where no radius is given, only a flat tetrahedron can
+ * be none. */
+static tm_status count_stars(repair *r)
 {
-    uint32_t *name = tm_new(sets, sizeof *name);
+    tm_shelling *s = &r->shelling;
+    lists l = {0};
+    bool memory = make_lists(&l, s->piece, r->mesh->slots, r->pieces);
+    for (uint32_t p = 0; p < l.sets && memory; p++) {
+        const size_t size = l.start[p + 1] - l.start[p];
+        if (size != 1 && r->options->star != TM_STAR_RADIUS)
+            continue;
+        memory = size == 0 || tm_shelling_resume(s, p, l.item + l.start[p], size);
+        if (memory && size > 0 && !tm_shelling_is_star(s, &memory))
+            r->report->not_star++;
+    }
+    free_lists(&l);
+    return memory ? TM_OK : tm_fail_memory(r->error);
+}
+
+/* Numbers the cells in the order of their first tetrahedra. */
+static tm_status number_cells(tm_partition *partition, size_t tets, tm_error *error)
+{
+    uint32_t *set = partition->cell;
+    uint32_t *name = tm_new(partition->cells, sizeof *name);
     if (!name)
         return tm_fail_memory(error);
-    for (size_t s = 0; s < sets; s++)
+    for (size_t s = 0; s < partition->cells; s++)
         name[s] = TM_NONE;
-    *count = 0;
+    partition->cells = 0;
     for (size_t t = 0; t < tets; t++) {
         if (name[set[t]] == TM_NONE)
-            name[set[t]] = (uint32_t)(*count)++;
+            name[set[t]] = (uint32_t)partition->cells++;
         set[t] = name[set[t]];
     }
     free(name);
@@ -236,6 +255,8 @@ static tm_status repair_regions(tm_partition *partition, const tm_tet_mesh *mesh
         status = take_all_apart(&r, report->regions);
     if (status == TM_OK && options->absorb)
         status = absorb(&r);
+    if (status == TM_OK && options->star)
+        status = count_stars(&r);
     if (status == TM_OK) {
         memcpy(partition->cell, r.shelling.piece, mesh->slots * sizeof *partition->cell);
         partition->cells = r.pieces;
@@ -277,22 +298,26 @@ static tm_status order_by_cell(tm_partition *partition, size_t tets, tm_error *e
     return done ? TM_OK : tm_fail_memory(error);
 }
 
-/* Counts cells of one tetrahedron, and flat ones: all others are stars if that is asked
- * for. */
-static void count_single(const tm_partition *partition, const tm_tet_mesh *mesh,
-                         tm_poly_report *report)
+/* How many cells are of one tetrahedron. */
+static size_t count_single(const tm_partition *partition, size_t tets)
 {
-    const double(*xyz)[3] = (const double(*)[3])mesh->xyz;
     const uint32_t *order = partition->order, *cell = partition->cell;
-    for (size_t k = 0; k < mesh->slots; k++) {
-        uint32_t c = cell[order[k]];
-        if ((k > 0 && cell[order[k - 1]] == c) ||
-            (k + 1 < mesh->slots && cell[order[k + 1]] == c))
-            continue;
-        const uint32_t *n = mesh->tet[order[k]];
-        report->single++;
-        report->not_star += mesh->flat > 0 &&
-                            tm_orient3d(xyz[n[0]], xyz[n[1]], xyz[n[2]], xyz[n[3]]) == 0;
+    size_t count = 0;
+    for (size_t k = 0; k < tets; k++)
+        count += !(k > 0 && cell[order[k - 1]] == cell[order[k]]) &&
+                 !(k + 1 < tets && cell[order[k + 1]] == cell[order[k]]);
+    return count;
+}
+
+/* Takes the regions as they are given. */
+static void take_regions(const tm_tet_mesh *mesh, const uint32_t *given, uint32_t *label,
+                         size_t *regions)
+{
+    *regions = 0;
+    for (size_t t = 0; t < mesh->slots; t++) {
+        label[t] = given[t];
+        if (label[t] >= *regions)
+            *regions = (size_t)label[t] + 1;
     }
 }
 
@@ -329,18 +354,25 @@ tm_status tm_partition_make(tm_partition *partition, const tm_tet_mesh *mesh,
     if (!partition->cell)
         return tm_fail_memory(error);
     tm_progress_stage(options->progress, "joining tetrahedra");
-    tm_status status =
-        find_regions(mesh, options, partition->cell, &report->regions, error);
+    tm_status status = TM_OK;
+    if (options->given)
+        take_regions(mesh, options->given, partition->cell, &report->regions);
+    else
+        status = find_regions(mesh, options, partition->cell, &report->regions, error);
     partition->cells = report->regions;
     if (status == TM_OK && options->repair)
         status = repair_regions(partition, mesh, options, report, error);
     if (status == TM_OK)
-        status = renumber(partition->cell, mesh->slots, partition->cells,
-                          &partition->cells, error);
+        status = number_cells(partition, mesh->slots, error);
+    if (status == TM_OK && options->star == TM_STAR_CENTROID) {
+        status = tm_calm_cells(mesh, partition->cell, &partition->cells, error);
+        if (status == TM_OK)
+            status = number_cells(partition, mesh->slots, error);
+    }
     if (status == TM_OK)
         status = order_by_cell(partition, mesh->slots, error);
     report->cells = partition->cells;
     if (status == TM_OK && options->star)
-        count_single(partition, mesh, report);
+        report->single = count_single(partition, mesh->slots);
     return status;
 }

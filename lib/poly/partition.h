@@ -22,22 +22,33 @@ TM_EXTERN_C_BEGIN
 typedef enum tm_poly_mode {
     TM_POLY_TERMINAL, /* one for each terminal edge: fans and their outlets */
     TM_POLY_EDGE,     /* tetrahedra with one longest edge: what the 2022 program did */
-    TM_POLY_FACE,     /* joined across the best face of each tetrahedron */
-    TM_POLY_CAVITY,   /* circumcentres in the circumscribed sphere of a seed */
-    TM_POLY_COMPACT,  /* compact ones of even size: compact.h */
+    TM_POLY_FACE,     /* joined across best faces, no barrier face left: best_faces.h */
+    TM_POLY_TERMINAL_FACE, /* the same with barrier faces as if they were none */
+    TM_POLY_CAVITY,        /* circumcentres in the circumscribed sphere of a seed */
+    TM_POLY_COMPACT,       /* compact ones of even size: compact.h */
     TM_POLY_MODES
 } tm_poly_mode;
 
 /* Which face is best. */
 typedef enum tm_face_metric { TM_FACE_AREA, TM_FACE_INRADIUS } tm_face_metric;
 
+/* Which cells are stars. The extent is the diagonal of a box around the cell. */
+typedef enum tm_poly_star {
+    TM_NO_STAR,       /* they need not be */
+    TM_STAR_BALL,     /* some ball sees all of it */
+    TM_STAR_RADIUS,   /* of that radius, by the extent */
+    TM_STAR_CENTROID, /* the centroid is inside of the planes of all facets */
+} tm_poly_star;
+
 typedef struct tm_poly_options {
     tm_poly_mode mode;
     tm_face_metric face_metric;
-    size_t cells;    /* compact: about so many, or with 0 */
-    double size;     /* about as large as cubes of this side */
-    bool repair;     /* the rest is for this */
-    bool star;       /* star-shaped with respect to a ball */
+    size_t cells;          /* compact: about so many, or with 0 */
+    double size;           /* about as large as cubes of this side */
+    const uint32_t *given; /* [slots]: the regions, in place of a mode's; or NULL */
+    bool repair;           /* the rest is for this */
+    tm_poly_star star;
+    double radius;   /* of TM_STAR_RADIUS */
     bool absorb;     /* cells of a few tetrahedra join one beside them */
     bool no_swallow; /* no node inside of a polyhedron */
     size_t max_tets; /* in one polyhedron; 0: any number */
@@ -58,7 +69,7 @@ typedef struct tm_poly_report {
     size_t taken_apart; /* regions that were no ball, or no star, or too large */
     size_t absorbed;    /* tetrahedra */
     size_t single;      /* with star: cells of one tetrahedron, and */
-    size_t not_star;    /* those of a flat one */
+    size_t not_star;    /* no stars: those of a flat one, or what has no such radius */
 } tm_poly_report;
 
 typedef struct tm_partition {

@@ -4,9 +4,7 @@
  * disc: for m = 1 its fourth node is not in the piece, for m = 2 its edge in neither
  * shared face is not, for m = 3 always; then a node goes inside. The piece stays a ball.
  *
- * With `star` the intersection of the inner half-spaces of the piece's faces holds a
- * ball: the piece is star-shaped with respect to it. A point in it is kept, and asked
- * first; where it is outside of a new face, the best point is looked for (kernel.h). */
+ * With `star` the piece stays a star, too: shelling_star.h. */
 #ifndef TM_POLY_SHELLING_H
 #define TM_POLY_SHELLING_H
 
@@ -16,7 +14,7 @@
 typedef struct tm_shelling {
     const tm_tet_mesh *mesh;
     const tm_poly_options *options;
-    double (*xyz)[3];     /* [nodes], scaled: a thin mesh as if it were not */
+    double (*xyz)[3];     /* [nodes], by a ball scaled: a thin mesh as if it were not */
     uint32_t *piece;      /* [slots]: of each tetrahedron, or TM_NONE */
     uint32_t *node_piece; /* [nodes]: the last piece that was grown and has the node */
     uint32_t id;          /* of the piece that is grown */
@@ -27,8 +25,10 @@ typedef struct tm_shelling {
     size_t queued, queue_room;
     double low[3], high[3]; /* the piece is between */
     double origin[3];       /* of what follows */
-    double centre[3];       /* star: a point that is so deep inside of all faces; */
-    double depth;           /* negative: none is known */
+    double (*centroid)[3];  /* by the centroid: that of each piece */
+    double moment[4];       /* by the centroid: that times the volume, and the volume */
+    double centre[3];       /* star: a point that is so deep inside of all faces, */
+    double depth;           /* or deeper; negative: none is known */
     double (*plane)[4];
     size_t plane_room;
     tm_star star;

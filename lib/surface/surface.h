@@ -16,7 +16,11 @@ TM_EXTERN_C_BEGIN
  * curve does not take back, and tips, where the angles of the triangles sum up to less
  * than 180°. An open edge is sharp. A rough surface has many short curves: see
  * curve_length. A closed curve without a corner has its first node again as its last. A
- * patch is a set of triangles connected across edges that are not sharp. */
+ * patch is a set of triangles connected across edges that are not sharp.
+ *
+ * Where walls meet, at edges of three triangles or more, these are not across each other,
+ * and the edge is sharp; it is not counted as open. A shell is then what is connected
+ * over any edges, and `inside` means: in any region. */
 typedef struct tm_surface {
     size_t nodes;
     double (*xyz)[3];
@@ -58,7 +62,11 @@ typedef struct tm_surface {
     bool regions;   /* what a shell in another one encloses is a region of its own, else a
                        hole; of each shell region[shell] is that which it is around, or,
                        where the file has none, region is NULL: 1 and more */
-    double *region; /* [components] */
+    double *region; /* [components]; with walls [cells] */
+    bool walls;     /* some edges have three triangles or more: walls between regions */
+    size_t cells;   /* with walls: the regions, numbered from 1; 0 is outside */
+    uint32_t (*side)[2]; /* [triangles]: the region where its normal points, and the one
+                            behind it, which has the larger number; NULL without walls */
     size_t repeated_regions; /* of the file, in one with another one before */
     size_t holes;            /* points in what is a hole all the same */
     double (*hole)[3];
@@ -73,6 +81,7 @@ typedef struct tm_surface_options {
                              what is long and smooth around: surface_loose.h */
     bool lenient;         /* open surfaces, and such that cross themselves, are taken */
     bool regions;         /* a shell in another one bounds a region, not a hole */
+    bool walls;           /* walls between regions are taken, where no edge is open */
 } tm_surface_options;
 
 /* Makes the surface of the polygons: nodes with equal coordinates become one, polygons
@@ -81,7 +90,10 @@ typedef struct tm_surface_options {
  * where that cannot be it stays. Each shell is oriented; one that an even number of
  * others encloses is turned so that its volume is positive, the others (cavities) so that
  * it is negative. Where an edge has four or more triangles, solids touch: the triangles
- * on both sides of each solid wedge become neighbours, by the file's orientation.
+ * on both sides of each solid wedge become neighbours, by the file's orientation. Where
+ * some are odd and no edge is open there are walls between regions, with `walls`: each
+ * part of space that is closed in is one, but for those of the file's holes, and the
+ * triangles are turned to the region with the smaller number.
  *
  * TM_ERROR_INPUT, with counts and a position, in the numbers of the file, where nothing
  * is left, coordinates are too large or too small (stream/coordinates.h), a facet has
@@ -89,7 +101,8 @@ typedef struct tm_surface_options {
  * than two that do not pair, where a shell cannot be oriented, or where two triangles
  * meet otherwise than in common nodes and edges, exactly (touching is meeting). With
  * lenient the surface is cut open at edges of the third and fourth kind. With `regions`
- * also where a region of the file is in no shell.
+ * also where a region of the file is in no shell; with walls also where one has the same
+ * region on both sides, or the surface crosses itself.
  *
  * *surface need not be initialised; tm_surface_free() also after an error.
  * O(n log n). */
@@ -136,6 +149,15 @@ void tm_surface_closest_on_curve(const tm_surface *surface, uint32_t curve,
  * A. Jacobson, Fast winding numbers for soups and clouds, 2018): its mean
  * error is below 0.01, the largest about 0.1. */
 bool tm_surface_has_inside(const tm_surface *surface, const double point[3]);
+
+/* The region that a point is in, of a surface with walls; 0: outside. By the same ray:
+ * each triangle that it meets leads from one region to another. */
+uint32_t tm_surface_region_at(const tm_surface *surface, const double point[3]);
+
+/* Whether at a point is what triangle t has beside it, before (0) or behind (1): the
+ * region there, or where there are no walls the outside and the inside. */
+bool tm_surface_is_beside(const tm_surface *surface, size_t t, int behind,
+                          const double point[3]);
 
 /* The volume of each shell, [components]; negative where it looks inward. */
 void tm_surface_shell_volumes(const tm_surface *surface, double *volume);

@@ -50,25 +50,28 @@ static tm_status count_euler(tm_surface *surface, tm_error *error)
 static tm_status shape(tm_surface *surface, const tm_surface_options *options,
                        unsigned base, tm_error *error)
 {
-    tm_status status = tm_surface_connect(surface, options->lenient, base, error);
+    tm_status status =
+        tm_surface_connect(surface, options->lenient, options->walls, base, error);
     if (status == TM_OK)
         status = tm_surface_orient(surface, options->lenient, base, error);
     if (status == TM_OK)
         status = tm_surface_mend(surface, error);
-    if (status == TM_OK)
+    if (status == TM_OK && !surface->walls)
         status = count_euler(surface, error);
     return status;
 }
 
-static tm_status prepare(tm_surface *surface, const tm_surface_options *options,
-                         unsigned base, tm_error *error)
+static tm_status prepare(tm_surface *surface, const tm_polygon_surface *polygons,
+                         const tm_surface_options *options, tm_error *error)
 {
+    const unsigned base = polygons->base;
     tm_status status = tm_surface_tree_build(surface, error);
     if (status == TM_OK)
         status = tm_surface_find_crossings(surface, options->lenient, base, error);
     surface->by_winding = surface->open_edges + surface->crossings > 0;
     if (status == TM_OK)
-        status = tm_surface_turn(surface, error);
+        status = surface->walls ? tm_surface_find_walls(surface, polygons, error)
+                                : tm_surface_turn(surface, error);
     if (status == TM_OK)
         status = tm_surface_find_features(surface, options->feature_angle,
                                           options->unless_rough, 0, error);
@@ -93,8 +96,8 @@ tm_status tm_surface_build(tm_surface *surface, const tm_polygon_surface *polygo
     if (status == TM_OK)
         status = shape(surface, options, polygons->base, error);
     if (status == TM_OK)
-        status = prepare(surface, options, polygons->base, error);
-    if (status == TM_OK && options->regions)
+        status = prepare(surface, polygons, options, error);
+    if (status == TM_OK && options->regions && !surface->walls)
         status = tm_surface_find_regions(surface, polygons, error);
     return status;
 }
@@ -110,6 +113,7 @@ void tm_surface_free(tm_surface *surface)
     free(surface->across);
     free(surface->shell);
     free(surface->region);
+    free(surface->side);
     free(surface->hole);
     free(surface->patch);
     free(surface->curve_start);

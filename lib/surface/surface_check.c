@@ -40,9 +40,37 @@ static tm_status check_triangles(const tm_surface *surface, tm_error *error)
                 return wrong(error, "neighbours that do not know each other", t);
         }
     }
-    if (open != surface->open_edges)
+    if (open != surface->open_edges && !surface->walls)
         return wrong(error, "a false number of open edges", open);
     return TM_OK;
+}
+
+/* Each wall is between two regions, of which it looks to the smaller one; each region has
+ * some. */
+static tm_status check_sides(const tm_surface *surface, tm_error *error)
+{
+    bool *met = calloc(surface->cells + 1, sizeof *met);
+    if (!met)
+        return tm_fail_memory(error);
+    tm_status status = TM_OK;
+    for (size_t t = 0; t < surface->triangles && status == TM_OK; t++) {
+        const uint32_t *side = surface->side[t];
+        if (side[0] >= side[1] || side[1] > surface->cells)
+            status = wrong(error, "a wall between no two regions", t);
+        else
+            met[side[0]] = met[side[1]] = true;
+        for (unsigned i = 0; i < 3; i++) {
+            const uint32_t n = surface->across[t][i];
+            if (status == TM_OK && n != TM_NONE &&
+                memcmp(surface->side[n], side, sizeof surface->side[n]) != 0)
+                status = wrong(error, "neighbours between different regions", t);
+        }
+    }
+    for (size_t r = 0; r <= surface->cells && status == TM_OK; r++)
+        if (!met[r])
+            status = wrong(error, "a region without a wall", r);
+    free(met);
+    return status;
 }
 
 static tm_status check_nodes(const tm_surface *surface, tm_error *error)
@@ -145,6 +173,8 @@ static bool check_node(const tm_surface *surface, uint32_t n, int depth, size_t 
 tm_status tm_surface_check(const tm_surface *surface, tm_error *error)
 {
     tm_status status = check_triangles(surface, error);
+    if (status == TM_OK && surface->walls)
+        status = check_sides(surface, error);
     if (status == TM_OK)
         status = check_nodes(surface, error);
     if (status == TM_OK)

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CLOSED = 2, WEDGES_MOST = 64, FEW = 24 };
+enum { CLOSED = 2, FEW = 24 };
 
 typedef struct half_edge {
     uint32_t high; /* the larger of its nodes; the smaller is that of the bucket */
@@ -186,28 +186,22 @@ static void join(tm_surface *surface, uint32_t h, uint32_t g)
     surface->across[g / 3][g % 3] = h / 3;
 }
 
-typedef struct around {
-    double angle; /* about the edge, from the smaller node to the larger */
-    uint32_t half;
-} around;
-
 static int compare_angles(const void *a, const void *b)
 {
-    const around *p = a, *q = b;
+    const tm_around *p = a, *q = b;
     if (p->angle != q->angle)
         return p->angle < q->angle ? -1 : 1;
     return (p->half > q->half) - (p->half < q->half);
 }
 
-/* The half edges of one edge by their angle around it. */
-static void sort_around(const tm_surface *surface, const half_edge *edge, size_t count,
-                        uint32_t low, around *at)
+void tm_surface_sort_around(const tm_surface *surface, uint32_t low, uint32_t high,
+                            tm_around *at, size_t count)
 {
     double along[3], x[3], y[3];
     const double *origin = surface->xyz[low];
-    tm_subtract(along, surface->xyz[edge->high], origin);
+    tm_subtract(along, surface->xyz[high], origin);
     for (size_t i = 0; i < count; i++) {
-        uint32_t h = edge[i].half;
+        uint32_t h = at[i].half;
         double to[3], across[3];
         tm_subtract(to, surface->xyz[surface->triangle[h / 3][(h % 3 + 2) % 3]], origin);
         tm_cross(across, along, to);
@@ -215,7 +209,6 @@ static void sort_around(const tm_surface *surface, const half_edge *edge, size_t
             memcpy(y, across, sizeof y);
             tm_cross(x, y, along);
         }
-        at[i].half = h;
         at[i].angle = atan2(tm_dot(y, to) * tm_norm(along), tm_dot(x, to));
     }
     qsort(at, count, sizeof *at, compare_angles);
@@ -227,10 +220,12 @@ static void sort_around(const tm_surface *surface, const half_edge *edge, size_t
 static bool pair_wedges(tm_surface *surface, const half_edge *edge, size_t count,
                         uint32_t low)
 {
-    around at[WEDGES_MOST];
-    if (count % 2 != 0 || count > WEDGES_MOST)
+    tm_around at[TM_WEDGES_MOST];
+    if (count % 2 != 0 || count > TM_WEDGES_MOST)
         return false;
-    sort_around(surface, edge, count, low, at);
+    for (size_t i = 0; i < count; i++)
+        at[i].half = edge[i].half;
+    tm_surface_sort_around(surface, low, edge->high, at, count);
     for (size_t i = 0; i < count; i++)
         if ((from_node(surface, at[i].half) == low) ==
             (from_node(surface, at[(i + 1) % count].half) == low))
@@ -242,7 +237,7 @@ static bool pair_wedges(tm_surface *surface, const half_edge *edge, size_t count
 }
 
 typedef struct defects {
-    size_t open, crowded;
+    size_t open, crowded, odd;
     uint32_t open_edge[2], crowded_edge[2];
 } defects;
 
@@ -256,6 +251,7 @@ static void join_edge(tm_surface *surface, const half_edge *edge, size_t count,
         if (found->open++ == 0)
             memcpy(found->open_edge, nodes, sizeof nodes);
     } else if (!pair_wedges(surface, edge, count, low)) {
+        found->odd += count % 2;
         if (found->crowded++ == 0)
             memcpy(found->crowded_edge, nodes, sizeof nodes);
         surface->open_edges += count;
@@ -278,8 +274,20 @@ static tm_status report(const tm_surface *surface, const defects *found, unsigne
                    (size_t)surface->origin[e[1]] + base, b[0], b[1], b[2]);
 }
 
+/* Parts the triangles at edges with more than two: there walls meet. */
+static void part_walls(tm_surface *surface, const edge_table *table)
+{
+    for (size_t v = 0; v < surface->nodes; v++)
+        for (size_t i = table->start[v], next; i < table->start[v + 1]; i = next) {
+            next = end_of_edge(table->edge, i, table->start[v + 1]);
+            for (size_t k = i; next - i > CLOSED && k < next; k++)
+                surface->across[table->edge[k].half / 3][table->edge[k].half % 3] =
+                    TM_NONE;
+        }
+}
+
 static tm_status join_edges(tm_surface *surface, const edge_table *table, bool lenient,
-                            unsigned base, tm_error *error)
+                            bool walls, unsigned base, tm_error *error)
 {
     defects found = {0};
     surface->across = tm_new(surface->triangles, sizeof *surface->across);
@@ -293,13 +301,19 @@ static tm_status join_edges(tm_surface *surface, const edge_table *table, bool l
             next = end_of_edge(table->edge, i, table->start[v + 1]);
             join_edge(surface, table->edge + i, next - i, (uint32_t)v, &found);
         }
+    if (walls && found.open == 0 && found.odd > 0) {
+        surface->walls = true;
+        surface->open_edges = 0;
+        part_walls(surface, table);
+        return TM_OK;
+    }
     surface->open_edges += found.open;
     if (lenient || found.open + found.crowded == 0)
         return TM_OK;
     return report(surface, &found, base, error);
 }
 
-tm_status tm_surface_connect(tm_surface *surface, bool lenient, unsigned base,
+tm_status tm_surface_connect(tm_surface *surface, bool lenient, bool walls, unsigned base,
                              tm_error *error)
 {
     edge_table table = {0};
@@ -320,7 +334,7 @@ tm_status tm_surface_connect(tm_surface *surface, bool lenient, unsigned base,
             status = tm_fail_memory(error);
     }
     if (status == TM_OK)
-        status = join_edges(surface, &table, lenient, base, error);
+        status = join_edges(surface, &table, lenient, walls, base, error);
     edge_table_free(&table);
     return status;
 }

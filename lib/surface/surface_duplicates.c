@@ -3,6 +3,7 @@
 
 #include "../base/array.h"
 #include "point_table.h"
+#include "surface_parts.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -31,21 +32,9 @@ static int compare_facets(const void *a, const void *b)
     return order != 0 ? order : (p->facet > q->facet) - (p->facet < q->facet);
 }
 
-/* node[i] becomes the first node where item[i] is. */
-static bool find_nodes(const tm_polygon_surface *surface, uint32_t *node)
-{
-    uint32_t *unique = tm_new(surface->nodes, sizeof *unique);
-    size_t joined;
-    const bool done =
-        unique && tm_points_weld(surface->xyz, surface->nodes, unique, &joined);
-    for (size_t i = 0; i < surface->corners && done; i++)
-        node[i] = unique[surface->item[i]];
-    free(unique);
-    return done;
-}
-
-/* Lists the facets of one polygon, without holes, in `sorted`; sorts their nodes. */
-static size_t sort_facets(const tm_polygon_surface *surface, uint32_t *node,
+/* Lists the facets of one polygon of so many nodes or more, without holes, in `sorted`;
+ * sorts their nodes. */
+static size_t sort_facets(const tm_polygon_surface *surface, size_t least, uint32_t *node,
                           sorted_facet *sorted)
 {
     size_t count = 0;
@@ -56,6 +45,8 @@ static size_t sort_facets(const tm_polygon_surface *surface, uint32_t *node,
             continue;
         uint32_t *first = node + surface->start[p];
         const size_t nodes = surface->start[p + 1] - surface->start[p];
+        if (nodes < least)
+            continue;
         qsort(first, nodes, sizeof *first, tm_compare_numbers);
         sorted[count++] = (sorted_facet){first, nodes, f};
     }
@@ -90,26 +81,41 @@ static void drop_facets(tm_polygon_surface *surface, const bool *gone)
     surface->corners = corners;
 }
 
+bool tm_surface_find_duplicates(const tm_polygon_surface *surface, const uint32_t *unique,
+                                size_t least, bool *gone, size_t *count)
+{
+    uint32_t *node = tm_new(surface->corners, sizeof *node);
+    sorted_facet *sorted = tm_new(surface->facets, sizeof *sorted);
+    const bool done = node && sorted;
+    *count = 0;
+    for (size_t i = 0; i < surface->corners && done; i++)
+        node[i] = unique[surface->item[i]];
+    const size_t facets = done ? sort_facets(surface, least, node, sorted) : 0;
+    for (size_t i = 1; i < facets; i++)
+        if (compare_polygons(&sorted[i - 1], &sorted[i]) == 0) {
+            gone[sorted[i].facet] = true;
+            ++*count;
+        }
+    free(node);
+    free(sorted);
+    return done;
+}
+
 tm_status tm_surface_drop_duplicates(tm_polygon_surface *surface, size_t *dropped,
                                      tm_error *error)
 {
     *dropped = 0;
     if (surface->facets == 0)
         return TM_OK;
-    uint32_t *node = tm_new(surface->corners, sizeof *node);
-    sorted_facet *sorted = tm_new(surface->facets, sizeof *sorted);
+    uint32_t *unique = tm_new(surface->nodes, sizeof *unique);
     bool *gone = calloc(surface->facets, sizeof *gone);
-    const bool done = node && sorted && gone && find_nodes(surface, node);
-    const size_t count = done ? sort_facets(surface, node, sorted) : 0;
-    for (size_t i = 1; i < count; i++)
-        if (compare_polygons(&sorted[i - 1], &sorted[i]) == 0) {
-            gone[sorted[i].facet] = true;
-            ++*dropped;
-        }
+    size_t joined;
+    const bool done = unique && gone &&
+                      tm_points_weld(surface->xyz, surface->nodes, unique, &joined) &&
+                      tm_surface_find_duplicates(surface, unique, 0, gone, dropped);
     if (*dropped > 0)
         drop_facets(surface, gone);
-    free(node);
-    free(sorted);
+    free(unique);
     free(gone);
     return done ? TM_OK : tm_fail_memory(error);
 }

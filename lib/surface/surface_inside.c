@@ -79,9 +79,14 @@ static uint64_t sign_of_shell(uint32_t shell)
     return (z ^ z >> 31) | 1;
 }
 
-/* The sum of the shells that a ray from the point meets an odd number of times. */
-static uint64_t odd_shells(const tm_surface *surface, const double point[3], uint32_t but,
-                           bool *on)
+/* What a triangle that a ray meets stands for. */
+typedef uint64_t sign_function(const tm_surface *surface, uint32_t t,
+                               const void *context);
+
+/* What all triangles that a ray from the point meets stand for, added without carry. */
+static inline uint64_t sum_along_ray(const tm_surface *surface, const double point[3],
+                                     uint32_t but, sign_function *sign,
+                                     const void *context, bool *on)
 {
     const tm_surface_tree *tree = surface->tree;
     unsigned w = tree->axis;
@@ -89,7 +94,7 @@ static uint64_t odd_shells(const tm_surface *surface, const double point[3], uin
     r.up = surface->high[w] - point[w] < point[w] - surface->low[w];
     uint32_t stack[TM_TREE_DEPTH];
     size_t height = 0;
-    uint64_t odd = 0;
+    uint64_t sum = 0;
     if (can_meet(&r, &tree->node[0]))
         stack[height++] = 0;
     while (height > 0) {
@@ -106,10 +111,40 @@ static uint64_t odd_shells(const tm_surface *surface, const double point[3], uin
                 continue;
             const double(*corner)[3] = (const double(*)[3])triangle->corner;
             if (is_over(&r, corner) && is_ahead(&r, corner, on))
-                odd ^= sign_of_shell(surface->shell[triangle->id]);
+                sum ^= sign(surface, triangle->id, context);
         }
     }
-    return odd;
+    return sum;
+}
+
+static uint64_t shell_sign(const tm_surface *surface, uint32_t t, const void *context)
+{
+    (void)context;
+    return sign_of_shell(surface->shell[t]);
+}
+
+/* The sum of the shells that a ray from the point meets an odd number of times. */
+static uint64_t odd_shells(const tm_surface *surface, const double point[3], uint32_t but,
+                           bool *on)
+{
+    return sum_along_ray(surface, point, but, shell_sign, NULL, on);
+}
+
+uint64_t tm_surface_sum_along_ray(const tm_surface *surface, const double point[3],
+                                  uint32_t but,
+                                  uint64_t (*sign)(const tm_surface *surface, uint32_t t,
+                                                   const void *context),
+                                  const void *context)
+{
+    bool on = false;
+    return sum_along_ray(surface, point, but, sign, context, &on);
+}
+
+/* From a region to the outside all others come twice. */
+static uint64_t side_sign(const tm_surface *surface, uint32_t t, const void *context)
+{
+    (void)context;
+    return surface->side[t][0] ^ surface->side[t][1];
 }
 
 bool tm_surface_ray_is_odd(const tm_surface *surface, const double point[3], uint32_t but,
@@ -126,6 +161,22 @@ static bool is_in_box(const tm_surface *surface, const double point[3])
     return true;
 }
 
+uint32_t tm_surface_region_at(const tm_surface *surface, const double point[3])
+{
+    bool on = false;
+    return is_in_box(surface, point)
+               ? (uint32_t)sum_along_ray(surface, point, TM_NONE, side_sign, NULL, &on)
+               : 0;
+}
+
+bool tm_surface_is_beside(const tm_surface *surface, size_t t, int behind,
+                          const double point[3])
+{
+    if (surface->walls)
+        return tm_surface_region_at(surface, point) == surface->side[t][behind];
+    return tm_surface_has_inside(surface, point) == (behind != 0);
+}
+
 bool tm_surface_has_inside(const tm_surface *surface, const double point[3])
 {
     const double most = 0.5;
@@ -134,6 +185,8 @@ bool tm_surface_has_inside(const tm_surface *surface, const double point[3])
         return false;
     if (surface->by_winding)
         return tm_surface_winding_number(surface, point) > most;
+    if (surface->walls)
+        return tm_surface_region_at(surface, point) != 0;
     return tm_surface_ray_is_odd(surface, point, TM_NONE, &on);
 }
 
@@ -148,7 +201,7 @@ bool tm_surface_is_within(const tm_surface *surface, uint32_t shell,
 bool tm_surface_has_mesh(const tm_surface *surface, const double point[3])
 {
     bool on = false;
-    if (!surface->regions || surface->by_winding)
+    if (!surface->regions || surface->by_winding || surface->walls)
         return tm_surface_has_inside(surface, point);
     return is_in_box(surface, point) && odd_shells(surface, point, TM_NONE, &on) != 0;
 }
@@ -315,8 +368,8 @@ static bool is_thin(const tm_surface *surface, size_t t, double distance,
         above[i] = centre[i] + distance / length * normal[i];
         below[i] = centre[i] - distance / length * normal[i];
     }
-    return tm_surface_has_inside(surface, above) ||
-           !tm_surface_has_inside(surface, below);
+    return !tm_surface_is_beside(surface, t, 0, above) ||
+           !tm_surface_is_beside(surface, t, 1, below);
 }
 
 bool tm_surface_find_thin(const tm_surface *surface, double most, double centre[3])

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void turn_triangle(tm_surface *surface, uint32_t t)
+void tm_surface_turn_triangle(tm_surface *surface, uint32_t t)
 {
     uint32_t *v = surface->triangle[t], *across = surface->across[t];
     uint32_t node = v[1], beyond = across[0];
@@ -62,7 +62,7 @@ static tm_status spread(tm_surface *surface, uint32_t t, bool lenient, unsigned 
         turning turned = compare(surface, t, i);
         if (surface->shell[n] == TM_NONE) {
             if (turned == OPPOSITE)
-                turn_triangle(surface, n);
+                tm_surface_turn_triangle(surface, n);
             surface->turned |= turned == OPPOSITE;
             surface->shell[n] = surface->shell[t];
             stack[(*height)++] = n;
@@ -148,7 +148,7 @@ static void turn_shells(tm_surface *surface, const double *volume, const double 
         uint32_t s = surface->shell[t];
         if (fabs(volume[s]) <= rounding[s] || (volume[s] < 0) == nested[s])
             continue;
-        turn_triangle(surface, (uint32_t)t);
+        tm_surface_turn_triangle(surface, (uint32_t)t);
         surface->turned = true;
     }
 }

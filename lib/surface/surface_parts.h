@@ -11,16 +11,36 @@
 tm_status tm_surface_triangulate(tm_surface *surface, const tm_polygon_surface *polygons,
                                  tm_error *error);
 
+/* Marks in gone[facets] those of one polygon, of so many nodes or more, that have the
+ * nodes of an earlier one; unique[n] is the first node where node n is. False where
+ * memory is out. */
+bool tm_surface_find_duplicates(const tm_polygon_surface *surface, const uint32_t *unique,
+                                size_t least, bool *gone, size_t *count);
+
 /* Drops the nodes that no triangle has; low and high. */
 tm_status tm_surface_drop_nodes(tm_surface *surface, tm_error *error);
 
 /* Whether the three points are on a line, exactly. */
 bool tm_is_flat(const double a[3], const double b[3], const double c[3]);
 
+/* A half edge, 3 t + i, and its angle about the edge. */
+typedef struct tm_around {
+    double angle;
+    uint32_t half;
+} tm_around;
+
+/* At most so many triangles at an edge. */
+enum { TM_WEDGES_MOST = 64 };
+
+/* Sorts the half edges of one edge by their angles about it, which grow in the direction
+ * of the normals of triangles that go from low to high. */
+void tm_surface_sort_around(const tm_surface *surface, uint32_t low, uint32_t high,
+                            tm_around *at, size_t count);
+
 /* Drops flat triangles where the edges that they have with others are closed without
- * them, and nodes that none has then; then across and open_edges. base is the number of
- * the first node and facet in messages. */
-tm_status tm_surface_connect(tm_surface *surface, bool lenient, unsigned base,
+ * them, and nodes that none has then; then across and open_edges, or walls. base is the
+ * number of the first node and facet in messages. */
+tm_status tm_surface_connect(tm_surface *surface, bool lenient, bool walls, unsigned base,
                              tm_error *error);
 
 /* shell, components; the triangles of a shell turn the same way. */
@@ -29,6 +49,9 @@ tm_status tm_surface_orient(tm_surface *surface, bool lenient, unsigned base,
 
 /* Flips the longest edges of flat triangles; counts them in flat. */
 tm_status tm_surface_mend(tm_surface *surface, tm_error *error);
+
+/* Turns t, and what is across its edges with it. */
+void tm_surface_turn_triangle(tm_surface *surface, uint32_t t);
 
 /* crossings, by the tree. */
 tm_status tm_surface_find_crossings(tm_surface *surface, bool lenient, unsigned base,
@@ -46,6 +69,11 @@ tm_status tm_surface_find_features(tm_surface *surface, double feature_angle,
 /* regions, region, repeated_regions, holes and hole, by the tree. */
 tm_status tm_surface_find_regions(tm_surface *surface, const tm_polygon_surface *polygons,
                                   tm_error *error);
+
+/* The same where walls meet: side, regions, region, repeated_regions; shell, components
+ * and euler once more. Turns the triangles as side says. base as above. */
+tm_status tm_surface_find_walls(tm_surface *surface, const tm_polygon_surface *polygons,
+                                tm_error *error);
 
 /* The unit normal of t; false where it is so thin that it has none of its own. */
 bool tm_surface_own_normal(const tm_surface *surface, uint32_t t, double normal[3]);

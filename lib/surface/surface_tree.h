@@ -71,6 +71,13 @@ void tm_surface_tree_free(tm_surface_tree *tree);
 bool tm_surface_ray_is_odd(const tm_surface *surface, const double point[3], uint32_t but,
                            bool *on);
 
+/* What all triangles stand for, added without carry, that such a ray meets. */
+uint64_t tm_surface_sum_along_ray(const tm_surface *surface, const double point[3],
+                                  uint32_t but,
+                                  uint64_t (*sign)(const tm_surface *surface, uint32_t t,
+                                                   const void *context),
+                                  const void *context);
+
 /* Whether a point is within a shell. */
 bool tm_surface_is_within(const tm_surface *surface, uint32_t shell,
                           const double point[3]);

@@ -169,9 +169,11 @@ bool tm_is_flat(const double a[3], const double b[3], const double c[3])
     return true;
 }
 
-/* room is for the corners of the largest polygon, twice. */
+/* Polygons that are there twice are cut once: the other could be cut otherwise. room is
+ * for the corners of the largest polygon, twice. */
 static void cut_facets(tm_surface *surface, const tm_polygon_surface *from,
-                       const uint32_t *unique, uint32_t *room, size_t most)
+                       const uint32_t *unique, const bool *gone, uint32_t *room,
+                       size_t most)
 {
     const double(*xyz)[3] = (const double(*)[3])from->xyz;
     for (size_t f = 0; f < from->facets; f++) {
@@ -179,6 +181,10 @@ static void cut_facets(tm_surface *surface, const tm_polygon_surface *from,
         if (p == from->facet_start[f + 1])
             continue;
         size_t k = from->start[p + 1] - from->start[p];
+        if (gone[f]) {
+            surface->duplicates += k - 2;
+            continue;
+        }
         for (size_t i = 0; i < k; i++)
             room[i] = unique[from->item[from->start[p] + i]];
         size_t t = surface->triangles;
@@ -205,10 +211,14 @@ static tm_status make_triangles(tm_surface *surface, const tm_polygon_surface *f
     surface->facet = tm_new(from->corners, sizeof *surface->facet);
     if (from->has_facet_markers)
         surface->marker = tm_new(from->corners, sizeof *surface->marker);
-    bool done = room && surface->triangle && surface->facet &&
-                (surface->marker || !from->has_facet_markers);
+    bool *gone = calloc(from->facets, sizeof *gone);
+    size_t count;
+    bool done = room && gone && surface->triangle && surface->facet &&
+                (surface->marker || !from->has_facet_markers) &&
+                tm_surface_find_duplicates(from, unique, 4, gone, &count);
     if (done)
-        cut_facets(surface, from, unique, room, most);
+        cut_facets(surface, from, unique, gone, room, most);
+    free(gone);
     free(room);
     return done ? TM_OK : tm_fail_memory(error);
 }

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""agglomerate.py --metis N | --kmeans N STREAM: joins the tetrahedra of a stream to about
+"""agglomerate.py --metis N | --kmeans N [--label] STREAM: joins the tetrahedra of a stream to about
 N polyhedra as others do, and writes these as a stream; for the benchmarks, without the
 library, and nothing is repaired.
 
 --metis   parts of the graph of faces, by METIS' gpmetis with -contig
 --kmeans  Lloyd's algorithm on the tetrahedra's centroids, by volume (needs numpy); what is
-          not connected is split"""
+          not connected is split
+--label   the tetrahedra are written, with their part as an attribute"""
 import argparse
 import collections
 import os
@@ -113,6 +114,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--metis", type=int)
     parser.add_argument("--kmeans", type=int)
+    parser.add_argument("--label", action="store_true")
     parser.add_argument("stream")
     arguments = parser.parse_args()
     blocks = mesh_stream.read(arguments.stream)
@@ -124,6 +126,11 @@ def main():
         label = metis(neighbours, arguments.metis)
     else:
         label = kmeans(points, tets, arguments.kmeans)
+    if arguments.label:
+        rows = [tet + [part + 1] for tet, part in zip(tets, label)]
+        mesh_stream.write("/dev/stdout", {".node": (["3", "0", "0"], points),
+                                          ".ele": (["4", "1"], rows)})
+        return
     part, count = connected(label, neighbours)
     write(points, faces, part, count, tets)
 

@@ -37,8 +37,8 @@ def rows(block, width):
 
 class Mesh:
     """xyz [n][3]; place [n]: the first attribute of nodes, or 0; elements {k: [m][k]} and
-    order {k: [m]}, which of all each of them is; side [elements]: of the element's octant, or
-    None."""
+    order {k: [m]}, which of all each of them is; region [elements]: their first attribute, or
+    0; side [elements]: of the element's octant, or None."""
 
     def __init__(self, path):
         blocks = blocks_of(path)
@@ -68,6 +68,8 @@ class Mesh:
         if at != len(listed):
             raise ValueError("the rows of .mix do not fit its header")
         starts, kinds = numpy.array(starts, int), numpy.array(kinds, int)
+        self.region = (values[starts + kinds] if extra > 2 else
+                       numpy.zeros(self.count)).astype(int)
         self.elements, self.order = {}, {}
         for k in (4, 5, 6, 8):
             self.order[k] = numpy.flatnonzero(kinds == k)

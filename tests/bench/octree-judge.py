@@ -104,9 +104,9 @@ def first_lowest(faces):
     return numpy.take_along_axis(faces, shift, axis=1)
 
 
-def boundary_of(faces):
-    """Which faces are there once; how many others do not meet exactly one from the other
-    side."""
+def boundary_of(faces, region):
+    """Which faces are there once; which one of two between elements of different regions;
+    how many others do not meet exactly one from the other side."""
     turned = first_lowest(faces)
     forward = turned[:, 1] < turned[:, -1]
     alike = turned.copy()
@@ -119,7 +119,8 @@ def boundary_of(faces):
     count = numpy.bincount(group) if len(group) else numpy.empty(0, int)
     ahead = numpy.bincount(group, weights=forward) if len(group) else numpy.empty(0)
     wrong = (count > 2) | ((count == 2) & (ahead != 1))
-    return order[count[group] == 1], int(count[wrong].sum())
+    second = order[1:][~new[1:] & (region[order[1:]] != region[order[:-1]])]
+    return order[count[group] == 1], second, int(count[wrong].sum())
 
 
 def cut_one_side(triangles, quadrilaterals):
@@ -189,6 +190,25 @@ def examine(polygons):
             "shells": len(numpy.unique(part)), "euler": nodes - len(count) + faces}
 
 
+def examine_walls(polygons):
+    """The same where more than two may meet at an edge: connected parts, Euler number."""
+    node, after, polygon, _ = corners_of(polygons)
+    edge = numpy.stack([numpy.minimum(node, after), numpy.maximum(node, after)])
+    faces = int(polygon.max()) + 1
+    nodes, place = numpy.unique(node, return_inverse=True)
+    part = labels_of(faces + len(nodes), polygon, faces + place)
+    return {"shells": len(numpy.unique(part)),
+            "euler": len(nodes) - len(numpy.unique(edge, axis=1).T) + faces}
+
+
+def has_walls(triangles):
+    """Whether more than two triangles meet at an edge, an odd number of them."""
+    node, after, _, _ = corners_of([triangles])
+    edge = numpy.sort(numpy.stack([node, after]), axis=0)
+    count = numpy.unique(edge, axis=1, return_counts=True)[1]
+    return bool(((count > 2) & (count % 2 == 1)).any())
+
+
 class Closest:
     """The closest place of a set of triangles."""
 
@@ -228,16 +248,19 @@ def normals_of(xyz, triangles):
 
 
 def sharp_edges(xyz, triangles):
-    """The sharp edges of a closed surface, and the nodes where not two of them meet in
-    nearly a line."""
+    """The sharp edges of a closed surface, those where walls meet among them, and the nodes
+    where not two of them meet in nearly a line."""
     node, after, triangle, _ = corners_of([triangles])
     edge = numpy.stack([numpy.minimum(node, after), numpy.maximum(node, after)])
     order = numpy.lexsort(edge)
-    pair = order.reshape(-1, 2)
+    first = numpy.ones(len(order), bool)
+    first[1:] = (edge[:, order[1:]] != edge[:, order[:-1]]).any(axis=0)
+    count = numpy.diff(numpy.append(numpy.flatnonzero(first), len(order)))
+    one, other = order[first], order[numpy.flatnonzero(first) + 1]
     normal = normals_of(xyz, triangles)
-    cosine = (normal[triangle[pair[:, 0]]] * normal[triangle[pair[:, 1]]]).sum(axis=1)
-    pair = pair[cosine < math.cos(math.radians(SHARP_DEGREES))]
-    sharp = numpy.stack([node[pair[:, 0]], after[pair[:, 0]]], axis=1)
+    cosine = (normal[triangle[one]] * normal[triangle[other]]).sum(axis=1)
+    one = one[(count > 2) | (cosine < math.cos(math.radians(SHARP_DEGREES)))]
+    sharp = numpy.stack([node[one], after[one]], axis=1)
     at = {}
     for a, b in sharp.tolist():
         at.setdefault(a, []).append(b)
@@ -309,18 +332,25 @@ def examine_mesh(row, mesh, surface):
     row.update(elements=mesh.count, nodes=len(mesh.xyz), worst=float(quality.min()),
                average=float(quality.mean()), bad=int((quality < QUESTIONABLE).sum()),
                not_positive=int((quality <= 0).sum()))
-    faces, element, wrong = [], [], 0
+    faces, element, walls, wrong = [], [], [], 0
     for polygons, owner in polygons_of(mesh).values():
-        once, more = boundary_of(polygons)
+        once, between, more = boundary_of(polygons, mesh.region[owner])
         faces.append(polygons[once])
         element.append(owner[once])
+        walls.append((polygons[between], owner[between]))
         wrong += more
     wrong += cut_one_side(*faces)
     boundary = examine(faces)
     row.update(faces=wrong, edges=boundary["edges"], vertices=boundary["nodes"],
                shells=boundary["shells"], euler=boundary["euler"],
+               outer_euler=boundary["euler"],
                boundary_faces=sum(map(len, faces)))
     body = examine([surface[1]])
+    if has_walls(surface[1]):  # between regions, too
+        faces = [numpy.concatenate([f, w[0]]) for f, w in zip(faces, walls)]
+        element = [numpy.concatenate([e, w[1]]) for e, w in zip(element, walls)]
+        row.update(examine_walls(faces))
+        body = examine_walls([surface[1]])
     row.update(surface_shells=body["shells"], surface_euler=body["euler"])
     distances(row, mesh, (faces, element), surface)
 
@@ -340,7 +370,7 @@ def check(row, path):
     # Of the solid: half of the boundary's; a solid with a void has two shells.
     told["boundary's euler"] = 2 * told["euler"]
     own = {"elements": row["elements"], "boundary_faces": row["boundary_faces"],
-           "boundary's euler": row["euler"]}
+           "boundary's euler": row["outer_euler"]}
     found += ["%s %d" % (key, told[key]) for key, mine in own.items() if told[key] != mine]
     if told["components"] > row["shells"]:
         found.append("components %d" % told["components"])

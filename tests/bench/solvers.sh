@@ -9,11 +9,12 @@
 #
 # Others: METIS (gpmetis) and k-means of the same tetrahedra (agglomerate.py, which needs
 # numpy), relaxed Voronoi cells (voronoi.cc, which needs voro++), OpenFOAM's polyDualMesh.
-# Programs and options that are not there are left out, with a note. Ten minutes. The
-# environment:
+# Programs and options that are not there are left out, with a note. A quarter of an hour.
+# The environment:
 #   TM_DATA   a folder with knot.off, femur.off, fandisk.off and anchor_dense.off; those
 #             that are there are used, besides a generated gear
 #   PARTS     which of: errors unknowns volumes; all
+#   MODELS    which of these surfaces; all
 #   LEVELS    of octants at surfaces; 4 5
 #   VOLUMES   of the cube's tetrahedra, at most, for the errors; 0.00026 0.000033, which
 #             make about 400 and 3 000 polyhedra
@@ -191,6 +192,11 @@ errors() {
     fi
     if command -v gpmetis >/dev/null; then
         made METIS $python -B tests/bench/agglomerate.py --metis "$n" "$work/tets.tm"
+        if has polylla3d --partition; then
+            $python -B tests/bench/agglomerate.py --metis "$n" --label "$work/tets.tm" \
+                >"$work/labelled.tm"
+            made '  --partition --star' polyhedra --partition --star "$work/labelled.tm"
+        fi
     else
         note 'METIS: gpmetis of the package metis'
     fi
@@ -404,9 +410,11 @@ for part in ${PARTS:-errors unknowns volumes}; do
         printf '\n'
         foam_line "OpenFOAM	cells	checkMesh	pyramids	max	mean	skew	linear	smooth"
         shapes gear >"$work/gear.off"
-        volumes gear "$work/gear.off"
-        for name in knot femur fandisk anchor_dense; do
-            [ ! -r "$data/$name.off" ] || volumes "$name" "$data/$name.off"
+        for name in ${MODELS:-gear knot femur fandisk anchor_dense}; do
+            case $name in
+            gear) volumes gear "$work/gear.off" ;;
+            *) [ ! -r "$data/$name.off" ] || volumes "$name" "$data/$name.off" ;;
+            esac
         done
         ;;
     esac

@@ -66,8 +66,9 @@ octree-mesh     3 0 3 0 3 3 3 3 3
 octree-repair   3 3 3 3 3 3 0 0 3
 off-export      3 3 3 0 0 3 0 0 0
 openfoam-export 3 3 3 3 0 3 0 0 0
+poly-dual       3 3 3 3 0 0 3 3 3
 poly-stats      3 3 3 3 3 3 3 3 0
-polylla3d       3 3 3 3 0 0 3 3 3
+polylla3d       3 3 3 3 0 0 3 3 0
 tet-stats       3 3 3 3 0 0 3 3 3
 tetgen-export   3 0 0 0 0 0 3 3 3
 tetgen-mesh     3 0 0 0 3 3 3 3 3

@@ -115,6 +115,10 @@ expect() {
         END { exit !n }'
 }
 
+shapes() {
+    "$TM_BUILD/bench/shapes" "$@"
+}
+
 shells() {
     python3 shells.py "$@" >shells.smesh
 }
@@ -198,4 +202,80 @@ shells() {
     python3 regions.py interfaces mended.tm
     run -3 --separate-stderr octree-repair --method refine -t 0.32 -o refined.tm nested.tm
     [[ "$stderr" == *"octants of several regions cannot be split"* ]]
+}
+
+@test "regions that touch: volumes to the surface's, faces in common, as good as one box" {
+    # a box and a slanted plane through it; 3 by 3 by 3 blocks but one
+    for case in 'halved 4 0.7125 0.7875' 'halved 5 0.7125 0.7875' \
+        "cells 4 $(yes 0.037037037 | head -n 26 | paste -sd ' ')"; do
+        # shellcheck disable=SC2086 # words
+        set -- $case
+        shapes "$1" >walls.off
+        octree-mesh -q -s "$2" --json report.json -o walls.tm walls.off
+        run -0 mesh-check walls.tm
+        run -0 jens-stats --certify --fail-below 0.3 walls.tm
+        grep -q '"held_back": 0' report.json
+        grep -q '"lost_corners": 0, "lost_edges": 0' report.json
+        python3 regions.py interfaces walls.tm >found
+        shift 2
+        grep -q "\"regions\": $#" report.json
+        python3 regions.py volumes walls.tm | cut -d ' ' -f 2 | diff - <(printf '%s\n' "$@")
+    done
+    # 26 regions, with the outside 80 - 6 pairs share a face
+    [ "$(wc -l <found)" -eq 75 ]
+}
+
+@test "curved walls: a ball cut by a plane, half of one in a box at its side" {
+    shapes segments >walls.off
+    octree-mesh -q -s 5 --json report.json -o walls.tm walls.off
+    run -0 mesh-check walls.tm
+    run -0 jens-stats --certify --fail-below 0.3 walls.tm
+    grep -q '"held_back": 0' report.json
+    expect walls.tm 1 2.087 2 2.087
+    python3 regions.py interfaces walls.tm | diff - <(printf '%s\n' '0 1' '0 2' '1 2')
+    octree-mesh -q -s 5 --no-history -j 2 walls.off | cmp - <(sed '/^# /d' walls.tm)
+    shapes inlay >walls.off
+    octree-mesh -q -s 5 --json report.json -o walls.tm walls.off
+    run -0 mesh-check walls.tm
+    run -0 jens-stats --certify --fail-below 0.3 walls.tm
+    grep -q '"held_back": 0' report.json
+    expect walls.tm 1 3.7406 2 0.2594
+    python3 regions.py interfaces walls.tm | diff - <(printf '%s\n' '0 1' '0 2' '1 2')
+}
+
+@test "regions that touch, with markers: the faces between them are .facet" {
+    # two cubes, each with a skin of its own
+    python3 - >two.smesh <<'END'
+quads = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+print(16, 3, 0, 0)
+for i in range(16):
+    print(i, i % 2 + i // 8, i // 2 % 2, i // 4 % 2)
+print(12, 1)
+for b in range(2):
+    for q in quads:
+        print(4, *[n + 8 * b for n in q], 9 if (q[0], b) in ((0, 1), (1, 0)) and q in
+              (quads[4], quads[5]) else b + 1)
+print(0)
+END
+    octree-mesh -q -s 4 -o two.tm two.smesh
+    run -0 mesh-check two.tm
+    python3 regions.py volumes two.tm | diff - <(printf '%s\n' '1 1' '2 1')
+    # the marker of a face is that of its wall: 9 between elements of both
+    rows .facet two.tm | awk '{ if (($3 < 0) == ($NF == 9)) exit 1; n[$NF]++ }
+        END { exit !(n[1] && n[2] && n[9]) }'
+    rows .mix two.tm | awk '{ print $1, $NF }' >region
+    rows .facet two.tm | awk 'NR == FNR { region[$1] = $2; next }
+        $NF == 9 && region[$2] + region[$3] != 3 { exit 1 }' region -
+}
+
+@test "octree-repair keeps regions that touch" {
+    shapes segments >walls.off
+    octree-mesh -q -s 4 -o walls.tm walls.off
+    octree-repair -q -t 0.3 walls.tm | sed '/^# /d' | cmp - <(sed '/^# /d' walls.tm)
+    run -1 jens-stats --fail-below 0.32 walls.tm
+    run -0 octree-repair -t 0.32 -o mended.tm walls.tm
+    run -0 jens-stats --certify --fail-below 0.32 mended.tm
+    run -0 mesh-check mended.tm
+    expect mended.tm 1 2.0778 2 2.0778
+    python3 regions.py interfaces mended.tm | diff - <(printf '%s\n' '0 1' '0 2' '1 2')
 }

@@ -190,6 +190,53 @@ $volume" ]
     [ "$(ls mesh)" = points ]
 }
 
+# checked FINDING COUNT: whether the note says so often that checkMesh would fail at it, or
+# nothing where that is 0.
+checked() {
+    if [ "$2" -eq 0 ]; then
+        [[ "$stderr" != *"$1"* ]]
+    else
+        [[ "$stderr" == *" would fail: $2 $1"* ]]
+    fi
+}
+
+@test "what checkMesh would fail at is said, as poly-stats measures it, and what may help" {
+    awk 'BEGIN { srand(11); print 600, 3; for (i = 1; i <= 600; i++) print i, rand(), rand(), rand() }' |
+        tetgen-mesh --quiet >points.tm
+    polylla3d -q --star points.tm >stars.tm
+    poly-stats -q --json stars.json -o table stars.tm
+    run -0 --separate-stderr openfoam-export stars stars.tm
+    for key in wrong_pyramids:pyramids reversed:'faces with a non-orth' skew:'faces with a skew'; do
+        count=$(json stars.json finite_volume "${key%%:*}")
+        [ "$count" -gt 0 ]
+        checked "${key#*:}" "$count"
+    done
+    [[ "$stderr" == *", the worst $(printf %.3g "$(json stars.json finite_volume max_skewness)")"* ]]
+    [[ "$stderr" == *"what may help: "*"polylla3d "* ]]
+    [[ "$stderr" != *allGeometry* ]]
+    run -0 --separate-stderr openfoam-export -v stars stars.tm
+    for key in small_weights:'faces with a weight' small_volume_ratios:'faces between' \
+        small_determinants:'cells with a determinant' concave:'concave cells' \
+        no_fan:'faces whose tetrahedra'; do
+        checked "${key#*:}" "$(json stars.json finite_volume "${key%%:*}")"
+    done
+    [[ "$stderr" == *"allGeometry would fail: "*" concave cells"* ]]
+    run -0 --separate-stderr openfoam-export -q quiet stars.tm
+    [ "$stderr" = "" ]
+    diff -r stars quiet
+    # Tetrahedra that lean over, elements, what is fit.
+    printf 'termesh 1\n.node\n5 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 20 0 1\n5 20 0 -1
+.ele\n2 4 0\n1 1 2 3 4\n2 1 3 2 5\n.end\n' >lean.tm
+    run -0 --separate-stderr openfoam-export lean lean.tm
+    [[ "$stderr" == *"a skewness above 4"*"what may help: lepp-improve"* ]]
+    mixed | sed 's/^4 1$/2 1/; /^3 6 /d; /^4 4 /d; s/^9 .*/9 60 0.5 1.2/' >far.tm
+    run -0 --separate-stderr openfoam-export far far.tm
+    [[ "$stderr" == *"checkMesh would fail: "*"what may help: octree-mesh --polyhedra" ]]
+    sheared_boxes 4 >boxes.tm
+    run -0 --separate-stderr openfoam-export boxes boxes.tm
+    [[ "$stderr" != *checkMesh* ]]
+}
+
 @test "a report, usage, wrong input" {
     cubes >cubes.tm
     openfoam-export --json report mesh cubes.tm

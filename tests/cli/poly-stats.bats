@@ -128,12 +128,22 @@ from the centroids of cells and facets
 largest non-orthogonality  16.72
 mean  16.72
 facets above 70  0
+facets above 90  0
 largest skewness  0.500
 facets above 4  0
+smallest pyramid  0.04167
 pyramids without volume  0
 facets that are not all seen  0
+facets that are seen as no fan  0
 largest bend of a facet  0
 volumes, 95 % to 5 %  6.00
+smallest weight of a facet  0.3333
+facets below 0.05  0
+smallest ratio of volumes side by side  0.1667
+facets below 0.01  0
+smallest determinant of a cell  0.0000
+cells below 0.001  2
+cells concave by planes of facets  1
 
 histogram of facets per polyhedron, %
 4 to 5  50.00  ******************************
@@ -295,7 +305,7 @@ that they name: see mesh-check" ]
 @test "a mesh without polyhedra" {
     run -0 poly-stats --json out.json --plot out.svg none.tm
     [[ "$output" =~ polyhedra\ +0 ]]
-    [[ ! "$output" =~ nan|inf ]]
+    [[ ! "$output" =~ [\ -](nan|inf) ]]
     [ "$(json out.json polyhedra)" = 0 ]
     [ "$(json out.json kernel_ratio min)" = 0 ]
     grep -q '<svg' out.svg
@@ -385,7 +395,11 @@ assert abs(found["centroid_depth"]["mean"] - whole / 2) < 1e-12
 found = found["finite_volume"]
 assert found.pop("max_skewness") < 1e-15
 assert found.pop("volume_spread") == 1
-assert len(found) == 7 and not any(found.values())
+assert abs(found.pop("min_weight") - 0.5) < 1e-15 and found.pop("min_volume_ratio") == 1
+# One facet each is inside.
+assert found.pop("small_determinants") == 2
+assert abs(found.pop("min_pyramid") - 1 / 6) < 1e-15
+assert len(found) == 13 and not any(found.values())
 END
     [ "$(json cubes.json fit_for)" = '{"fv": true, "vem": true, "dg": true}' ]
     sheared_boxes 4 >boxes.tm

@@ -14,6 +14,7 @@ setup_file() {
     }' >points.node
     tetgen-mesh --no-history points.node >points.tm
     surface sphere off | tetgen-mesh --no-history -q >sphere.tm
+    write_gain
     two_boxes_and_a_ring
     grid 4 >grid.tm
     cat >judge.py <<'END'
@@ -114,6 +115,66 @@ if '.face' in tet and int(tet['.face'][0][1]):
 END
 }
 
+# gain.py POLYHEDRA: exit 1 where an error of one cell, that is of more than one tetrahedron
+# or beside such a one, comes back to it as more than itself by OpenFOAM's scheme
+# `corrected`, one iteration after the other.
+write_gain() {
+    cat >gain.py <<'END'
+import sys
+def rows(name):
+    lines = iter(open(sys.argv[1]))
+    for line in lines:
+        if line.strip() == name:
+            return [next(lines).split() for _ in range(int(next(lines).split()[0]))]
+def minus(a, b): return [p - q for p, q in zip(a, b)]
+def dot(a, b): return sum(p * q for p, q in zip(a, b))
+def cross(a, b): return [a[k - 2] * b[k - 1] - a[k - 1] * b[k - 2] for k in range(3)]
+def times(s, a): return [s * p for p in a]
+def plus(a, b): return [p + q for p, q in zip(a, b)]
+nodes = rows('.node')
+base, xyz = int(nodes[0][0]), [[float(x) for x in row[1:4]] for row in nodes]
+cells = rows('.cell')
+tets = [float(row[2 + int(row[1])]) for row in cells]
+n = len(cells)
+volume, centre, gradient, solved, back = [0] * n, [[0] * 3] * n, [[0] * 3] * n, [0] * n, [0] * n
+faces = []
+for row in rows('.facet'):
+    a, b, c = (xyz[int(v) - base] for v in row[4:7])
+    area, middle = times(0.5, cross(minus(b, a), minus(c, a))), times(1 / 3, plus(plus(a, b), c))
+    sides = [int(row[1]) - base, int(row[2]) - base if row[2] != '-1' else None]
+    faces.append((sides, area, middle))
+    for i, side in enumerate(sides):
+        if side is not None:
+            part = (1 - 2 * i) * dot(area, middle) / 3
+            volume[side] += part
+            centre[side] = plus(centre[side], times(part * 3 / 4, middle))
+centre = [times(1 / v, c) for v, c in zip(volume, centre)]
+def parts(sides, area, middle):
+    d = minus(centre[sides[1]], centre[sides[0]])
+    part = dot(area, area) / dot(d, area)
+    far = [abs(dot(area, minus(middle, centre[side]))) for side in sides]
+    return part, minus(area, times(part, d)), [far[1 - i] / sum(far) for i in (0, 1)]
+for sides, area, middle in faces:
+    if sides[1] is None:
+        solved[sides[0]] += dot(area, area) / dot(area, minus(middle, centre[sides[0]]))
+        continue
+    part, rest, weight = parts(sides, area, middle)
+    for i, side in enumerate(sides):
+        solved[side] += part
+        gradient[side] = plus(gradient[side], times((1 - 2 * i) * weight[i] / volume[side], area))
+beside = [1] * n
+for sides, area, middle in faces:
+    if sides[1] is None:
+        continue
+    part, rest, weight = parts(sides, area, middle)
+    for i, side in enumerate(sides):
+        back[side] += (1 - 2 * i) * weight[i] * dot(rest, gradient[side])
+        back[side] -= weight[0] * weight[1] * dot(rest, area) / volume[sides[1 - i]]
+        beside[side] = max(beside[side], tets[sides[0]], tets[sides[1]])
+sys.exit(any(abs(b) > s and t > 1 for b, s, t in zip(back, solved, beside)))
+END
+}
+
 setup() {
     load helpers
     cd "$BATS_FILE_TMPDIR" || exit
@@ -179,6 +240,7 @@ grid() {
 --absorb --merge-coplanar
 --mode edge
 --mode face
+--mode terminal-face --star
 --mode face --face-metric inradius --no-swallow
 --mode cavity --star --absorb --merge-coplanar
 --max-tets 7
@@ -188,7 +250,7 @@ END
 
 @test "without repair: the regions as they are, nothing lost" {
     local mode
-    for mode in terminal edge face cavity; do
+    for mode in terminal edge face terminal-face cavity; do
         polylla3d -q --no-repair --mode $mode --json "$out/$mode" points.tm >"$out/poly.tm"
         python3 judge.py "$out/poly.tm" points.tm
         [ "$(json "$out/$mode" regions)" -eq "$(json "$out/$mode" polyhedra)" ]
@@ -215,6 +277,58 @@ END
     read -r terminal longest <"$out/counts"
     [ "$(json "$out/terminal" regions)" -eq "$terminal" ]
     [ "$(json "$out/edge" regions)" -eq "$longest" ]
+}
+
+@test "--mode face: joined across best faces, and no others are inside; about 3 each" {
+    local mesh metric
+    for mesh in points sphere grid; do
+        for metric in area inradius; do
+            polylla3d -q --no-repair --mode face --face-metric $metric --label $mesh.tm >"$out/face.tm"
+            polylla3d -q --no-repair --mode terminal-face --face-metric $metric --label $mesh.tm >"$out/region.tm"
+            python3 - "$out/face.tm" "$out/region.tm" $metric <<'END'
+import itertools, math, sys
+def rows(path, name):
+    lines = iter(open(path))
+    for line in lines:
+        if line.strip() == name:
+            return [next(lines).split() for _ in range(int(next(lines).split()[0]))]
+xyz = {row[0]: [float(x) for x in row[1:4]] for row in rows(sys.argv[1], '.node')}
+tets = [frozenset(row[1:5]) for row in rows(sys.argv[1], '.ele')]
+cell, region = ([row[-1] for row in rows(path, '.ele')] for path in sys.argv[1:3])
+def metric(face):
+    a, b, c = (xyz[v] for v in face)
+    sides = [math.dist(a, b), math.dist(b, c), math.dist(c, a)]
+    u, w = ([q - p for p, q in zip(a, x)] for x in (b, c))
+    area = math.hypot(*(u[k - 2] * w[k - 1] - u[k - 1] * w[k - 2] for k in range(3))) / 2
+    return area if sys.argv[3] == 'area' else 2 * area / sum(sides)
+best, at = [], {}
+for t, tet in enumerate(tets):
+    faces = [frozenset(f) for f in itertools.combinations(tet, 3)]
+    most = max(map(metric, faces))
+    best.append({f for f in faces if metric(f) >= most * (1 - 1e-12)})
+    for f in faces:
+        at.setdefault(f, []).append(t)
+inside = links = 0
+for f, sides in at.items():
+    if len(sides) == 2 and cell[sides[0]] == cell[sides[1]]:
+        assert f in best[sides[0]] | best[sides[1]], 'a barrier face'
+        assert region[sides[0]] == region[sides[1]]
+        inside += 1
+    if len(sides) == 2 and region[sides[0]] == region[sides[1]]:
+        links += f in best[sides[0]] | best[sides[1]]
+assert len(tets) - inside == len(set(cell)), 'each is a tree of faces'
+assert len(set(cell)) >= len(set(region))
+assert links >= len(tets) - len(set(region))
+END
+        done
+    done
+    # As the paper has it, 70 % less than the tetrahedra.
+    polylla3d -q --mode face --no-repair --json "$out/json" points.tm >"$out/poly.tm"
+    awk -v n="$(json "$out/json" polyhedra)" -v tets="$(json "$out/json" tets)" \
+        'BEGIN { exit !(tets / n > 2.8 && tets / n < 4.2) }'
+    polylla3d -q --mode terminal-face --no-repair --json "$out/json" points.tm >"$out/poly.tm"
+    awk -v n="$(json "$out/json" polyhedra)" -v tets="$(json "$out/json" tets)" \
+        'BEGIN { exit !(tets / n > 5) }'
 }
 
 @test "regions and marked faces are between polyhedra, but for --ignore-markers" {
@@ -300,6 +414,58 @@ END
     run -2 polylla3d --size 0 points.tm
 }
 
+@test "--star=R: a ball of that radius, by the extent, or it is said" {
+    local mesh radius
+    for mesh in points sphere; do
+        for radius in 0 0.02 0.08; do
+            run polylla3d -q --no-history --star=$radius --json "$out/json" -o "$out/poly.tm" $mesh.tm
+            [ "$status" -eq "$(json "$out/json" not_star_shaped | awk '{ print ($1 > 0) }')" ]
+            python3 judge.py "$out/poly.tm" $mesh.tm simple
+            poly-stats --json "$out/stats" "$out/poly.tm" >"$out/table"
+            [ "$(json "$out/stats" not_star_shaped)" -eq 0 ]
+            awk -v no="$(json "$out/json" not_star_shaped)" -v radius=$radius \
+                -v least="$(json "$out/stats" kernel_radius min)" \
+                'BEGIN { exit !(no > 0 || least >= radius) }'
+        done
+    done
+    # The more is asked for, the more cells there are.
+    polylla3d -q --star=0.01 --json "$out/1" sphere.tm >"$out/poly.tm"
+    [ "$(json "$out/1" not_star_shaped)" -eq 0 ]
+    [ "$(json "$out/1" polyhedra)" -lt "$(json "$out/json" polyhedra)" ]
+    run -2 polylla3d --star=0.6 points.tm
+    run -2 polylla3d --star=-1 points.tm
+    run -2 polylla3d --star=node points.tm
+}
+
+@test "--star=centroid: what finite volumes want, no worse than the tetrahedra" {
+    local mesh options
+    for mesh in points sphere boxes ring grid; do
+        polylla3d -q --no-history --max-tets 1 $mesh.tm >"$out/tets.tm"
+        poly-stats --json "$out/before" "$out/tets.tm" >"$out/table"
+        for options in '' --absorb '--cells 40 --absorb' '--mode face'; do
+            # shellcheck disable=SC2086 # words
+            polylla3d -q --no-history --star=centroid $options --json "$out/json" $mesh.tm >"$out/poly.tm"
+            python3 judge.py "$out/poly.tm" $mesh.tm simple
+            poly-stats --json "$out/stats" "$out/poly.tm" >"$out/table"
+            python3 - "$out/before" "$out/stats" <<'END'
+import json, sys
+before, now = (json.load(open(name))['finite_volume'] for name in sys.argv[1:])
+assert now['wrong_pyramids'] == now['unseen'] == 0
+assert now['max_non_orthogonality'] <= max(70 + 1e-6, before['max_non_orthogonality'])
+END
+            [ "$(json "$out/json" polyhedra)" -lt "$(json "$out/before" polyhedra)" ]
+            python3 gain.py "$out/poly.tm"
+        done
+    done
+    # Facets that are bent a little leave it so.
+    polylla3d -q --star=centroid --merge-coplanar=20 sphere.tm >"$out/poly.tm"
+    poly-stats --json "$out/stats" "$out/poly.tm" >"$out/table"
+    [ "$(json "$out/stats" finite_volume wrong_pyramids)" -eq 0 ]
+    # Others have cells by which a solver would not converge.
+    polylla3d -q --no-history --star sphere.tm >"$out/poly.tm"
+    run -1 python3 gain.py "$out/poly.tm"
+}
+
 @test "a mesh that is thin, or turned to be flat, gets stars as one that is not; what is single is said" {
     awk '/^\.node/ { print; getline; print; n = $1
         for (i = 0; i < n; i++) { getline; $4 = sprintf("%.17g", $4 / 1024); print }; next } { print }' \
@@ -353,6 +519,137 @@ written = {tuple(sorted(map(int, row[4:7]))): sorted(int(c) for c in row[1:3] if
 assert between == written
 END
     done
+}
+
+@test "--partition: cells that are given are repaired, and no others are made" {
+    local mesh option
+    for mesh in points sphere boxes ring grid; do
+        polylla3d -q --no-history --label $mesh.tm >"$out/label.tm"
+        polylla3d -q --no-history --partition "$out/label.tm" >"$out/again.tm"
+        polylla3d -q --no-history $mesh.tm >"$out/poly.tm"
+        cmp "$out/again.tm" "$out/poly.tm"
+        # Slabs that have anything: pieces, holes, two regions. The last attribute says which.
+        slabs $mesh.tm >"$out/slabs.tm"
+        for option in '' --star --star=centroid '--absorb --merge-coplanar'; do
+            # shellcheck disable=SC2086 # words
+            polylla3d -q --partition $option "$out/slabs.tm" >"$out/poly.tm"
+            python3 judge.py "$out/poly.tm" $mesh.tm simple
+        done
+    done
+    # Of the sphere each slab is a ball already; the attribute is taken away.
+    slabs sphere.tm >"$out/slabs.tm"
+    polylla3d --partition=1 --json "$out/json" -o "$out/poly.tm" "$out/slabs.tm"
+    [ "$(json "$out/json" regions)" -eq 4 ]
+    [ "$(json "$out/json" polyhedra)" -lt 200 ]
+    [ "$(header .cell "$out/poly.tm" | cut -d ' ' -f 2)" = 1 ]
+    run -3 --separate-stderr polylla3d --partition=2 "$out/slabs.tm"
+    [[ $stderr == *"has 1 attributes, but the partition is to be attribute 2"* ]]
+    run -3 --separate-stderr polylla3d --partition sphere.tm
+    for option in '--mode face' '--cells 5' --no-repair; do
+        # shellcheck disable=SC2086 # words
+        run -2 polylla3d --partition $option "$out/slabs.tm"
+    done
+}
+
+# Another attribute for tetrahedra: in which quarter of the box their first node is.
+slabs() {
+    python3 - "$1" <<'END'
+import sys
+lines = open(sys.argv[1]).read().split('\n')
+node, ele = lines.index('.node'), lines.index('.ele')
+x = {row.split()[0]: float(row.split()[1]) for row in lines[node + 2:ele] if row and row[0] != '.'}
+low, high = min(x.values()), max(x.values())
+n, k, width = (int(word) for word in lines[ele + 1].split())
+lines[ele + 1] = '%d %d %d' % (n, k, width + 1)
+for t in range(ele + 2, ele + 2 + n):
+    place = (x[lines[t].split()[1]] - low) / (high - low)
+    lines[t] += ' %d' % min(3, int(4 * place))
+print('\n'.join(lines))
+END
+}
+
+@test "polyhedra are joined again: balls, or stars, and nothing is lost" {
+    local mesh options
+    for mesh in points sphere boxes ring grid; do
+        polylla3d -q --star $mesh.tm >"$out/star.tm"
+        while read -r options; do
+            # shellcheck disable=SC2086 # words
+            polylla3d -q --no-history $options --json "$out/json" "$out/star.tm" >"$out/poly.tm"
+            python3 judge.py "$out/poly.tm" $mesh.tm simple
+            [ "$(json "$out/json" polyhedra)" -le "$(json "$out/json" tets)" ]
+            poly-stats --json "$out/stats" "$out/poly.tm" >"$out/table"
+            [[ $options != *--star* || $(json "$out/stats" not_star_shaped) -eq 0 ]]
+        done <<'END'
+
+--cells 10
+--size 0.7 --star
+--star=0.02
+END
+    done
+    # About an eighth, or as many as asked for; two regions stay two.
+    polylla3d -q --mode edge points.tm >"$out/edge.tm"
+    polylla3d -q --json "$out/json" "$out/edge.tm" >"$out/poly.tm"
+    awk -v a="$(json "$out/json" tets)" -v b="$(json "$out/json" polyhedra)" \
+        'BEGIN { exit !(b > a / 16 && b < a / 4) }'
+    polylla3d -q --cells 50 --no-repair --json "$out/json" "$out/edge.tm" >"$out/poly.tm"
+    [ "$(json "$out/json" polyhedra)" -eq 50 ]
+    polylla3d -q boxes.tm | polylla3d -q --cells 1 | rows .cell /dev/stdin |
+        awk '{ print $(3 + $2 + 1) }' | sort -u >"$out/regions"
+    [ "$(tr '\n' ' ' <"$out/regions")" = '3 7 ' ]
+    # Marked faces are between polyhedra, but for --ignore-markers.
+    printf 'termesh 1\n.node\n5 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0.3 0.3 0.5\n5 0.3 0.3 -0.5\n.ele\n2 4 0\n1 1 2 3 4\n2 1 3 2 5\n.face\n1 1\n1 1 2 3 8\n.end\n' |
+        polylla3d -q >"$out/two.tm"
+    [ "$(polylla3d -q --cells 1 "$out/two.tm" | header .cell /dev/stdin)" = '2 1' ]
+    [ "$(polylla3d -q --cells 1 --ignore-markers "$out/two.tm" | header .cell /dev/stdin)" = '1 1' ]
+}
+
+@test "--levels: each polyhedron is the union of its children" {
+    local mesh
+    for mesh in points sphere boxes ring grid; do
+        polylla3d -q --star --levels 3 --json "$out/json" -o "$out/levels.tm" $mesh.tm
+        python3 - "$out/levels.tm" "$(json "$out/json" levels)" <<'END'
+import collections, sys
+blocks, lines = {}, iter(open(sys.argv[1]))
+for line in lines:
+    name = line.strip()
+    if name.endswith(('.node', '.facet', '.cell')):
+        blocks[name] = [next(lines).split() for _ in range(int(next(lines).split()[0]))]
+base = int(blocks['.node'][0][0])
+def volumes(part):
+    xyz = [[float(x) for x in row[1:4]] for row in blocks[part + '.node']]
+    volume = collections.Counter()
+    for row in blocks[part + '.facet']:
+        n = [xyz[int(v) - base] for v in row[4:4 + int(row[3])]]
+        v = sum(a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2])
+                + a[2] * (b[0] * c[1] - b[1] * c[0])
+                for a, b, c in ((n[0], n[i], n[i + 1]) for i in range(1, len(n) - 1))) / 6
+        volume[int(row[1])] += v
+        volume[int(row[2])] -= v if row[2] != '-1' else 0
+    return volume
+parts = [''] + ['level%d' % k for k in range(1, int(sys.argv[2]) + 1)]
+assert len(parts) > 1 and parts[-1] + '.cell' in blocks
+for child, parent in zip(parts, parts[1:]):
+    below, above, sums = volumes(child), volumes(parent), collections.Counter()
+    tets = collections.Counter()
+    for row in blocks[child + '.cell']:
+        sums[int(float(row[-1]))] += below[int(row[0])]
+        tets[int(float(row[-1]))] += float(row[2 + int(row[1])])
+    assert len(sums) == len(blocks[parent + '.cell']) < len(blocks[child + '.cell'])
+    for row in blocks[parent + '.cell']:
+        c = int(row[0])
+        assert abs(sums[c] / above[c] - 1) < 1e-9 and tets[c] == float(row[2 + int(row[1])])
+END
+    done
+    # Of polyhedra alone: they stay as they are, and what cannot go on is said.
+    polylla3d -q --no-history sphere.tm >"$out/poly.tm"
+    run -0 --separate-stderr polylla3d --levels 30 --json "$out/json" -o "$out/levels.tm" "$out/poly.tm"
+    [[ $stderr == *"levels are all: on the last one nothing can be joined"* ]]
+    diff <(rows .facet "$out/poly.tm") <(rows .facet "$out/levels.tm")
+    # One ball in the end.
+    [ "$(header "level$(json "$out/json" levels).cell" "$out/levels.tm")" = '1 1' ]
+    # The levels before go where they are made again.
+    polylla3d -q --levels 1 "$out/levels.tm" >"$out/again.tm"
+    [ "$(grep -c '^level.*cell' "$out/again.tm")" -eq 1 ]
 }
 
 @test "the polyhedra do not depend on how the mesh is numbered" {
@@ -421,8 +718,11 @@ END
     [ -z "$output" ]
     [[ $stderr == "polylla3d: $out/overlap.tm: .ele: tetrahedra 0 and 1 overlap"* ]]
     polylla3d -q points.tm >"$out/poly.tm"
-    run -3 --separate-stderr polylla3d "$out/poly.tm"
-    [[ $stderr == *"holds polyhedra (.cell), but polylla3d takes tetrahedra (.ele)"* ]]
+    for options in --absorb '--mode face' --star=centroid --label; do
+        # shellcheck disable=SC2086 # words
+        run -3 --separate-stderr polylla3d $options "$out/poly.tm"
+        [[ $stderr == *"other options are for tetrahedra"* ]]
+    done
     while read -r options; do
         # shellcheck disable=SC2086 # words
         run -2 --separate-stderr polylla3d $options points.tm
@@ -435,6 +735,8 @@ END
 --no-repair --star
 --no-repair --merge-coplanar
 --label --merge-coplanar
+--label --levels 2
+--levels 0
 --merge-coplanar=31
 --max-tets 0
 --nonsense

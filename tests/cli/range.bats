@@ -56,6 +56,8 @@ lepp-improve -a selective --with both -t 60
 mesh-check
 octree-mesh -s 2
 octree-repair -t .2 -i 1
+poly-dual
+poly-dual --feature-angle 30
 poly-stats
 polylla3d
 polylla3d --mode cavity --star --merge-coplanar

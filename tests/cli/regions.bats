@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Several regions in one surface: octree-mesh fills one solid, and says how to get it.
+# Several regions in one surface: octree-mesh fills each, or refuses walls and says how to
+# get the outer surface.
 # shellcheck disable=SC2154 # run sets stderr
 
 bats_require_minimum_version 1.5.0
@@ -86,23 +87,115 @@ volume() {
     mesh-check --json - "$1" | python3 -c 'import json, sys; print("%.9g" % json.load(sys.stdin)["volume"])'
 }
 
-@test "walls inside are refused, also with --lenient, and what is said gives the outer surface" {
-    command -v tetgen >/dev/null || skip "there is no tetgen"
+# volumes FILE: of each region, in order.
+volumes() {
+    python3 - "$1" <<'END'
+import sys
+from collections import Counter
+face_of = {4: ((0, 1, 3), (1, 2, 3), (2, 0, 3), (0, 2, 1)),
+           5: ((0, 3, 2, 1), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)),
+           6: ((0, 1, 2), (3, 5, 4), (0, 3, 4, 1), (1, 4, 5, 2), (2, 5, 3, 0)),
+           8: ((0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (3, 7, 6, 2), (0, 3, 2, 1),
+               (4, 5, 6, 7))}
+xyz, volume, block = {}, Counter(), None
+for line in open(sys.argv[1]):
+    w = line.split()
+    if line[0] == '#' or w == ['termesh', '1']:
+        continue
+    if w[0].lstrip('surface').startswith('.'):
+        block, first = w[0], True
+    elif first:
+        first = False
+    elif block == '.node':
+        xyz[int(w[0])] = [float(c) for c in w[1:4]]
+    elif block == '.mix':
+        k = int(w[1])
+        node = [int(n) for n in w[2:2 + k]]
+        for corners in face_of[k]:
+            p = [xyz[node[c]] for c in corners]
+            m = [sum(c) / len(p) for c in zip(*p)]
+            for a, b in zip(p, p[1:] + p[:1]):
+                volume[int(w[2 + k])] += (a[0] * (b[1] * m[2] - b[2] * m[1])
+                    + a[1] * (b[2] * m[0] - b[0] * m[2])
+                    + a[2] * (b[0] * m[1] - b[1] * m[0])) / 6
+for region, v in sorted(volume.items()):
+    print(region, '%.9g' % v)
+END
+}
+
+@test "walls between regions: each is filled, to its volume" {
     for n in 2 3; do
         for boxes in "off" "off each" "poly" "smesh" "stl" "stl each" "stream"; do
             # shellcheck disable=SC2086 # words
             boxes "$n" $boxes >surface.in
-            for lenient in -s3 --lenient; do
-                run -3 --separate-stderr octree-mesh "$lenient" surface.in
-                [ "$output" = "" ]
-                [[ "$stderr" == "octree-mesh: surface.in: the surface has walls inside, between several regions: "*"'tetgen-mesh FILE | off-export'"* ]]
-            done
-            tetgen-mesh --quiet surface.in | off-export >outer.off
-            octree-mesh -s 3 -o mesh.tm outer.off
-            mesh-check -q mesh.tm
-            [ "$(volume mesh.tm)" = "$((n * n * n))" ]
+            octree-mesh -q -s 3 -o mesh.tm surface.in
+            run -0 mesh-check -q mesh.tm
+            run -0 jens-stats --fail-below 0.3 mesh.tm
+            # numbers from 1, or those of the file, and all of them 1
+            volumes mesh.tm | diff - <(for i in $(seq $((n * n * n))); do echo "$i 1"; done)
         done
     done
+}
+
+@test "walls are refused with --lenient and --cavities, and what is said gives the outer surface" {
+    command -v tetgen >/dev/null || skip "there is no tetgen"
+    for boxes in "off" "off each" "poly" "stl each"; do
+        # shellcheck disable=SC2086 # words
+        boxes 2 $boxes >surface.in
+        for option in --cavities --lenient; do
+            run -3 --separate-stderr octree-mesh "$option" surface.in
+            [ "$output" = "" ]
+            [[ "$stderr" == "octree-mesh: surface.in: the surface has walls inside, between several regions: "*"'tetgen-mesh FILE | off-export'"* ]]
+        done
+        tetgen-mesh --quiet surface.in | off-export >outer.off
+        octree-mesh -s 3 -o mesh.tm outer.off
+        mesh-check -q mesh.tm
+        [ "$(volume mesh.tm)" = 8 ]
+    done
+}
+
+@test "holes and numbers of .poly where walls meet" {
+    # cells 1 to 27, of which the middle one is a hole, one has a number, the others the next
+    boxes 3 poly >all.poly
+    { sed '/^0$/,$d' all.poly && printf '%s\n' 1 '1 1.5 1.5 1.5' 1 '1 2.5 0.5 0.5 40 -1'; } >hole.poly
+    octree-mesh -q -s 3 -o mesh.tm hole.poly
+    run -0 mesh-check -q mesh.tm
+    volumes mesh.tm | diff - <(for i in $(seq 40 65); do echo "$i 1"; done)
+    sed 's/^1 1.5 1.5 1.5/1 0.5 1.5 1.5/' hole.poly >outer.poly
+    run -3 --separate-stderr octree-mesh -s 3 outer.poly
+    [[ "$stderr" == *"walls inside the surface: there is no region on either side of facet "* ]]
+    sed 's/^1 2.5 0.5 0.5/1 7 0.5 0.5/' hole.poly >outside.poly
+    run -3 --separate-stderr octree-mesh -s 3 outside.poly
+    [[ "$stderr" == *"region 1, at (7, 0.5, 0.5), is outside" ]]
+}
+
+@test "a wall that does not close a region in is refused" {
+    # a ring of eight cubes with one wall across it
+    python3 - >ring.off <<'END'
+number, quads = {}, []
+has = lambda c: c[2] == 0 and 0 <= c[0] < 3 and 0 <= c[1] < 3 and c != (1, 1, 0)
+for x in range(4):
+    for y in range(4):
+        for z in range(2):
+            for k in range(3):
+                c, below = (x, y, z), tuple(v - (i == k) for i, v in enumerate((x, y, z)))
+                if has(c) == has(below) and (k, c) != (0, (1, 0, 0)):
+                    continue
+                q = []
+                for i, j in ((0, 0), (1, 0), (1, 1), (0, 1)):
+                    p = list(c)
+                    p[(k + 1) % 3] += i
+                    p[(k + 2) % 3] += j
+                    q.append(number.setdefault(tuple(p), len(number)))
+                quads.append(q)
+print('OFF\n%d %d 0' % (len(number), len(quads)))
+for p in number:
+    print(*p)
+for q in quads:
+    print(4, *q)
+END
+    run -3 --separate-stderr octree-mesh -s 3 ring.off
+    [[ "$stderr" == *"walls inside the surface: the same region is on both sides of facet "* ]]
 }
 
 # A cube in a cube, in .poly: nested REGIONS…, points on the diagonal.

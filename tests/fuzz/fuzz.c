@@ -59,6 +59,8 @@ static const command commands[] = {
     {"polylla3d", {"--merge-coplanar", INPUT}, false},
     {"polylla3d", {"--star", "--absorb", "--ignore-markers", INPUT}, false},
     {"polylla3d", {"--mode", "cavity", "--no-repair", INPUT}, false},
+    {"poly-dual", {INPUT}, false},
+    {"poly-dual", {"--feature-angle", "30", INPUT}, false},
     {"mesh-check", {INPUT}, false},
     {"poly-stats", {INPUT}, false},
     {"tetgen-export", {"out", INPUT}, false},

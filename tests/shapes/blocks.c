@@ -3,13 +3,13 @@
 
 #include <stdlib.h>
 
-static bool has_cell(const blocks *b, const size_t cell[3])
+static unsigned region_of(const blocks *b, const size_t cell[3])
 {
     for (int i = 0; i < 3; i++) {
         if (cell[i] >= b->grid.cells[i]) /* also below 0 */
-            return false;
+            return 0;
     }
-    return b->has == NULL || b->has(&b->grid, cell);
+    return b->region == NULL ? 1 : b->region(&b->grid, cell);
 }
 
 static uint32_t node_at(blocks *b, const size_t line[3])
@@ -67,12 +67,12 @@ void make_blocks(blocks *b)
     for (cell[2] = 0; cell[2] < n[2]; cell[2]++)
         for (cell[1] = 0; cell[1] < n[1]; cell[1]++)
             for (cell[0] = 0; cell[0] < n[0]; cell[0]++)
-                for (unsigned side = 0; side < 6 && has_cell(b, cell); side++) {
+                for (unsigned side = 0; side < 6; side++) {
                     size_t next[3] = {cell[0], cell[1], cell[2]};
                     next[side / 2] += side % 2 != 0 ? 1 : SIZE_MAX;
                     if (b->grid.wrapped && side < 2)
                         next[0] = (next[0] + n[0]) % n[0];
-                    if (!has_cell(b, next))
+                    if (region_of(b, next) < region_of(b, cell))
                         add_side(b, cell, side / 2, side % 2);
                 }
     free(b->number);

@@ -4,6 +4,7 @@
  *     fine it is: the cells of its grid along an axis.
  * Most are the surface of blocks of cells, with the nodes moved to where they belong;
  * some are where a function vanishes, the last ones a few polygons. None crosses itself.
+ * The last four have walls between regions.
  */
 #include "blocks.h"
 #include "marching.h"
@@ -136,7 +137,7 @@ static void place_sheets(const grid *g, double at[3])
     at[2] = sin(angle) * x + cos(angle) * at[2];
 }
 
-static bool has_sheets(const grid *g, const size_t cell[3])
+static unsigned has_sheets(const grid *g, const size_t cell[3])
 {
     (void)g;
     return cell[2] != 1;
@@ -148,7 +149,7 @@ static void place_stairs(const grid *g, double at[3])
     scale(at, 1, 0.6, 1);
 }
 
-static bool has_stairs(const grid *g, const size_t cell[3])
+static unsigned has_stairs(const grid *g, const size_t cell[3])
 {
     const size_t steps = 6;
     return steps * cell[2] / g->cells[2] <= steps * cell[0] / g->cells[0];
@@ -197,6 +198,74 @@ static void place_folded(const grid *g, double at[3])
     at[0] = cos(twist) * x - sin(twist) * z;
     at[2] = sin(twist) * x + cos(twist) * z;
     at[1] = 0.3 * at[1];
+}
+
+/* Below: regions that touch. */
+
+/* A box, and a slanted plane through it. */
+static void place_halved(const grid *g, double at[3])
+{
+    (void)g;
+    const double slant = 0.3, bulge = fmin(at[0], 1 - at[0]);
+    at[0] = 1.5 * at[0] + slant * bulge * (2 * at[2] - 1) - 0.5 * slant * bulge * at[1];
+}
+
+static unsigned halves(const grid *g, const size_t cell[3])
+{
+    return 2 * cell[0] < g->cells[0] ? 1 : 2;
+}
+
+static void place_as_it_is(const grid *g, double at[3])
+{
+    (void)g;
+    (void)at;
+}
+
+/* A block of 3 by 3 by 3 but for the middle of a side. */
+static unsigned blocks_but_one(const grid *g, const size_t cell[3])
+{
+    unsigned at[3];
+    for (int i = 0; i < 3; i++)
+        at[i] = (unsigned)(3 * cell[i] / g->cells[i]);
+    return at[0] == 2 && at[1] == 1 && at[2] == 1 ? 0 : 1 + at[0] + 3 * at[1] + 9 * at[2];
+}
+
+static double largest_of(const double v[3])
+{
+    return fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
+}
+
+/* The cubes around the middle become balls. */
+static void place_segments(const grid *g, double at[3])
+{
+    (void)g;
+    const double centred[3] = {2 * at[0] - 1, 2 * at[1] - 1, 2 * at[2] - 1};
+    const double r = largest_of(centred);
+    for (int i = 0; i < 3; i++)
+        at[i] = tan(pi / 4 * centred[i]);
+    const double length = length_of(at);
+    if (length > 0)
+        scale(at, r / length, r / length, r / length);
+}
+
+/* A half of a ball in a box, its flat side in that of the box. */
+static void place_inlay(const grid *g, double at[3])
+{
+    (void)g;
+    at[0] = 2 * at[0] - 1;
+    at[1] = 2 * at[1] - 1;
+    const double size = largest_of(at), length = length_of(at);
+    const double flat = size < 0.5 ? 0 : 2 * size - 1; /* 1: a cube as it was */
+    const double factor = length > 0 ? flat + (1 - flat) * fmin(size, 0.5) / length : 1;
+    scale(at, factor, factor, factor);
+}
+
+static unsigned inlay(const grid *g, const size_t cell[3])
+{
+    const double at[3] = {2 * ((double)cell[0] + 0.5) / (double)g->cells[0] - 1,
+                          2 * ((double)cell[1] + 0.5) / (double)g->cells[1] - 1,
+                          ((double)cell[2] + 0.5) / (double)g->cells[2]};
+    return largest_of(at) < 0.5 ? 2 : 1;
 }
 
 /* Below: functions that are negative inside a shape. */
@@ -257,7 +326,7 @@ typedef struct shape {
     size_t cells[3];
     bool wrapped;
     place_function *place;
-    has_function *has;
+    region_function *region;
     shape_function *function;
     double side;
     bool tilted;
@@ -283,9 +352,9 @@ static const shape shapes[] = {
      .fine = 30,
      .cells = {0, 0, 3},
      .place = place_sheets,
-     .has = has_sheets},
+     .region = has_sheets},
     {.name = "spikes", .fine = 24, .place = place_spikes},
-    {.name = "stairs", .fine = 18, .place = place_stairs, .has = has_stairs},
+    {.name = "stairs", .fine = 18, .place = place_stairs, .region = has_stairs},
     {.name = "gear",
      .fine = 8,
      .cells = {(size_t)TEETH * TOOTH, 0, 0},
@@ -301,6 +370,22 @@ static const shape shapes[] = {
     {.name = "wedge", .make = make_wedge},
     {.name = "step", .make = make_step},
     {.name = "spool", .make = make_spool},
+    {.name = "halved",
+     .fine = 12,
+     .place = place_halved,
+     .region = halves,
+     .tilted = true},
+    {.name = "cells", .fine = 9, .place = place_as_it_is, .region = blocks_but_one},
+    {.name = "segments",
+     .fine = 24,
+     .place = place_segments,
+     .region = halves,
+     .tilted = true},
+    {.name = "inlay",
+     .fine = 12,
+     .cells = {24, 24, 0},
+     .place = place_inlay,
+     .region = inlay},
 };
 enum { SHAPES = sizeof shapes / sizeof shapes[0] };
 
@@ -319,7 +404,7 @@ static void make(const shape *is, size_t fine, surface *s)
     }
     blocks b = {.grid = {.wrapped = is->wrapped},
                 .place = is->place,
-                .has = is->has,
+                .region = is->region,
                 .surface = s};
     for (int i = 0; i < 3; i++)
         b.grid.cells[i] = is->cells[i] > 0 ? is->cells[i] : fine;

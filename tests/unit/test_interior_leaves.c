@@ -349,8 +349,7 @@ static void check_elements(const tm_octree *octree, const tm_interior *interior,
     const tm_mixed_mesh *mesh = &a->mesh;
     tm_error error;
     double(*base)[3] = malloc(mesh->nodes * sizeof *base);
-    assert_ok(tm_lattice_points(a, octree, interior, NULL, boundary, base, &error),
-              &error);
+    assert_ok(tm_lattice_points(a, octree, interior, 1, boundary, base, &error), &error);
     const double volume = leaf_volume(octree, interior), clearly = 0.05;
     double sum = 0;
     assert_int_equal(a->first[0], 0);
@@ -406,7 +405,7 @@ static void test_random(void **state)
                   &error);
         check_skin(&octree, &interior, &boundary);
         cut_some(&boundary);
-        assert_ok(tm_assemble(&assembly, &octree, &interior, NULL, &boundary, &error),
+        assert_ok(tm_assemble(&assembly, &octree, &interior, 1, &boundary, &error),
                   &error);
         check_elements(&octree, &interior, &boundary, &assembly);
         elements += assembly.mesh.elements;

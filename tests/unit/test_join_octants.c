@@ -38,6 +38,11 @@ static void free_solid(solid *s)
     tm_surface_free(&s->surface);
 }
 
+static size_t part_of(const solid *s, size_t leaf)
+{
+    return tm_interior_part_of(s->mesh.part, s->mesh.parts, leaf);
+}
+
 /* The points of octants against those that the mesh was made from, which it keeps: core
  * nodes are as the octree's leaves have them. */
 static size_t check_points(const solid *s, const tm_stream *stream,
@@ -52,7 +57,7 @@ static size_t check_points(const solid *s, const tm_stream *stream,
               &error);
     for (size_t l = 0; l < s->octree.leaves; l++) {
         uint32_t node[TM_OCTANT_POINTS];
-        assert_int_equal(tm_octant_is_filled(&points, l), s->mesh.interior.chosen[l]);
+        assert_int_equal(tm_octant_is_filled(&points, l), part_of(s, l) < s->mesh.parts);
         if (!tm_octant_is_filled(&points, l) || !tm_octant_points_find(&points, l, node))
             continue;
         found++;
@@ -72,7 +77,10 @@ static uint32_t (*find_core(const solid *s))[TM_LEAF_NODES]
     for (size_t l = 0; l < s->octree.leaves; l++)
         for (int p = 0; p < TM_LEAF_NODES; p++) {
             const uint32_t node = s->octree.node[l][p];
-            core[l][p] = node == TM_NONE ? TM_NONE : s->mesh.assembly.core_node[node];
+            const size_t part = part_of(s, l);
+            core[l][p] = node == TM_NONE || part == s->mesh.parts
+                             ? TM_NONE
+                             : s->mesh.assembly.core_node[part][node];
         }
     return core;
 }
@@ -116,7 +124,8 @@ static void random_solids(void **state)
                                            &error),
                   &error);
         found += check_points(&s, &stream, core);
-        filled += s.mesh.interior.count;
+        for (size_t l = 0; l < s.octree.leaves; l++)
+            filled += part_of(&s, l) < s.mesh.parts;
         const tm_block *node = tm_stream_find(&stream, ".node");
         double(*before)[3] = malloc((node->count + 1) * sizeof *before);
         assert_non_null(before);

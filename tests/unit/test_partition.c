@@ -176,6 +176,49 @@ static double kernel_radius(const tm_tet_mesh *mesh, const uint32_t *cell, uint3
     return radius;
 }
 
+/* How deep the centroid of a cell is inside of its faces, slowly. */
+static double centroid_depth(const tm_tet_mesh *mesh, const uint32_t *cell, uint32_t c)
+{
+    surface s = surface_of(mesh, cell, c);
+    double centre[3] = {0}, volume = 0, depth = HUGE_VAL;
+    for (size_t t = 0; t < mesh->slots; t++) {
+        const uint32_t *n = mesh->tet[t];
+        if (cell[t] != c)
+            continue;
+        double v = tm_tet_volume(mesh->xyz[n[0]], mesh->xyz[n[1]], mesh->xyz[n[2]],
+                                 mesh->xyz[n[3]]);
+        volume += v;
+        for (int i = 0; i < 4; i++)
+            for (int x = 0; x < 3; x++)
+                centre[x] += v * mesh->xyz[n[i]][x] / 4;
+    }
+    for (int x = 0; x < 3; x++)
+        centre[x] /= volume;
+    for (size_t f = 0; f < s.faces; f++) {
+        double normal[3], to[3];
+        const double *a = mesh->xyz[s.face[f][0]];
+        tm_triangle_normal(normal, a, mesh->xyz[s.face[f][2]], mesh->xyz[s.face[f][1]]);
+        tm_subtract(to, a, centre);
+        depth = fmin(depth, tm_dot(normal, to) / tm_norm(normal));
+    }
+    return depth;
+}
+
+static double extent_of(const tm_tet_mesh *mesh, const uint32_t *cell, uint32_t c)
+{
+    surface s = surface_of(mesh, cell, c);
+    double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3], extent2 = 0;
+    for (int x = 0; x < 3; x++) {
+        high[x] = -HUGE_VAL;
+        for (size_t k = 0; k < 3 * s.faces; k++) {
+            low[x] = fmin(low[x], mesh->xyz[s.face[k / 3][k % 3]][x]);
+            high[x] = fmax(high[x], mesh->xyz[s.face[k / 3][k % 3]][x]);
+        }
+        extent2 += (high[x] - low[x]) * (high[x] - low[x]);
+    }
+    return sqrt(extent2);
+}
+
 static void check_faces_inside(const tm_tet_mesh *mesh, const uint32_t *cell)
 {
     for (size_t f = 0; f < mesh->faces; f++) {
@@ -191,7 +234,7 @@ static void check_partition(const tm_tet_mesh *mesh, const tm_poly_options *o)
     tm_poly_report report;
     tm_error error;
     assert_int_equal(tm_partition_make(&partition, mesh, o, &report, &error), TM_OK);
-    size_t *size = calloc(partition.cells, sizeof *size);
+    size_t *size = calloc(partition.cells, sizeof *size), missed = 0;
     for (size_t t = 0; t < mesh->slots; t++) {
         assert_true(partition.cell[t] < partition.cells);
         size[partition.cell[t]]++;
@@ -209,10 +252,16 @@ static void check_partition(const tm_tet_mesh *mesh, const tm_poly_options *o)
             assert_true(is_ball(mesh, partition.cell, c));
         if (o->star)
             assert_true(kernel_radius(mesh, partition.cell, c) > 0);
+        if (o->star == TM_STAR_CENTROID)
+            assert_true(centroid_depth(mesh, partition.cell, c) > 0);
+        if (o->star == TM_STAR_RADIUS)
+            missed += kernel_radius(mesh, partition.cell, c) <
+                      o->radius * extent_of(mesh, partition.cell, c) * (1 - 1e-9);
     }
     if (o->repair)
         check_faces_inside(mesh, partition.cell);
     assert_int_equal(report.cells, partition.cells);
+    assert_int_equal(report.not_star, missed);
     free(size);
     tm_partition_free(&partition);
 }
@@ -224,10 +273,11 @@ static void test_partitions(void **state)
         tm_stream stream;
         tm_tet_mesh mesh;
         make_mesh(&mesh, &stream, GRID, 0.8, k % 3 == 0);
-        tm_poly_options o = {.mode = (tm_poly_mode)(k % 4),
+        tm_poly_options o = {.mode = (tm_poly_mode)(k % TM_POLY_COMPACT),
                              .face_metric = (tm_face_metric)random_below(2),
                              .repair = k % 8 != 1,
-                             .star = random_below(2),
+                             .star = (tm_poly_star)random_below(4),
+                             .radius = random_below(2) ? 0.03 : 0.1,
                              .absorb = random_below(2),
                              .no_swallow = random_below(2),
                              .max_tets = random_below(2) ? 0 : 1 + random_below(20)};

@@ -181,63 +181,128 @@ static void test_shapes(void **state)
     assert_true(s.rho[0] == 0 && s.centroid_depth < 0);
 }
 
-/* An L of three unit cubes as a prism on two hexagons, turned, 1/8 as large, far from the
- * origin; its indicator by hand. */
-static void test_prism(void **state)
+enum { MOST_CORNERS = 8 };
+
+/* A prism of height 1 on a polygon, turned, 1/8 as large, far from the origin. */
+typedef struct {
+    double xyz[2 * MOST_CORNERS][3];
+    uint32_t side[MOST_CORNERS + 2][2], facet[MOST_CORNERS + 2];
+    uint32_t node[6 * MOST_CORNERS];
+    size_t start[MOST_CORNERS + 3], cell[2];
+} prism;
+
+static tm_poly_statistics measure_prism(const double (*outline)[2], uint32_t corners)
 {
-    (void)state;
-    enum { CORNERS = 6, NODES = 2 * CORNERS, FACETS = CORNERS + 2 };
-    static const double outline[CORNERS][2] = {{0, 0}, {2, 0}, {2, 1},
-                                               {1, 1}, {1, 2}, {0, 2}};
     static const double turn[3][3] = {
         {2 / 3., -1 / 3., 2 / 3.}, {2 / 3., 2 / 3., -1 / 3.}, {-1 / 3., 2 / 3., 2 / 3.}};
-    double xyz[NODES][3];
-    uint32_t side[FACETS][2], node[2 * CORNERS + 4 * CORNERS], facet[FACETS];
-    size_t start[FACETS + 1] = {0, CORNERS, NODES}, cell[2] = {0, FACETS};
-    for (int v = 0; v < NODES; v++)
+    const uint32_t nodes = 2 * corners, facets = corners + 2;
+    prism p = {.start = {0, corners, nodes}, .cell = {0, facets}};
+    for (uint32_t v = 0; v < nodes; v++)
         for (int k = 0; k < 3; k++) {
-            const double *from = outline[v % CORNERS];
-            xyz[v][k] = 100 + (turn[k][0] * from[0] + turn[k][1] * from[1] +
-                               (v < CORNERS ? 0 : turn[k][2])) /
-                                  8;
+            const double *from = outline[v % corners];
+            p.xyz[v][k] = 100 + (turn[k][0] * from[0] + turn[k][1] * from[1] +
+                                 (v < corners ? 0 : turn[k][2])) /
+                                    8;
         }
-    for (uint32_t i = 0; i < CORNERS; i++) {
-        const uint32_t next = (i + 1) % CORNERS;
-        node[i] = CORNERS - 1 - i;
-        node[CORNERS + i] = CORNERS + i;
-        memcpy(node + NODES + 4 * (size_t)i,
-               (uint32_t[]){i, next, CORNERS + next, CORNERS + i}, 4 * sizeof *node);
-        start[i + 3] = start[i + 2] + 4;
+    for (uint32_t i = 0; i < corners; i++) {
+        const uint32_t next = (i + 1) % corners;
+        const uint32_t around[4] = {i, next, corners + next, corners + i};
+        p.node[i] = corners - 1 - i;
+        p.node[corners + i] = corners + i;
+        memcpy(p.node + nodes + 4 * (size_t)i, around, sizeof around);
+        p.start[i + 3] = p.start[i + 2] + 4;
     }
-    for (uint32_t f = 0; f < FACETS; f++) {
-        side[f][0] = 0;
-        side[f][1] = TM_NONE;
-        facet[f] = f;
+    for (uint32_t f = 0; f < facets; f++) {
+        p.side[f][1] = TM_NONE;
+        p.facet[f] = f;
     }
-    const tm_poly_arrays mesh = {.nodes = NODES,
-                                 .xyz = (const double(*)[3])xyz,
-                                 .facets = FACETS,
-                                 .side = (const uint32_t(*)[2])side,
-                                 .facet_start = start,
-                                 .facet_node = node,
+    const tm_poly_arrays mesh = {.nodes = nodes,
+                                 .xyz = (const double(*)[3])p.xyz,
+                                 .facets = facets,
+                                 .side = (const uint32_t(*)[2])p.side,
+                                 .facet_start = p.start,
+                                 .facet_node = p.node,
                                  .cells = 1,
-                                 .cell_start = cell,
-                                 .cell_facet = facet};
+                                 .cell_start = p.cell,
+                                 .cell_facet = p.facet};
     tm_poly_statistics s;
     assert_int_equal(tm_poly_statistics_measure(&s, &mesh, 1, NULL), TM_OK);
+    return s;
+}
+
+/* An L of three unit cubes with two hexagons: its indicator by hand. */
+static void test_indicator(void **state)
+{
+    (void)state;
+    enum { CORNERS = 6, FACETS = CORNERS + 2 };
+    static const double outline[CORNERS][2] = {{0, 0}, {2, 0}, {2, 1},
+                                               {1, 1}, {1, 2}, {0, 2}};
+    const tm_poly_statistics s = measure_prism(outline, CORNERS);
     /* The square in the corner sees all of the hexagon, the cube there all of the prism.
      */
     const double rho1 = 1 / 3. * 1 / 3. * 1 / 3.;
     const double rho2 =
         (sqrt(2) / 3 + (2 / sqrt(8) + 2 / sqrt(5) + 4 / sqrt(2)) / FACETS) / 2;
     const double rho3 = (4. / FACETS + (2 * 3 / 6. + 6 * 3 / 4.) / FACETS) / 2;
-    assert_true(fabs(s.volume - 3 / 512.) < 1e-12 &&
-                fabs(s.max_diameter - 3 / 8.) < 1e-12);
+    assert_true(fabs(s.volume - 3 / 512.) < 1e-12);
+    assert_true(fabs(s.max_diameter - 3 / 8.) < 1e-12);
     assert_true(fabs(s.rho[0].mean - rho1) < 1e-9 && fabs(s.rho[0].min - rho1) < 1e-9);
     assert_true(fabs(s.rho[1].mean - rho2) < 1e-9 && fabs(s.rho[2].mean - rho3) < 1e-12);
     assert_true(fabs(s.vem_indicator - sqrt(rho1 * (rho2 + rho3) / 2)) < 1e-9);
     /* The centroid is at 5/6, the kernel ends at 1, the diameter is 3. */
     assert_true(fabs(s.centroid_depth.mean - 1 / 18.) < 1e-9 && s.centroid_outside == 0);
+    /* The hexagons are fans around the corner in the middle. */
+    assert_int_equal(s.fv.no_fan + s.fv.unseen, 0);
+    assert_int_equal(s.fv.concave, 1);
+    assert_true(s.fv.min_weight == 0 && s.fv.small_weights == 0);
+}
+
+/* A U: its octagons are no fans, and its centroid does not see all walls. */
+static void test_no_fan(void **state)
+{
+    (void)state;
+    enum { CORNERS = 8 };
+    static const double outline[CORNERS][2] = {{0, 0}, {3, 0}, {3, 3}, {2, 3},
+                                               {2, 1}, {1, 1}, {1, 3}, {0, 3}};
+    const tm_poly_statistics s = measure_prism(outline, CORNERS);
+    assert_true(s.rho[0].mean == 0 && s.vem_indicator == 0 && s.centroid_outside == 1);
+    assert_true(s.fv.no_fan >= 2 && s.fv.unseen >= 2 && s.fv.concave == 1);
+}
+
+/* Boxes in a row, as long as 4 and 1/100, beside others: the first is seen to be concave
+ * by facets in one plane. */
+static void test_all_geometry(void **state)
+{
+    (void)state;
+    voxels v = voxels_of(5, 1, 1, "00001");
+    voxels_join(&v);
+    for (size_t i = 0; i < v.mesh.nodes; i++)
+        v.xyz[i][0] = fmin(v.xyz[i][0], 4.01);
+    tm_poly_finite_volume fv;
+    assert_int_equal(tm_poly_finite_volume_measure(&fv, &v.mesh, NULL), TM_OK);
+    assert_true(close_to(fv.min_weight, 0.005 / 2.005) && fv.small_weights == 1);
+    assert_true(close_to(fv.min_volume_ratio, 0.01 / 4) && fv.small_volume_ratios == 1);
+    assert_true(fv.min_determinant == 0 && fv.small_determinants == 2);
+    assert_true(fv.concave == 1 && fv.no_fan == 0 && fv.reversed == 0);
+    voxels_free(&v);
+    /* In a block of cubes those at corners have three facets inside. */
+    v = voxels_new(3, 3, 3);
+    for (int i = 0; i < 27; i++)
+        v.label[i] = i;
+    voxels_join(&v);
+    assert_int_equal(tm_poly_finite_volume_measure(&fv, &v.mesh, NULL), TM_OK);
+    assert_true(close_to(fv.min_determinant, 1.0 / 8) && fv.small_determinants == 0);
+    assert_true(close_to(fv.min_weight, 0.5) && close_to(fv.min_volume_ratio, 1));
+    assert_true(fv.concave + fv.small_weights + fv.small_volume_ratios == 0);
+    voxels_free(&v);
+    /* A U around a block, its centroid in that: 7 facets between, 6 of them along the
+     * line from one centroid to the other. */
+    v = voxels_of(4, 3, 1, "000001110000");
+    voxels_join(&v);
+    assert_int_equal(tm_poly_finite_volume_measure(&fv, &v.mesh, NULL), TM_OK);
+    assert_true(fv.reversed == 6 && fv.non_orthogonal == 6 && fv.wrong_pyramids == 7);
+    assert_true(fv.unseen == 7 && fv.no_fan == 7 && fv.concave == 2);
+    voxels_free(&v);
 }
 
 static void test_flat(void **state)
@@ -368,7 +433,8 @@ int main(void)
         cmocka_unit_test(test_shapes),        cmocka_unit_test(test_flat),
         cmocka_unit_test(test_statistics),    cmocka_unit_test(test_swallowed),
         cmocka_unit_test(test_no_polyhedra),  cmocka_unit_test(test_bins),
-        cmocka_unit_test(test_threads),       cmocka_unit_test(test_prism),
+        cmocka_unit_test(test_threads),       cmocka_unit_test(test_indicator),
+        cmocka_unit_test(test_no_fan),        cmocka_unit_test(test_all_geometry),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

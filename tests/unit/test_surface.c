@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is made of surfaces that are known: counts, inside, features, errors. */
 #include "../../lib/surface/surface.h"
-#include "../../lib/surface/surface_curvature.h"
+#include "../../lib/surface/measure/surface_curvature.h"
 #include "random.h"
 #include "surface_shapes.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* surface_distance.h: known distances, and soups of triangles against dense sampling. */
-#include "../../lib/surface/surface_distance.h"
+#include "../../lib/surface/measure/surface_distance.h"
 #include "../../lib/surface/surface_tree.h"
 #include "random.h"
 #include "surface_shapes.h"

@@ -3,7 +3,7 @@
 #ifndef CMD_COMMON_AGAINST_H
 #define CMD_COMMON_AGAINST_H
 
-#include "../../../lib/surface/surface_distance.h"
+#include "../../../lib/surface/measure/surface_distance.h"
 #include "../app/filter.h"
 
 enum { AGAINST = FILTER_OWN + 64, AGAINST_FEATURE_ANGLE };

@@ -292,7 +292,8 @@ void surface_input_build(const filter *f, const tm_surface_options *options,
     surface_input_read(f, &polygons, &stream);
     filter_stage(f, "building the surface");
     const tm_status status = tm_surface_build(surface, &polygons, options, &error);
-    if (status == TM_ERROR_INPUT || (status == TM_OK && surface->open_edges > 0))
+    if ((status == TM_ERROR_INPUT && !options->walls) ||
+        (status == TM_OK && surface->open_edges > 0))
         refuse_walls(f, &polygons);
     if (status != TM_OK) {
         if (!error.file[0])

@@ -16,7 +16,7 @@ enum { DIRECTIONS = 8 };
 /* A point of the surface close to the middle of an octant, away from the border of its
  * triangle, and the normal there. False of a triangle without area. */
 static bool choose_point(const tm_surface *surface, const double centre[3], double side,
-                         double point[3], double normal[3])
+                         double point[3], double normal[3], uint32_t *triangle)
 {
     const double away = 0.1; /* sides of the octant, at most */
     tm_surface_point at = {.triangle = TM_NONE};
@@ -35,6 +35,7 @@ static bool choose_point(const tm_surface *surface, const double centre[3], doub
         point[i] = at.xyz[i] + step * to_middle[i];
         normal[i] /= length;
     }
+    *triangle = at.triangle;
     return length > 0;
 }
 
@@ -44,16 +45,17 @@ static bool is_thin(const tm_surface *surface, const double low[3], double side)
 {
     enum { SIDES = 2 };
     double centre[3], point[3], normal[3];
+    uint32_t triangle;
     for (int i = 0; i < 3; i++)
         centre[i] = low[i] + side / 2;
-    if (!choose_point(surface, centre, side, point, normal))
+    if (!choose_point(surface, centre, side, point, normal, &triangle))
         return false;
     for (int s = 1; s <= SIDES; s++)
         for (int way = -1; way <= 1; way += 2) {
             double q[3];
             for (int i = 0; i < 3; i++)
                 q[i] = point[i] + way * s * side * normal[i];
-            if (tm_surface_has_inside(surface, q) != (way < 0))
+            if (!tm_surface_is_beside(surface, triangle, way < 0, q))
                 return true;
         }
     return false;
@@ -133,7 +135,8 @@ bool tm_octant_is_crowded(const tm_surface *surface, const bool *is_corner,
                           const uint32_t *triangle, size_t count, const double low[3],
                           double side)
 {
-    return is_opposed(surface, triangle, count) ||
+    /* Walls look to either side. */
+    return (!surface->walls && is_opposed(surface, triangle, count)) ||
            has_many(surface, is_corner, triangle, count, low, side) ||
            is_thin(surface, low, side);
 }

@@ -129,7 +129,8 @@ static void measure(estimator *e)
             tm_subtract(p[c], s->xyz[s->triangle[t][c]], s->low);
         double cross[3];
         tm_cross(cross, p[1], p[2]);
-        six_volumes += tm_dot(p[0], cross);
+        if (!s->walls || s->side[t][0] == 0) /* others are inside */
+            six_volumes += tm_dot(p[0], cross);
         e->area += area_of(s, t);
     }
     e->volume = fabs(six_volumes) / 6;

@@ -11,13 +11,15 @@ enum { LEAF_CORNERS = 8, LEAF_FACES = 6, MOST_NODES = 8 };
 const uint8_t tm_cut_triangles[3][2][3] = {
     [TM_CUT_02] = {{0, 1, 2}, {2, 3, 0}}, [TM_CUT_13] = {{1, 2, 3}, {3, 0, 1}}};
 
-/* The leaves on one side of their boundary: those inside, or those that they enclose. */
+/* The leaves of a part. */
 typedef struct {
     const tm_interior *interior;
-    const tm_interior_boundary *boundary;
+    const tm_interior_boundary *boundary; /* `own`, or of the only part all of it */
+    tm_interior_boundary own;
     uint32_t *core_node; /* [nodes of the octree]: of the mesh, or TM_NONE */
     uint32_t *inner;     /* [nodes of its boundary] */
-    uint32_t *outer;     /* [nodes of its boundary]: of the interior boundary */
+    uint32_t *outer;     /* [nodes of its boundary]: of the interior boundary; NULL: the
+                            same */
     uint32_t *layer;     /* [faces of its boundary] */
     size_t face;         /* so far */
 } side;
@@ -26,7 +28,8 @@ typedef struct {
     const tm_octree *octree;
     const tm_interior_boundary *boundary;
     tm_assembly *assembly;
-    side inside, across;
+    size_t sides;
+    side *side;
     side *at;                        /* that of the leaf */
     bool counting;                   /* nothing is written yet */
     size_t middles, elements, items; /* so far */
@@ -53,20 +56,18 @@ static tm_status number_side(assembler *a, side *s, tm_error *error)
 static tm_status number_core(assembler *a, tm_error *error)
 {
     tm_assembly *to = a->assembly;
-    tm_status status = number_side(a, &a->inside, error);
-    if (status == TM_OK && a->across.interior)
-        status = number_side(a, &a->across, error);
+    tm_status status = TM_OK;
+    for (size_t p = 0; p < a->sides && status == TM_OK; p++)
+        status = number_side(a, &a->side[p], error);
     if (status != TM_OK)
         return status;
     to->grid_node = tm_new(to->core, sizeof *to->grid_node);
     if (!to->grid_node)
         return tm_fail_memory(error);
-    for (size_t n = 0; n < a->octree->nodes; n++) {
-        if (a->inside.core_node[n] != TM_NONE)
-            to->grid_node[a->inside.core_node[n]] = (uint32_t)n;
-        if (a->across.core_node && a->across.core_node[n] != TM_NONE)
-            to->grid_node[a->across.core_node[n]] = (uint32_t)n;
-    }
+    for (size_t p = 0; p < a->sides; p++)
+        for (size_t n = 0; n < a->octree->nodes; n++)
+            if (a->side[p].core_node[n] != TM_NONE)
+                to->grid_node[a->side[p].core_node[n]] = (uint32_t)n;
     to->outer = (uint32_t)to->core;
     return TM_OK;
 }
@@ -235,12 +236,16 @@ static void add_layer(assembler *a, size_t l)
 static void add_all(assembler *a, bool counting)
 {
     a->counting = counting;
-    a->inside.face = a->across.face = a->middles = a->elements = a->items = 0;
+    a->middles = a->elements = a->items = 0;
+    for (size_t p = 0; p < a->sides; p++)
+        a->side[p].face = 0;
     for (size_t l = 0; l < a->octree->leaves; l++) {
         if (!counting)
             a->assembly->first[l] = (uint32_t)a->elements;
-        a->at = a->inside.interior->chosen[l] ? &a->inside : &a->across;
-        if (a->at->interior && a->at->interior->chosen[l]) {
+        a->at = a->side;
+        while (a->at < a->side + a->sides && !a->at->interior->chosen[l])
+            a->at++;
+        if (a->at < a->side + a->sides) {
             add_leaf(a, l);
             add_layer(a, l);
         }
@@ -255,26 +260,26 @@ static void set_points(const assembler *a)
     for (size_t n = 0; n < to->core; n++)
         tm_octree_point(a->octree, a->octree->grid[to->grid_node[n]], xyz[n]);
     for (size_t s = 0; s < a->boundary->nodes; s++)
-        memcpy(xyz[to->outer + s], xyz[a->inside.inner[s]], sizeof *xyz);
+        tm_boundary_node_point(a->boundary, s, xyz[to->outer + s]);
     for (size_t m = 0; m < to->middles; m++)
         tm_leaf_centre(a->octree, &a->octree->leaf[to->middle_leaf[m]],
                        xyz[to->core + a->boundary->nodes + m]);
 }
 
-/* The face of the interior boundary with the same nodes as one from across. */
-static size_t same_face(const assembler *a, size_t f)
+/* The face of the interior boundary that a face of a part's is. */
+static size_t same_face(const assembler *a, const side *s, size_t f)
 {
     const tm_interior_boundary *boundary = a->boundary;
-    const uint32_t *given = a->across.boundary->face[f];
-    const unsigned k = tm_boundary_face_corners(a->across.boundary, f);
-    const uint32_t first = a->across.outer[given[0]];
+    const uint32_t *given = s->boundary->face[f];
+    const unsigned k = tm_boundary_face_corners(s->boundary, f);
+    const uint32_t first = s->outer[given[0]];
     for (size_t i = boundary->around_start[first]; i < boundary->around_start[first + 1];
          i++) {
         const size_t here = boundary->around[i];
         unsigned common = 0;
         for (unsigned c = 0; c < k; c++)
             for (unsigned d = 0; d < tm_boundary_face_corners(boundary, here); d++)
-                common += a->across.outer[given[c]] == boundary->face[here][d];
+                common += s->outer[given[c]] == boundary->face[here][d];
         if (common == k && tm_boundary_face_corners(boundary, here) == k)
             return here;
     }
@@ -282,58 +287,67 @@ static size_t same_face(const assembler *a, size_t f)
 }
 
 /* Both sides cut a face by the same diagonal. */
-static void share_cut(const assembler *a, size_t f, tm_interior_boundary *across)
+static void share_cut(const assembler *a, side *s, size_t f)
 {
-    const size_t here = same_face(a, f);
+    const size_t here = same_face(a, s, f);
     if (a->boundary->cut[here] == TM_UNCUT)
         return;
     const uint32_t *face = a->boundary->face[here];
-    const uint32_t first = a->across.outer[across->face[f][0]];
+    const uint32_t first = s->outer[s->own.face[f][0]];
     const bool by_even = first == face[0] || first == face[2];
-    across->cut[f] =
+    s->own.cut[f] =
         by_even == (a->boundary->cut[here] == TM_CUT_02) ? TM_CUT_02 : TM_CUT_13;
 }
 
-/* What the enclosed leaves see of the interior boundary. */
-static tm_status find_across(assembler *a, const tm_interior *enclosed,
-                             tm_interior_boundary *across, tm_error *error)
+/* What a part has of the interior boundary. */
+static tm_status find_own(const assembler *a, side *s, tm_error *error)
 {
-    tm_status status = tm_interior_boundary_find(across, a->octree, enclosed, error);
+    tm_status status = tm_interior_boundary_find(&s->own, a->octree, s->interior, error);
     if (status != TM_OK)
         return status;
     uint32_t *number = tm_new(a->octree->nodes, sizeof *number);
-    a->across = (side){.interior = enclosed,
-                       .boundary = across,
-                       .outer = tm_new(across->nodes, sizeof *a->across.outer)};
-    if (!number || !a->across.outer)
+    s->outer = tm_new(s->own.nodes, sizeof *s->outer);
+    if (!number || !s->outer)
         status = tm_fail_memory(error);
-    for (size_t s = 0; s < a->boundary->nodes && status == TM_OK; s++)
-        number[a->boundary->grid_node[s]] = (uint32_t)s;
-    for (size_t s = 0; s < across->nodes && status == TM_OK; s++)
-        a->across.outer[s] = number[across->grid_node[s]];
-    for (size_t f = 0; f < across->faces && status == TM_OK; f++)
-        share_cut(a, f, across);
+    for (size_t i = 0; i < a->boundary->nodes && status == TM_OK; i++)
+        number[a->boundary->grid_node[i]] = (uint32_t)i;
+    for (size_t i = 0; i < s->own.nodes && status == TM_OK; i++)
+        s->outer[i] = number[s->own.grid_node[i]];
+    for (size_t f = 0; f < s->own.faces && status == TM_OK; f++)
+        share_cut(a, s, f);
     free(number);
     return status;
 }
 
-/* What the assembly has of the other side, by the interior boundary's nodes and faces. */
-static tm_status give_across(const assembler *a, tm_error *error)
+static uint32_t *all_none(size_t count)
+{
+    uint32_t *array = tm_new(count, sizeof *array);
+    for (size_t i = 0; array && i < count; i++)
+        array[i] = TM_NONE;
+    return array;
+}
+
+/* What the assembly has of the parts, by the interior boundary's nodes and faces. */
+static tm_status give_sides(const assembler *a, tm_error *error)
 {
     tm_assembly *to = a->assembly;
-    const side *s = &a->across;
-    to->across = tm_new(a->boundary->nodes, sizeof *to->across);
-    to->layer_across = tm_new(a->boundary->faces, sizeof *to->layer_across);
-    if (!to->across || !to->layer_across)
+    to->layer = all_none(a->boundary->faces);
+    to->layer_across = all_none(a->boundary->faces);
+    if (!to->layer || !to->layer_across)
         return tm_fail_memory(error);
-    for (size_t i = 0; i < a->boundary->nodes; i++)
-        to->across[i] = TM_NONE;
-    for (size_t f = 0; f < a->boundary->faces; f++)
-        to->layer_across[f] = TM_NONE;
-    for (size_t i = 0; i < s->boundary->nodes; i++)
-        to->across[s->outer[i]] = s->inner[i];
-    for (size_t f = 0; f < s->boundary->faces; f++)
-        to->layer_across[same_face(a, f)] = s->layer[f];
+    for (size_t p = 0; p < a->sides; p++) {
+        const side *s = &a->side[p];
+        to->inner[p] = all_none(a->boundary->nodes);
+        if (!to->inner[p])
+            return tm_fail_memory(error);
+        for (size_t i = 0; i < s->own.nodes; i++)
+            to->inner[p][s->outer[i]] = s->inner[i];
+        for (size_t f = 0; f < s->own.faces; f++) {
+            const size_t here = same_face(a, s, f);
+            const bool across = a->boundary->leaf[here] != s->own.leaf[f];
+            (across ? to->layer_across : to->layer)[here] = s->layer[f];
+        }
+    }
     return TM_OK;
 }
 
@@ -351,37 +365,69 @@ static tm_status assemble(assembler *a, tm_error *error)
     to->first[a->octree->leaves] = (uint32_t)a->elements;
     to->mesh.start[a->elements] = a->items;
     set_points(a);
-    return a->across.interior ? give_across(a, error) : TM_OK;
+    if (a->sides > 1)
+        return give_sides(a, error);
+    to->inner[0] = a->side->inner;
+    to->layer = a->side->layer;
+    a->side->inner = a->side->layer = NULL;
+    return TM_OK;
+}
+
+static tm_status start_sides(assembler *a, const tm_interior *part, tm_error *error)
+{
+    tm_assembly *to = a->assembly;
+    a->side = calloc(a->sides, sizeof *a->side);
+    to->core_node = calloc(a->sides, sizeof *to->core_node);
+    to->inner = calloc(a->sides, sizeof *to->inner);
+    if (!a->side || !to->core_node || !to->inner)
+        return tm_fail_memory(error);
+    to->parts = a->sides;
+    tm_status status = TM_OK;
+    for (size_t p = 0; p < a->sides && status == TM_OK; p++) {
+        side *s = &a->side[p];
+        *s = (side){.interior = &part[p], .boundary = a->boundary};
+        if (a->sides == 1)
+            break;
+        s->boundary = &s->own;
+        status = find_own(a, s, error);
+    }
+    return status;
+}
+
+static void end_sides(assembler *a)
+{
+    for (size_t p = 0; a->side && p < a->sides; p++) {
+        side *s = &a->side[p];
+        if (p < a->assembly->parts)
+            a->assembly->core_node[p] = s->core_node;
+        free(s->inner);
+        free(s->outer);
+        free(s->layer);
+        tm_interior_boundary_free(&s->own);
+    }
+    free(a->side);
 }
 
 tm_status tm_assemble(tm_assembly *assembly, const tm_octree *octree,
-                      const tm_interior *interior, const tm_interior *enclosed,
+                      const tm_interior *part, size_t parts,
                       const tm_interior_boundary *boundary, tm_error *error)
 {
     *assembly = (tm_assembly){0};
-    assembler a = {.octree = octree,
-                   .boundary = boundary,
-                   .assembly = assembly,
-                   .inside = {.interior = interior, .boundary = boundary}};
-    tm_interior_boundary across = {0};
-    tm_status status = TM_OK;
-    if (enclosed && enclosed->count > 0)
-        status = find_across(&a, enclosed, &across, error);
+    assembler a = {
+        .octree = octree, .boundary = boundary, .assembly = assembly, .sides = parts};
+    tm_status status = start_sides(&a, part, error);
     if (status == TM_OK)
         status = assemble(&a, error);
-    assembly->core_node = a.inside.core_node;
-    assembly->core_across = a.across.core_node;
-    assembly->inner = a.inside.inner;
-    assembly->layer = a.inside.layer;
-    free(a.across.inner);
-    free(a.across.outer);
-    free(a.across.layer);
-    tm_interior_boundary_free(&across);
+    end_sides(&a);
     return status;
 }
 
 void tm_assembly_free(tm_assembly *assembly)
 {
+    for (size_t p = 0; p < assembly->parts; p++) {
+        free(assembly->core_node[p]);
+        free(assembly->inner[p]);
+    }
     free(assembly->mesh.xyz);
     free(assembly->mesh.start);
     free(assembly->mesh.item);
@@ -390,9 +436,7 @@ void tm_assembly_free(tm_assembly *assembly)
     free(assembly->layer);
     free(assembly->layer_across);
     free(assembly->inner);
-    free(assembly->across);
     free(assembly->core_node);
-    free(assembly->core_across);
     free(assembly->grid_node);
     *assembly = (tm_assembly){0};
 }

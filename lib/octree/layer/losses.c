@@ -4,7 +4,7 @@
 #include "../../base/array.h"
 #include "../../base/disjoint_sets.h"
 #include "../../geom/vector.h"
-#include "../../surface/surface_distance.h"
+#include "../../surface/measure/surface_distance.h"
 #include "../../surface/surface_tree.h"
 
 #include <math.h>
@@ -232,7 +232,7 @@ static tm_status find_lost(finder *f, tm_error *error)
     uint8_t *lost = tm_new(f->octree->leaves, sizeof *lost);
     if (!lost)
         return tm_fail_memory(error);
-    tm_interior_find_lost(&f->mesh->interior, f->octree, f->surface, lost);
+    tm_interior_find_lost(f->mesh->part, f->octree, f->surface, lost);
     const tm_status status = count_leaves(f, lost, error);
     free(lost);
     return status;

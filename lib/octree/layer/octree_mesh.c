@@ -4,29 +4,133 @@
 #include "../../base/array.h"
 #include "../../base/disjoint_sets.h"
 #include "../../surface/surface_tree.h"
+#include "../interior/region_leaves.h"
 #include "octree_mesh_parts.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Where the interior boundary's nodes are closest to the surface. Neighbours in number
- * are mostly close to each other, so that each begins where the last one ended. */
-static tm_status find_closest(tm_octree_mesh *m, const tm_surface *surface,
-                              tm_error *error)
+static int compare_keys(const void *a, const void *b)
+{
+    const uint64_t p = *(const uint64_t *)a, q = *(const uint64_t *)b;
+    return (p > q) - (p < q);
+}
+
+/* The place of the first such key of a sorted list, or TM_NONE. */
+static uint32_t find_key(const uint64_t *key, size_t count, uint64_t which)
+{
+    size_t begin = 0, end = count;
+    while (begin < end) {
+        const size_t middle = begin + (end - begin) / 2;
+        if (key[middle] < which)
+            begin = middle + 1;
+        else
+            end = middle;
+    }
+    return begin < count && key[begin] == which ? (uint32_t)begin : TM_NONE;
+}
+
+/* Where walls meet nodes between two regions go to the walls between these: all such
+ * walls are made one patch for a while. pair[s] becomes that patch, TM_NONE of a node
+ * between more regions. */
+static tm_status join_walls(const tm_interior_boundary *boundary, tm_surface *surface,
+                            uint32_t *pair, tm_error *error)
+{
+    const uint64_t past = surface->cells + 1;
+    const size_t count = surface->triangles;
+    uint64_t *key = tm_new(count, sizeof *key);
+    if (!key)
+        return tm_fail_memory(error);
+    for (size_t t = 0; t < count; t++)
+        key[t] = surface->side[t][0] * past + surface->side[t][1];
+    qsort(key, count, sizeof *key, compare_keys);
+    for (size_t t = 0; t < count; t++)
+        surface->patch[t] =
+            find_key(key, count, surface->side[t][0] * past + surface->side[t][1]);
+    tm_surface_tree_refresh(surface);
+    for (size_t s = 0; s < boundary->nodes; s++) {
+        const size_t first = boundary->around[boundary->around_start[s]];
+        const uint32_t *a = boundary->region[first];
+        const uint64_t low = a[0] < a[1] ? a[0] : a[1], high = a[0] + a[1] - low;
+        bool same = true;
+        for (size_t i = boundary->around_start[s]; i < boundary->around_start[s + 1];
+             i++) {
+            const uint32_t *b = boundary->region[boundary->around[i]];
+            same &= (a[0] == b[0] && a[1] == b[1]) || (a[0] == b[1] && a[1] == b[0]);
+        }
+        pair[s] = same ? find_key(key, count, low * past + high) : TM_NONE;
+    }
+    free(key);
+    return TM_OK;
+}
+
+static void set_patches(tm_surface *surface, const uint32_t *patch)
+{
+    memcpy(surface->patch, patch, surface->triangles * sizeof *patch);
+    tm_surface_tree_refresh(surface);
+}
+
+/* Where the interior boundary's nodes are closest to the surface, of the patches that are
+ * given; NULL: to any. Neighbours in number are mostly close to each other, so that each
+ * begins where the last one ended. */
+static void find_closest_on(tm_octree_mesh *m, const tm_surface *surface,
+                            const uint32_t *patch)
+{
+    uint32_t guess = TM_NONE;
+    for (size_t s = 0; s < m->boundary.nodes; s++) {
+        const uint32_t of = patch ? patch[s] : TM_NONE;
+        double xyz[3];
+        tm_boundary_node_point(&m->boundary, s, xyz);
+        if (of != TM_NONE && guess != TM_NONE && surface->patch[guess] != of)
+            guess = TM_NONE;
+        m->at[s].triangle = guess;
+        tm_surface_closest(surface, xyz, of, &m->at[s]);
+        guess = m->at[s].triangle;
+    }
+}
+
+static tm_status find_closest(tm_octree_mesh *m, tm_surface *surface, tm_error *error)
 {
     m->at = tm_new(m->boundary.nodes, sizeof *m->at);
     m->off_surface = calloc(m->boundary.nodes + 1, sizeof *m->off_surface);
     if (!m->at || !m->off_surface)
         return tm_fail_memory(error);
-    uint32_t guess = TM_NONE;
-    for (size_t s = 0; s < m->boundary.nodes; s++) {
-        double xyz[3];
-        tm_boundary_node_point(&m->boundary, s, xyz);
-        m->at[s].triangle = guess;
-        tm_surface_closest(surface, xyz, TM_NONE, &m->at[s]);
-        guess = m->at[s].triangle;
+    if (!surface->walls) {
+        find_closest_on(m, surface, NULL);
+        return TM_OK;
     }
-    return TM_OK;
+    uint32_t *pair = tm_new(m->boundary.nodes, sizeof *pair);
+    uint32_t *patch = tm_new(surface->triangles, sizeof *patch);
+    const bool ok = pair && patch;
+    tm_status status = TM_OK;
+    if (ok) {
+        memcpy(patch, surface->patch, surface->triangles * sizeof *patch);
+        status = join_walls(&m->boundary, surface, pair, error);
+    } else {
+        status = tm_fail_memory(error);
+    }
+    if (ok && status == TM_OK) {
+        find_closest_on(m, surface, pair);
+        set_patches(surface, patch);
+    }
+    free(pair);
+    free(patch);
+    return status;
+}
+
+/* The first face with the edge from corner i of a face on. */
+static size_t first_at_edge(const tm_interior_boundary *boundary, size_t f, unsigned i)
+{
+    const unsigned k = tm_boundary_face_corners(boundary, f);
+    const uint32_t s = boundary->face[f][i], t = boundary->face[f][(i + 1) % k];
+    size_t first = f;
+    for (size_t j = boundary->around_start[s]; j < boundary->around_start[s + 1]; j++) {
+        const size_t g = boundary->around[j];
+        for (unsigned c = 0; c < tm_boundary_face_corners(boundary, g); c++)
+            if (boundary->face[g][c] == t && g < first)
+                first = g;
+    }
+    return first;
 }
 
 /* The pieces of the boundary, and its Euler number. */
@@ -38,23 +142,26 @@ static tm_status measure_boundary(tm_octree_mesh *m, tm_error *error)
         return tm_fail_memory(error);
     for (size_t s = 0; s < boundary->nodes; s++)
         parent[s] = (uint32_t)s;
-    int64_t half_edges = 0;
+    int64_t edges = 0, half_edges = 0;
     for (size_t f = 0; f < boundary->faces; f++) {
         const unsigned k = tm_boundary_face_corners(boundary, f);
         half_edges += k;
+        for (unsigned i = 0; boundary->region && i < k; i++)
+            edges += first_at_edge(boundary, f, i) == f;
         for (unsigned i = 1; i < k; i++)
             tm_set_unite(parent, boundary->face[f][0], boundary->face[f][i]);
     }
     for (size_t s = 0; s < boundary->nodes; s++)
         m->report.components += tm_set_root(parent, (uint32_t)s) == s;
-    m->report.euler =
-        (int64_t)boundary->nodes - half_edges / 2 + (int64_t)boundary->faces;
+    if (!boundary->region) /* each has two faces */
+        edges = half_edges / 2;
+    m->report.euler = (int64_t)boundary->nodes - edges + (int64_t)boundary->faces;
     free(parent);
     return TM_OK;
 }
 
 static tm_status find_boundary_once(tm_octree_mesh *m, const tm_octree *octree,
-                                    const tm_surface *surface, tm_error *error)
+                                    tm_surface *surface, tm_error *error)
 {
     tm_interior_boundary_free(&m->boundary);
     free(m->at);
@@ -63,7 +170,7 @@ static tm_status find_boundary_once(tm_octree_mesh *m, const tm_octree *octree,
     m->off_surface = NULL;
     m->report.components = 0;
     tm_status status =
-        tm_interior_boundary_find(&m->boundary, octree, &m->interior, error);
+        tm_interior_boundary_of_parts(&m->boundary, octree, m->part, m->parts, error);
     if (status == TM_OK)
         status = measure_boundary(m, error);
     if (status == TM_OK)
@@ -73,20 +180,25 @@ static tm_status find_boundary_once(tm_octree_mesh *m, const tm_octree *octree,
 
 /* The interior boundary, without pieces that the surface does not have. */
 static tm_status find_boundary(tm_octree_mesh *m, const tm_octree *octree,
-                               const tm_surface *surface, tm_error *error)
+                               tm_surface *surface, tm_error *error)
 {
     bool changed = false;
-    tm_status status = find_boundary_once(m, octree, surface, error);
+    tm_status status = TM_OK;
+    if (surface->walls) {
+        status = tm_interior_divide(&m->part, &m->parts, octree, surface->cells, error);
+        return status == TM_OK ? find_boundary_once(m, octree, surface, error) : status;
+    }
+    status = find_boundary_once(m, octree, surface, error);
     if (status == TM_OK && m->report.components > surface->components)
-        status = tm_spurious_components_remove(&m->interior, octree, &m->boundary,
-                                               surface, m->at, &changed, error);
+        status = tm_spurious_components_remove(m->part, octree, &m->boundary, surface,
+                                               m->at, &changed, error);
     if (status == TM_OK && changed)
         status = find_boundary_once(m, octree, surface, error);
     if (status != TM_OK || !surface->regions)
         return status;
-    status =
-        tm_interior_find_enclosed(&m->enclosed, &m->interior, octree, surface, error);
-    if (status == TM_OK && m->enclosed.count > 0)
+    status = tm_interior_find_enclosed(&m->part[1], m->part, octree, surface, error);
+    m->parts += m->part[1].chosen != NULL;
+    if (status == TM_OK && m->parts > 1)
         status = find_boundary_once(m, octree, surface, error);
     return status;
 }
@@ -138,9 +250,9 @@ static void elect_shells(const tm_octree_mesh *m, const tm_surface *surface,
         const uint32_t s = m->boundary.face[f][0];
         const uint32_t shell = surface->shell[m->at[s].triangle];
         if (volume[shell] > 0)
-            vote(&at[tm_set_root(parent, a->inner[s])], shell);
-        else if (a->across && a->across[s] != TM_NONE)
-            vote(&at[tm_set_root(parent, a->across[s])], shell);
+            vote(&at[tm_set_root(parent, a->inner[0][s])], shell);
+        else if (a->parts > 1 && a->inner[1][s] != TM_NONE)
+            vote(&at[tm_set_root(parent, a->inner[1][s])], shell);
     }
 }
 
@@ -151,15 +263,11 @@ static void number_regions(tm_octree_mesh *m, const tm_octree *octree,
 {
     const tm_assembly *a = &m->assembly;
     for (size_t l = 0; l < octree->leaves; l++) {
-        const uint32_t *core_node = NULL;
-        if (m->interior.chosen[l])
-            core_node = a->core_node;
-        else if (m->enclosed.count > 0 && m->enclosed.chosen[l])
-            core_node = a->core_across;
-        if (!core_node)
+        const size_t p = tm_interior_part_of(m->part, m->parts, l);
+        if (p == m->parts)
             continue;
         const uint32_t shell =
-            at[tm_set_root(parent, core_node[octree->node[l][0]])].shell;
+            at[tm_set_root(parent, a->core_node[p][octree->node[l][0]])].shell;
         m->region[l] = shell + 1;
         met[shell] = true;
     }
@@ -188,6 +296,26 @@ static tm_status find_regions(tm_octree_mesh *m, const tm_octree *octree,
     return done ? TM_OK : tm_fail_memory(error);
 }
 
+/* The same where walls meet: leaves know their regions. */
+static tm_status count_labels(tm_octree_mesh *m, const tm_octree *octree,
+                              const tm_surface *surface, tm_error *error)
+{
+    bool *met = calloc(surface->cells + 1, sizeof *met);
+    m->region = tm_new(octree->leaves, sizeof *m->region);
+    if (!met || !m->region) {
+        free(met);
+        return tm_fail_memory(error);
+    }
+    memcpy(m->region, m->part->label, octree->leaves * sizeof *m->region);
+    for (size_t l = 0; l < octree->leaves; l++)
+        met[m->region[l]] = true;
+    for (size_t r = 1; r <= surface->cells; r++)
+        m->report.regions += met[r];
+    m->report.regions_lost = surface->cells - m->report.regions;
+    free(met);
+    return TM_OK;
+}
+
 /* The regions that leaves are in, where there are several, or the file numbers them; and
  * how many are not there: shells in others, or around such, but for holes. */
 static tm_status count_regions(tm_octree_mesh *m, const tm_octree *octree,
@@ -201,9 +329,9 @@ static tm_status count_regions(tm_octree_mesh *m, const tm_octree *octree,
     for (size_t i = 0; i < surface->components; i++)
         within += volume[i] < 0;
     tm_status status = TM_OK;
-    if (m->enclosed.count > 0 || surface->region)
+    if (m->parts > 1 || surface->region)
         status = find_regions(m, octree, surface, volume, error);
-    if (m->enclosed.count > 0)
+    if (m->parts > 1)
         within = surface->components - m->report.regions;
     if (within > surface->holes && !surface->by_winding)
         m->report.regions_lost = within - surface->holes;
@@ -216,7 +344,7 @@ static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *su
 {
     tm_octree_mesh_report *r = &m->report;
     tm_status status = TM_OK;
-    if (m->interior.count == 0)
+    if (m->part->count == 0)
         status = tm_fail(error, TM_ERROR_INPUT,
                          "no leaf is inside the surface: it needs a finer level");
     tm_progress_stage(progress, "finding the interior boundary");
@@ -227,15 +355,17 @@ static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *su
         status = tm_feature_find(&m->feature, &m->boundary, surface, m->at, error);
     tm_progress_stage(progress, "assembling elements");
     if (status == TM_OK)
-        status = tm_assemble(&m->assembly, octree, &m->interior, &m->enclosed,
-                             &m->boundary, error);
+        status =
+            tm_assemble(&m->assembly, octree, m->part, m->parts, &m->boundary, error);
     tm_progress_stage(progress, "projecting the layer");
     if (status == TM_OK)
         status = tm_project_layer(&m->assembly, &m->boundary, &m->feature, surface, m->at,
                                   error);
     if (status == TM_OK)
         status = tm_untangle_layer(m, octree, surface, progress, error);
-    if (status == TM_OK && surface->regions)
+    if (status == TM_OK && surface->walls)
+        status = count_labels(m, octree, surface, error);
+    else if (status == TM_OK && surface->regions)
         status = count_regions(m, octree, surface, error);
     if (status != TM_OK)
         return status;
@@ -252,12 +382,13 @@ tm_status tm_octree_mesh_make(tm_octree_mesh *mesh, const tm_octree *octree,
                               tm_error *error)
 {
     tm_interior interior;
+    *mesh = (tm_octree_mesh){0};
     tm_progress_stage(progress, "choosing octants");
     tm_status status = tm_interior_choose(&interior, octree, surface, error);
-    *mesh = (tm_octree_mesh){.interior = interior};
     if (status == TM_OK)
         status =
             tm_octree_mesh_make_of(mesh, octree, &interior, surface, progress, error);
+    tm_interior_free(&interior);
     return status;
 }
 
@@ -265,7 +396,12 @@ tm_status tm_octree_mesh_make_of(tm_octree_mesh *mesh, const tm_octree *octree,
                                  tm_interior *interior, tm_surface *surface,
                                  const tm_progress *progress, tm_error *error)
 {
-    *mesh = (tm_octree_mesh){.interior = *interior};
+    enum { PARTS = 2 };
+    *mesh = (tm_octree_mesh){.part = calloc(PARTS, sizeof *mesh->part)};
+    if (!mesh->part)
+        return tm_fail_memory(error);
+    mesh->parts = 1;
+    *mesh->part = *interior;
     *interior = (tm_interior){0};
     const size_t bytes = surface->triangles * sizeof *surface->patch;
     uint32_t *patch = tm_new(surface->triangles, sizeof *patch);
@@ -281,8 +417,9 @@ tm_status tm_octree_mesh_make_of(tm_octree_mesh *mesh, const tm_octree *octree,
 
 void tm_octree_mesh_free(tm_octree_mesh *mesh)
 {
-    tm_interior_free(&mesh->interior);
-    tm_interior_free(&mesh->enclosed);
+    for (size_t p = 0; p < mesh->parts; p++)
+        tm_interior_free(&mesh->part[p]);
+    free(mesh->part);
     tm_interior_boundary_free(&mesh->boundary);
     tm_feature_free(&mesh->feature);
     tm_assembly_free(&mesh->assembly);

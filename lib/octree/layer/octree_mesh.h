@@ -7,7 +7,7 @@
 #include "../../base/extern_c.h"
 #include "../../base/progress.h"
 #include "assemble.h"
-#include "feature.h"
+#include "../feature/feature.h"
 
 TM_EXTERN_C_BEGIN
 
@@ -31,8 +31,11 @@ typedef struct tm_octree_mesh_report {
 } tm_octree_mesh_report;
 
 typedef struct tm_octree_mesh {
-    tm_interior interior;
-    tm_interior enclosed; /* the leaves of regions inside of others; count 0: none */
+    /* The leaves of the mesh, in parts: those of a part that touch are of one region. The
+       second one are the leaves of regions that the first ones enclose, if there are any;
+       where regions touch, see tm_interior_divide(). */
+    size_t parts;
+    tm_interior *part;
     tm_interior_boundary boundary;
     tm_feature feature;
     tm_assembly assembly;

@@ -4,9 +4,9 @@
 #ifndef TM_LAYER_OCTREE_MESH_PARTS_H
 #define TM_LAYER_OCTREE_MESH_PARTS_H
 
-#include "interior_boundary.h"
+#include "../interior/interior_boundary.h"
 #include "assemble.h"
-#include "feature.h"
+#include "../feature/feature.h"
 #include "octree_mesh.h"
 
 /* spurious_components.c: pieces of the mesh, and hollows in it, that the surface does not
@@ -46,7 +46,7 @@ tm_status tm_project_layer(tm_assembly *assembly, const tm_interior_boundary *bo
  * pyramid with three of them can be flat.) Middles are at the means of their leaf's
  * corners. TM_ERROR_SYSTEM where memory is out. O(leaves). */
 tm_status tm_lattice_points(const tm_assembly *assembly, const tm_octree *octree,
-                            const tm_interior *interior, const tm_interior *enclosed,
+                            const tm_interior *part, size_t parts,
                             const tm_interior_boundary *boundary, double (*xyz)[3],
                             tm_error *error);
 

@@ -131,9 +131,9 @@ static tm_status find_moving(const fitter *projection, zone *z, tm_error *error)
     for (size_t n = 0; n < mesh->nodes; n++)
         z->order[n] = TM_NONE;
     for (size_t s = 0; s < projection->boundary->nodes; s++) {
-        z->order[a->inner[s]] = 0;
-        if (a->across && a->across[s] != TM_NONE)
-            z->order[a->across[s]] = 0;
+        for (size_t p = 0; p < a->parts; p++)
+            if (a->inner[p][s] != TM_NONE)
+                z->order[a->inner[p][s]] = 0;
     }
     for (size_t e = 0; e < mesh->elements; e++)
         if (has_moving(z, mesh, e) || mesh->start[e + 1] - mesh->start[e] != HEXAHEDRON)
@@ -239,9 +239,9 @@ static tm_status find_bias(const fitter *projection, zone *z, tm_error *error)
             z->bias[n][j] = share * (at[j] - z->bias[n][j]);
     }
     for (size_t s = 0; s < projection->boundary->nodes; s++) {
-        memset(z->bias[z->order[a->inner[s]]], 0, sizeof *z->bias);
-        if (a->across && a->across[s] != TM_NONE)
-            memset(z->bias[z->order[a->across[s]]], 0, sizeof *z->bias);
+        for (size_t p = 0; p < a->parts; p++)
+            if (a->inner[p][s] != TM_NONE)
+                memset(z->bias[z->order[a->inner[p][s]]], 0, sizeof *z->bias);
     }
     return TM_OK;
 }

@@ -138,8 +138,8 @@ static tm_status hold_back(tm_octree_mesh *m, const tm_octree *octree, tm_error 
     tm_status status =
         base && r.steps && r.changed && r.to_change ? TM_OK : tm_fail_memory(error);
     if (status == TM_OK)
-        status = tm_lattice_points(&m->assembly, octree, &m->interior, &m->enclosed,
-                                   &m->boundary, base, error);
+        status = tm_lattice_points(&m->assembly, octree, m->part, m->parts, &m->boundary,
+                                   base, error);
     if (status == TM_OK)
         retreat_all(m, &r);
     free(base);

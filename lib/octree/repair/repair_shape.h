@@ -6,7 +6,7 @@
 
 #include "../../base/extern_c.h"
 #include "../../surface/surface.h"
-#include "../../surface/surface_distance.h"
+#include "../../surface/measure/surface_distance.h"
 #include "repair_state.h"
 
 TM_EXTERN_C_BEGIN

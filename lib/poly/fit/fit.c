@@ -10,7 +10,7 @@
 #include <string.h>
 
 typedef struct {
-    tm_fit_mesh m;
+    tm_poly_centroids m;
     double (*xyz)[3];
     const bool *fixed;
     size_t *start; /* [nodes + 1]: facets of node v are */
@@ -19,15 +19,14 @@ typedef struct {
     uint32_t *stamp; /* [facets]: the node that has it in `around` */
     /* Around one node: its facets, their cells, all facets of these. */
     uint32_t *cell, *around;
-    tm_fit_facet *old_facet;
-    tm_fit_cell *old_cell;
+    tm_facet_centroid *old_facet;
+    tm_cell_centroid *old_cell;
     size_t cells, arounds, cell_room, around_room, old_facet_room, old_cell_room;
 } fitter;
 
 static void free_fitter(fitter *w)
 {
-    free(w->m.facet);
-    free(w->m.cell);
+    tm_poly_centroids_free(&w->m);
     free(w->start);
     free(w->facet);
     free(w->tried);
@@ -36,20 +35,6 @@ static void free_fitter(fitter *w)
     free(w->around);
     free(w->old_facet);
     free(w->old_cell);
-}
-
-static bool measure_all(tm_fit_mesh *m, const tm_poly_arrays *mesh)
-{
-    m->mesh = mesh;
-    m->facet = tm_new(mesh->facets, sizeof *m->facet);
-    m->cell = tm_new(mesh->cells, sizeof *m->cell);
-    if (!m->facet || !m->cell)
-        return false;
-    for (size_t f = 0; f < mesh->facets; f++)
-        tm_fit_measure_facet(m, f);
-    for (size_t c = 0; c < mesh->cells; c++)
-        tm_fit_measure_cell(m, c);
-    return true;
 }
 
 static bool list_facets_of_nodes(fitter *w)
@@ -152,9 +137,11 @@ static bool gather(fitter *w, uint32_t v)
     for (size_t i = 0; i < w->arounds; i++)
         w->stamp[w->around[i]] = TM_NONE;
     const size_t facets = w->start[v + 1] - w->start[v];
-    tm_fit_facet *old = tm_grow(w->old_facet, &w->old_facet_room, facets, sizeof *old);
+    tm_facet_centroid *old =
+        tm_grow(w->old_facet, &w->old_facet_room, facets, sizeof *old);
     w->old_facet = old ? old : w->old_facet;
-    tm_fit_cell *cell = tm_grow(w->old_cell, &w->old_cell_room, w->cells, sizeof *cell);
+    tm_cell_centroid *cell =
+        tm_grow(w->old_cell, &w->old_cell_room, w->cells, sizeof *cell);
     w->old_cell = cell ? cell : w->old_cell;
     return done && old && cell;
 }
@@ -173,15 +160,15 @@ static void put(fitter *w, uint32_t v, const double at[3])
 {
     memcpy(w->xyz[v], at, sizeof w->xyz[v]);
     for (size_t i = w->start[v]; i < w->start[v + 1]; i++)
-        tm_fit_measure_facet(&w->m, w->facet[i]);
+        tm_facet_centroid_find(&w->m, w->facet[i]);
     for (size_t i = 0; i < w->cells; i++)
-        tm_fit_measure_cell(&w->m, w->cell[i]);
+        tm_cell_centroid_find(&w->m, w->cell[i]);
 }
 
 static void save(const fitter *w, uint32_t v)
 {
     for (size_t i = w->start[v]; i < w->start[v + 1]; i++)
-        w->old_facet[i - w->start[v]] = w->m.facet[w->facet[i]];
+        w->old_facet[i - w->start[v]] = w->m.face[w->facet[i]];
     for (size_t i = 0; i < w->cells; i++)
         w->old_cell[i] = w->m.cell[w->cell[i]];
 }
@@ -190,7 +177,7 @@ static void restore(fitter *w, uint32_t v, const double at[3])
 {
     memcpy(w->xyz[v], at, sizeof w->xyz[v]);
     for (size_t i = w->start[v]; i < w->start[v + 1]; i++)
-        w->m.facet[w->facet[i]] = w->old_facet[i - w->start[v]];
+        w->m.face[w->facet[i]] = w->old_facet[i - w->start[v]];
     for (size_t i = 0; i < w->cells; i++)
         w->m.cell[w->cell[i]] = w->old_cell[i];
 }
@@ -291,13 +278,15 @@ tm_status tm_polyhedra_fit(const tm_poly_arrays *mesh, double (*xyz)[3],
 {
     fitter w = {.xyz = xyz, .fixed = fixed};
     *report = (tm_fit_report){0};
-    bool done = measure_all(&w.m, mesh) && list_facets_of_nodes(&w);
-    if (done) {
+    tm_status status = tm_poly_centroids_find(&w.m, mesh, error);
+    if (status == TM_OK && !list_facets_of_nodes(&w))
+        status = tm_fail_memory(error);
+    if (status == TM_OK) {
         find_faults(&w, report->before);
-        done = fit(&w, report);
+        status = fit(&w, report) ? TM_OK : tm_fail_memory(error);
     }
     free_fitter(&w);
-    return done ? TM_OK : tm_fail_memory(error);
+    return status;
 }
 
 size_t tm_fit_faults_left(const tm_fit_report *report)

@@ -3,7 +3,7 @@
  */
 #include "../../base/array.h"
 #include "../../geom/vector.h"
-#include "../../surface/surface_distance.h"
+#include "../../surface/measure/surface_distance.h"
 #include "../../surface/surface_parts.h"
 #include "../../surface/surface_tree.h"
 #include "envelope_parts.h"

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What checkMesh looks at with -allGeometry besides. */
+#ifndef TM_EXAMINE_POLY_ALL_GEOMETRY_H
+#define TM_EXAMINE_POLY_ALL_GEOMETRY_H
+
+#include "poly_centroids.h"
+#include "poly_finite_volume.h"
+
+/* Adds unseen, no_fan, weights, volume ratios, determinants and concave cells.
+ * O(corners²) for a facet that is no fan, O(facets²) for a cell that is convex. */
+void tm_poly_all_geometry(const tm_poly_centroids *m, tm_poly_finite_volume *out);
+
+/* One by one; all but the last are to be above a limit, 0 where no other is named.
+ *
+ * How far the nearer centroid is from the plane of an inner facet, by how far both are:
+ * TM_FV_WEIGHT. The smaller volume beside it over the larger one: TM_FV_VOLUME_RATIO. */
+double tm_facet_weight(const tm_poly_centroids *m, size_t f);
+double tm_facet_volume_ratio(const tm_poly_centroids *m, size_t f);
+
+/* The least of the volumes of tetrahedra, by their scale, that triangles of a facet make
+ * with the centroid of its first (s = 0) or second cell: of the triangles around the
+ * facet's centroid; and of those around the corner where the least for both is largest.
+ */
+double tm_facet_sight(const tm_poly_centroids *m, size_t f, int s);
+double tm_facet_fan(const tm_poly_centroids *m, size_t f, double enough);
+
+/* Of the sum of n n^T over the inner facets of a cell, where n is their area by the mean
+ * of these areas, over that of a cube: TM_FV_DETERMINANT. */
+double tm_cell_determinant(const tm_poly_centroids *m, size_t c);
+
+/* The sine of the angle at which the centroid of facet `other` of cell c is beyond the
+ * plane of its facet f: to be below -TM_FV_PLANE, so that a cell with facets around a
+ * hanging node in one plane is concave to checkMesh. */
+double tm_facet_beyond(const tm_poly_centroids *m, size_t f, size_t other, size_t c);
+
+#endif

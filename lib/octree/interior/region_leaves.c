@@ -1,0 +1,410 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "region_leaves.h"
+#include "region_sets.h"
+
+#include "../../base/array.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { OCTANTS = 8 };
+
+/* So many rounds look after all that is not as in the surface, so many more after masks;
+ * then leaves only go to regions with smaller numbers, which ends. */
+enum { STRICT_ROUNDS = 12, FREE_ROUNDS = 24 };
+
+/* Rounds that look after all end before where so many did no good. */
+enum { VAIN_ROUNDS = 2 };
+
+/* How often a leaf may change where that does neither good nor harm. */
+enum { MOST_CHANGES = 3 };
+
+/* How many of the labels of the octants around a node have a bad mask. */
+static unsigned count_bad(const uint32_t octant[OCTANTS])
+{
+    unsigned bad = 0, done = 0;
+    for (unsigned o = 0; o < OCTANTS; o++) {
+        unsigned mask = 0;
+        if (done >> o & 1)
+            continue;
+        for (unsigned i = o; i < OCTANTS; i++)
+            mask |= (unsigned)(octant[i] == octant[o]) << i;
+        done |= mask;
+        bad += !tm_octant_mask_is_good((tm_octant_mask)mask);
+    }
+    return bad;
+}
+
+/* Gives the octants of a point of a leaf that label. */
+static void set_octants(uint32_t octant[OCTANTS], int point, uint32_t label)
+{
+    for (unsigned o = 0; o < OCTANTS; o++)
+        if (tm_point_octants[point] >> o & 1)
+            octant[o] = label;
+}
+
+static void put(tm_interior *interior, const tm_octree *octree, size_t l, uint32_t label)
+{
+    interior->label[l] = label;
+    for (int p = 0; p < TM_LEAF_NODES; p++)
+        if (octree->node[l][p] != TM_NONE)
+            set_octants(interior->octant[octree->node[l][p]], p, label);
+}
+
+static const uint8_t all_octants[OCTANTS] = {0, 1, 2, 3, 4, 5, 6, 7};
+
+/* A leaf at a node where something is wrong. */
+typedef struct {
+    uint32_t node, leaf;
+} contact;
+
+typedef struct {
+    const tm_octree *octree;
+    const tm_surface *surface;
+    tm_interior *interior;
+    tm_walls walls;
+    uint32_t (*leaf)[OCTANTS]; /* [nodes]: those around it */
+    bool strict;      /* not only masks count, but what the surface does not have */
+    bool *bad;        /* [nodes] */
+    uint8_t *changes; /* [leaves]: how often it was changed, at most MOST_CHANGES */
+    size_t wrong;     /* what is, at the beginning of a round */
+    size_t contacts, room;
+    contact *contact;
+} cleaner;
+
+static int compare_contacts(const void *a, const void *b)
+{
+    const contact *ca = a, *cb = b;
+    if (ca->node != cb->node)
+        return ca->node < cb->node ? -1 : 1;
+    return (ca->leaf > cb->leaf) - (ca->leaf < cb->leaf);
+}
+
+/* The set of some of the octants' labels, and how many there are. */
+static uint64_t set_of(const uint32_t *octant, const uint8_t *which, unsigned count,
+                       unsigned *labels)
+{
+    uint64_t set = 0;
+    *labels = 0;
+    for (unsigned i = 0; i < count; i++) {
+        unsigned k = 0;
+        while (k < i && octant[which[k]] != octant[which[i]])
+            k++;
+        if (k < i)
+            continue;
+        set ^= tm_region_number(octant[which[i]]);
+        ++*labels;
+    }
+    return set;
+}
+
+/* How many of the six edges from a node, and whether the node, bring together regions
+ * that the surface does not. */
+static unsigned count_strange(const cleaner *c, const uint32_t octant[OCTANTS])
+{
+    static const uint8_t around[6][4] = {{0, 2, 4, 6}, {1, 3, 5, 7}, {0, 1, 4, 5},
+                                         {2, 3, 6, 7}, {0, 1, 2, 3}, {4, 5, 6, 7}};
+    unsigned labels, strange = 0;
+    uint64_t set = set_of(octant, all_octants, OCTANTS, &labels);
+    if (labels == 1)
+        return 0;
+    strange += !tm_walls_have(&c->walls, set);
+    for (int e = 0; labels > 1 && e < 6; e++) {
+        unsigned few;
+        set = set_of(octant, around[e], 4, &few);
+        strange += few > 1 && !tm_walls_have(&c->walls, set);
+    }
+    return strange;
+}
+
+static unsigned node_badness(const cleaner *c, uint32_t node)
+{
+    const unsigned mask_weight = 6, strange_weight = 2; /* a flat face is 1 */
+    const uint32_t *octant = c->interior->octant[node];
+    return mask_weight * count_bad(octant) +
+           (c->strict ? strange_weight * count_strange(c, octant) : 0);
+}
+
+/* Whether walls meet at the edge of face f of a leaf that is across axis e, at its low or
+ * high end. */
+static bool is_edge_of_walls(const cleaner *c, size_t l, unsigned f, unsigned e,
+                             unsigned high)
+{
+    const unsigned corner = f % 2 << f / 2 | high << e, own = 7 - corner;
+    const uint32_t *octant = c->interior->octant[c->octree->node[l][corner]];
+    const uint8_t which[4] = {(uint8_t)own, (uint8_t)(own ^ 1u << f / 2),
+                              (uint8_t)(own ^ 1u << e),
+                              (uint8_t)(own ^ 1u << f / 2 ^ 1u << e)};
+    unsigned labels;
+    set_of(octant, which, 4, &labels);
+    return labels > 2;
+}
+
+/* Whether walls meet at the node that is corner i of face f of a leaf. */
+static bool is_node_of_walls(const cleaner *c, size_t l, unsigned f, unsigned i)
+{
+    const unsigned corner =
+        f % 2 << f / 2 | (i & 1) << (f / 2 + 1) % 3 | i >> 1 << (f / 2 + 2) % 3;
+    unsigned labels;
+    set_of(c->interior->octant[c->octree->node[l][corner]], all_octants, OCTANTS,
+           &labels);
+    return labels > 2;
+}
+
+/* The faces of a leaf, as parts of walls, that would be flat or folded: walls meet along
+ * three edges of them, or at corners that no such edge joins. */
+static unsigned count_flat(const cleaner *c, size_t l)
+{
+    unsigned flat = 0;
+    for (unsigned f = 0; f < 6; f++) {
+        const unsigned corner = f % 2 << f / 2, own = 7 - corner;
+        const uint32_t *octant = c->interior->octant[c->octree->node[l][corner]];
+        unsigned edges = 0, corners = 0;
+        if (octant[own] == octant[own ^ 1u << f / 2])
+            continue;
+        for (unsigned i = 1; i < 3; i++)
+            for (unsigned high = 0; high < 2; high++)
+                edges += is_edge_of_walls(c, l, f, (f / 2 + i) % 3, high);
+        for (unsigned i = 0; i < 4; i++)
+            corners += is_node_of_walls(c, l, f, i);
+        flat += edges > 2 || (edges < 2 && corners > edges + 1);
+    }
+    return flat;
+}
+
+/* What is wrong at a leaf's nodes, and at the leaves around these. */
+static unsigned badness(const cleaner *c, size_t l)
+{
+    enum { MOST = TM_LEAF_NODES * OCTANTS };
+    uint32_t met[MOST];
+    unsigned count = 0, bad = 0;
+    for (int p = 0; p < TM_LEAF_NODES; p++) {
+        const uint32_t node = c->octree->node[l][p];
+        if (node == TM_NONE)
+            continue;
+        bad += node_badness(c, node);
+        for (unsigned o = 0; c->strict && o < OCTANTS; o++) {
+            const uint32_t leaf = c->leaf[node][o];
+            unsigned k = 0;
+            while (k < count && met[k] != leaf)
+                k++;
+            if (leaf == TM_NONE || k < count)
+                continue;
+            met[count++] = leaf;
+            bad += count_flat(c, leaf);
+        }
+    }
+    return bad;
+}
+
+/* Lists the leaves at bad nodes, node by node. */
+static tm_status find_contacts(cleaner *c, tm_error *error)
+{
+    c->contacts = c->wrong = 0;
+    for (uint32_t n = 0; n < c->octree->nodes; n++) {
+        const unsigned bad = node_badness(c, n);
+        c->bad[n] = bad > 0;
+        c->wrong += bad;
+    }
+    for (size_t l = 0; c->strict && l < c->octree->leaves; l++) {
+        const unsigned flat = c->octree->leaf[l].crossed ? count_flat(c, l) : 0;
+        for (int p = 0; flat > 0 && p < TM_LEAF_EDGE; p++)
+            c->bad[c->octree->node[l][p]] = true;
+        c->wrong += flat;
+    }
+    for (size_t l = 0; l < c->octree->leaves; l++)
+        for (int p = 0; p < TM_LEAF_NODES; p++) {
+            const uint32_t node = c->octree->node[l][p];
+            if (node == TM_NONE || !c->bad[node])
+                continue;
+            void *more =
+                tm_grow(c->contact, &c->room, c->contacts + 1, sizeof *c->contact);
+            if (!more)
+                return tm_fail_memory(error);
+            c->contact = more;
+            c->contact[c->contacts++] = (contact){node, (uint32_t)l};
+        }
+    if (c->contacts > 0)
+        qsort(c->contact, c->contacts, sizeof *c->contact, compare_contacts);
+    return TM_OK;
+}
+
+/* How bad it would be if a leaf had that label. */
+static unsigned badness_with(const cleaner *c, size_t l, uint32_t label)
+{
+    const uint32_t now = c->interior->label[l];
+    put(c->interior, c->octree, l, label);
+    const unsigned bad = badness(c, l);
+    put(c->interior, c->octree, l, now);
+    return bad;
+}
+
+/* The labels of the octants around a node, each once. */
+typedef struct {
+    unsigned count;
+    uint32_t label[OCTANTS];
+} label_list;
+
+static label_list labels_around(const uint32_t octant[OCTANTS])
+{
+    label_list list = {0};
+    for (unsigned o = 0; o < OCTANTS; o++) {
+        unsigned k = 0;
+        while (k < list.count && list.label[k] != octant[o])
+            k++;
+        if (k == list.count)
+            list.label[list.count++] = octant[o];
+    }
+    return list;
+}
+
+/* A leaf that gets another label, and how much worse it is then; a fault less is worth a
+ * side of a leaf. */
+typedef struct {
+    size_t leaf; /* TM_NONE: none */
+    uint32_t label;
+    int more;
+    double cost;
+} change;
+
+/* The best change of one of the leaves contact[0 … count) around a node that makes it
+ * worse by no more than `most`: what does most good, and of that the leaf closest to the
+ * surface. */
+static change find_change(const cleaner *c, const contact *around, size_t count,
+                          const label_list *to, int most, bool only_smaller)
+{
+    change best = {.leaf = TM_NONE, .cost = INFINITY};
+    for (size_t i = 0; i < count; i++) {
+        const size_t l = around[i].leaf;
+        const double depth = tm_leaf_depth(c->octree, c->surface, l);
+        const int before = (int)badness(c, l);
+        const uint32_t now = c->interior->label[l];
+        for (unsigned k = 0; k < to->count; k++) {
+            const uint32_t label = to->label[k];
+            if (label == now || (only_smaller && label > now))
+                continue;
+            const int more = (int)badness_with(c, l, label) - before;
+            const bool idle = more == 0 && most == 0;
+            if (more <= most && depth + more < best.cost &&
+                !(idle && c->changes[l] == MOST_CHANGES))
+                best = (change){l, label, more, depth + more};
+        }
+    }
+    return best;
+}
+
+static void make_change(cleaner *c, const change *made)
+{
+    if (made->label == 0)
+        c->interior->removed++;
+    else
+        c->interior->filled++;
+    if (c->changes[made->leaf] < MOST_CHANGES)
+        c->changes[made->leaf]++;
+    put(c->interior, c->octree, made->leaf, made->label);
+}
+
+/* Gives one of the leaves around a node one of the other labels there. Where all masks
+ * are good that must do no harm. */
+static bool mend(cleaner *c, const contact *around, size_t count, bool only_smaller)
+{
+    const uint32_t *octant = c->interior->octant[around->node];
+    const bool must = count_bad(octant) > 0;
+    const label_list to = labels_around(octant);
+    const change best =
+        find_change(c, around, count, &to, must ? INT_MAX : 0, only_smaller);
+    if (best.leaf != TM_NONE)
+        make_change(c, &best);
+    return best.leaf != TM_NONE;
+}
+
+/* Whether something is wrong at a node still: also with the leaves around it. */
+static bool is_bad(const cleaner *c, const contact *around, size_t count)
+{
+    if (node_badness(c, around->node) > 0)
+        return true;
+    for (size_t i = 0; c->strict && i < count; i++)
+        if (count_flat(c, around[i].leaf) > 0)
+            return true;
+    return false;
+}
+
+static tm_status clean(cleaner *c, tm_error *error)
+{
+    size_t least = SIZE_MAX;
+    for (int round = 0, vain = 0;; round++) {
+        bool any = false;
+        c->strict &= round < STRICT_ROUNDS && vain < VAIN_ROUNDS;
+        const tm_status status = find_contacts(c, error);
+        vain = c->wrong < least ? 0 : vain + 1;
+        least = c->wrong < least ? c->wrong : least;
+        if (status != TM_OK || (c->contacts == 0 && !c->strict))
+            return status;
+        for (size_t i = 0, next; i < c->contacts; i = next) {
+            const uint32_t node = c->contact[i].node;
+            for (next = i; next < c->contacts && c->contact[next].node == node;)
+                next++;
+            if (is_bad(c, &c->contact[i], next - i))
+                any |= mend(c, &c->contact[i], next - i,
+                            round >= STRICT_ROUNDS + FREE_ROUNDS);
+        }
+        c->strict &= any;
+    }
+}
+
+/* Fills `leaf` of the cleaner. */
+static void find_leaves(cleaner *c)
+{
+    const tm_octree *octree = c->octree;
+    memset(c->leaf, 0xff, octree->nodes * sizeof *c->leaf);
+    for (size_t l = 0; l < octree->leaves; l++)
+        for (int p = 0; p < TM_LEAF_NODES; p++)
+            if (octree->node[l][p] != TM_NONE)
+                set_octants(c->leaf[octree->node[l][p]], p, (uint32_t)l);
+}
+
+static void label_leaves(cleaner *c)
+{
+    const tm_octree *octree = c->octree;
+    for (size_t l = 0; l < octree->leaves; l++) {
+        double centre[3];
+        uint32_t label = l > 0 ? c->interior->label[l - 1] : 0;
+        tm_leaf_centre(octree, &octree->leaf[l], centre);
+        if (l == 0 || !tm_leaf_is_as_before(octree, l))
+            label = tm_surface_region_at(c->surface, centre);
+        put(c->interior, octree, l, label);
+    }
+}
+
+tm_status tm_interior_label(tm_interior *interior, const tm_octree *octree,
+                            const tm_surface *surface, tm_error *error)
+{
+    interior->label = tm_new(octree->leaves, sizeof *interior->label);
+    interior->octant = calloc(octree->nodes + 1, sizeof *interior->octant);
+    cleaner c = {.octree = octree,
+                 .surface = surface,
+                 .interior = interior,
+                 .leaf = tm_new(octree->nodes, sizeof *c.leaf),
+                 .strict = true,
+                 .bad = malloc(octree->nodes + 1),
+                 .changes = calloc(octree->leaves + 1, 1)};
+    const bool ok = interior->label && interior->octant && c.leaf && c.bad && c.changes;
+    tm_status status = tm_walls_find(&c.walls, surface, error);
+    if (status == TM_OK && !ok)
+        status = tm_fail_memory(error);
+    if (ok && status == TM_OK) {
+        find_leaves(&c);
+        label_leaves(&c);
+        status = clean(&c, error);
+    }
+    for (size_t l = 0; l < octree->leaves && ok && status == TM_OK; l++)
+        interior->chosen[l] = interior->label[l] != 0;
+    tm_walls_free(&c.walls);
+    free(c.leaf);
+    free(c.bad);
+    free(c.changes);
+    free(c.contact);
+    return status;
+}

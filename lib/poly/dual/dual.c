@@ -1,0 +1,227 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "dual.h"
+
+#include "../../base/array.h"
+#include "../../stream/block.h"
+#include "../../tet/mesh_measure.h"
+#include "../facets.h"
+#include "dual_steps.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool allocate(tm_dual *d)
+{
+    const size_t tets = d->mesh->slots, nodes = d->mesh->nodes;
+    d->level = calloc(nodes + 1, sizeof *d->level);
+    d->cuts = calloc(4 * tets + 1, sizeof *d->cuts);
+    d->touched = calloc(nodes + 1, sizeof *d->touched);
+    d->cell = tm_new(4 * tets, sizeof *d->cell);
+    d->cell_node = tm_new(4 * tets, sizeof *d->cell_node);
+    d->face_point = tm_new(4 * tets, sizeof *d->face_point);
+    d->node_point = tm_new(nodes, sizeof *d->node_point);
+    d->quad_start = tm_new(nodes + 2, sizeof *d->quad_start);
+    d->tet_xyz = tm_new(tets, sizeof *d->tet_xyz);
+    d->frozen = calloc(tets + 1, sizeof *d->frozen);
+    return d->level && d->cuts && d->touched && d->cell && d->cell_node &&
+           d->face_point && d->node_point && d->quad_start && d->tet_xyz && d->frozen;
+}
+
+static void free_dual(tm_dual *d)
+{
+    void *const all[] = {
+        d->level,   d->cuts,      d->touched, d->cell,       d->cell_node,  d->wall,
+        d->edge,    d->following, d->begins,  d->face_point, d->node_point, d->quad_start,
+        d->quad_of, d->point,     d->xyz,     d->tet_xyz,    d->frozen};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        free(all[i]);
+    tm_edge_map_free(&d->edge_of);
+    tm_dual_forget(d);
+    tm_block_clear(&d->facet);
+}
+
+/* The cells of the levels that nodes have now, with their facets and points. */
+static tm_status build(tm_dual *d, tm_error *error)
+{
+    tm_status status;
+    do {
+        status = tm_dual_find_cells(d, error);
+        if (status == TM_OK)
+            status = tm_dual_find_walls(d, error);
+    } while (status == TM_OK && d->again);
+    if (status == TM_OK)
+        status = tm_dual_place_walls(d, error);
+    if (status == TM_OK)
+        status = tm_dual_make_facets(d, error);
+    return status;
+}
+
+/* What is written ------------------------------------------------------------------ */
+
+static int32_t marker_of(const tm_dual *d, const tm_dual_point *point)
+{
+    if (point->place == TM_DUAL_IN_FACE)
+        return d->wall[point->of].marker;
+    if (point->place == TM_DUAL_ON_EDGE)
+        return d->edge[point->of].marker;
+    return point->place == TM_DUAL_AT_NODE ? d->mesh->node_marker[point->of] : 0;
+}
+
+static void interpolate(const tm_dual *d, size_t p, double *value)
+{
+    const tm_tet_mesh *mesh = d->mesh;
+    const size_t width = mesh->node_attributes;
+    const uint32_t of = d->point[p].of;
+    switch ((tm_dual_place)d->point[p].place) {
+    case TM_DUAL_AT_NODE:
+        memcpy(value, mesh->node_attribute + width * of, width * sizeof *value);
+        return;
+    case TM_DUAL_ON_EDGE:
+        for (size_t i = 0; i < width; i++)
+            value[i] = mesh->node_attribute[width * d->edge[of].node[0] + i] / 2 +
+                       mesh->node_attribute[width * d->edge[of].node[1] + i] / 2;
+        return;
+    case TM_DUAL_IN_FACE:
+    case TM_DUAL_IN_TET:
+        break;
+    }
+    const uint32_t t = d->point[p].place == TM_DUAL_IN_TET ? of : d->wall[of].half / 4;
+    tm_tet_interpolate(mesh, &t, 1, d->xyz[p], value);
+}
+
+static tm_status write_nodes(const tm_dual *d, tm_block *node, tm_error *error)
+{
+    node->attributes = d->mesh->node_attributes;
+    node->markers = d->mesh->node_marker != NULL;
+    tm_status status = tm_block_allocate(node, d->points, 0, error);
+    for (size_t p = 0; p < d->points && status == TM_OK; p++) {
+        memcpy(node->real + 3 * p, d->xyz[p], sizeof d->xyz[p]);
+        if (node->markers)
+            node->marker[p] = marker_of(d, &d->point[p]);
+        if (node->attributes > 0)
+            interpolate(d, p, node->attribute + node->attributes * p);
+    }
+    return status;
+}
+
+/* Whether end i of an edge that .edge has is an edge of facets. */
+static bool is_written(const tm_dual *d, const tm_dual_edge *edge, int i)
+{
+    return edge->listed && edge->real[i] && d->node_point[edge->node[i]] != TM_NONE;
+}
+
+/* The halves of the edges of .edge. */
+static tm_status write_edges(const tm_dual *d, tm_block *edge, tm_error *error)
+{
+    size_t count = 0, row = 0;
+    for (size_t e = 0; e < d->edges; e++)
+        for (int i = 0; i < 2; i++)
+            count += is_written(d, &d->edge[e], i);
+    edge->markers = d->mesh->edge_markers;
+    tm_status status = tm_block_allocate(edge, count, 0, error);
+    for (size_t e = 0; e < d->edges && status == TM_OK; e++)
+        for (int i = 0; i < 2; i++) {
+            if (!is_written(d, &d->edge[e], i))
+                continue;
+            edge->integer[2 * row] = d->node_point[d->edge[e].node[i]];
+            edge->integer[2 * row + 1] = d->edge[e].point;
+            if (edge->markers)
+                edge->marker[row] = d->edge[e].marker;
+            row++;
+        }
+    return status;
+}
+
+static tm_status write_cells(const tm_dual *d, tm_block *cell, tm_error *error)
+{
+    const tm_tet_mesh *mesh = d->mesh;
+    cell->attributes = 1 + mesh->regions;
+    tm_status status = tm_cells_from_facets(&d->facet, cell, d->cells, error);
+    for (size_t p = 0; p < 4 * mesh->slots && status == TM_OK; p++) {
+        double *row = cell->attribute + cell->attributes * d->cell[p];
+        if (row[0]++ == 0 && mesh->regions > 0)
+            memcpy(row + 1, mesh->region + mesh->regions * (p / 4),
+                   mesh->regions * sizeof *row);
+    }
+    return status;
+}
+
+static tm_status write_blocks(tm_dual *d, tm_dual_blocks *made, tm_error *error)
+{
+    tm_status status = write_nodes(d, &made->node, error);
+    if (status == TM_OK)
+        status = write_edges(d, &made->edge, error);
+    if (status == TM_OK)
+        status = write_cells(d, &made->cell, error);
+    if (status != TM_OK)
+        return status;
+    made->facet = d->facet;
+    d->facet = (tm_block){.kind = TM_FACET};
+    return TM_OK;
+}
+
+static void count(const tm_dual *d, tm_dual_report *report)
+{
+    const tm_tet_mesh *mesh = d->mesh;
+    report->cells = d->cells;
+    report->facets = d->facets;
+    report->nodes = d->points;
+    report->cut = d->cut_nodes;
+    for (size_t v = 0; v < mesh->nodes && d->level; v++)
+        report->taken_apart += d->level[v] == TM_DUAL_PIECES;
+    for (size_t e = 0; e < mesh->edges; e++) {
+        const tm_marked_edge *edge = &mesh->edge[e];
+        report->lost_edges += !edge->gone && edge->marker != 0 &&
+                              !tm_edge_map_get(&d->edge_of, edge->node[0], edge->node[1]);
+    }
+}
+
+tm_status tm_dual_make(tm_dual_blocks *made, const tm_tet_mesh *mesh,
+                       const tm_dual_options *options, tm_dual_report *report,
+                       tm_error *error)
+{
+    const double half_turn = 180, pi = acos(-1);
+    tm_dual d = {.mesh = mesh,
+                 .options = options,
+                 .flatness = tm_facet_flatness(mesh),
+                 .cosine = cos(options->feature_angle * pi / half_turn),
+                 .facet = {.name = ".facet", .kind = TM_FACET, .markers = true}};
+    *made = (tm_dual_blocks){.node = {.name = ".node", .kind = TM_NODE},
+                             .edge = {.name = ".edge", .kind = TM_EDGE},
+                             .facet = {.name = ".facet", .kind = TM_FACET},
+                             .cell = {.name = ".cell", .kind = TM_CELL}};
+    *report = (tm_dual_report){.tets = mesh->slots};
+    tm_status status = allocate(&d) ? TM_OK : tm_fail_memory(error);
+    if (status == TM_OK)
+        tm_dual_place_tets(&d);
+    if (status == TM_OK)
+        status = build(&d, error);
+    if (status == TM_OK)
+        status = tm_dual_flatten(&d, error);
+    if (status == TM_OK) {
+        tm_dual_place_cuts(&d);
+        status = tm_dual_improve(&d, TM_DUAL_LOOK, report, error);
+    }
+    tm_dual_round round = TM_DUAL_FIRST;
+    for (bool more = true; more && status == TM_OK; more = d.again) {
+        if (d.again)
+            status = build(&d, error);
+        if (status == TM_OK)
+            status = tm_dual_improve(&d, round, report, error);
+        round = TM_DUAL_NEXT;
+    }
+    if (status == TM_OK)
+        status = write_blocks(&d, made, error);
+    count(&d, report);
+    free_dual(&d);
+    return status;
+}
+
+void tm_dual_blocks_free(tm_dual_blocks *blocks)
+{
+    tm_block_clear(&blocks->node);
+    tm_block_clear(&blocks->edge);
+    tm_block_clear(&blocks->facet);
+    tm_block_clear(&blocks->cell);
+}

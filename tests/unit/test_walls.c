@@ -1,0 +1,306 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Regions that touch, of random cubes of a block: their walls, the leaves of each, and
+ * the elements, which fit together where regions meet. */
+#include "../../lib/element/jens.h"
+#include "../../lib/examine/element_examine.h"
+#include "../../lib/examine/mixed_volume.h"
+#include "../../lib/octree/interior/region_leaves.h"
+#include "../../lib/octree/layer/adaptive_refinement.h"
+#include "../../lib/octree/layer/octree_mesh_parts.h"
+#include "octree_fixture.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { SIDE = 3, CUBES = SIDE * SIDE * SIDE, OCTANTS = 8, ROUNDS = 15 };
+
+/* The label of a cube; 0 beyond the block. */
+static unsigned label_at(const unsigned *label, const int at[3])
+{
+    for (int i = 0; i < 3; i++)
+        if (at[i] < 0 || at[i] >= SIDE)
+            return 0;
+    return label[at[0] + SIDE * (at[1] + SIDE * at[2])];
+}
+
+/* The square between a cube and the next one below it along an axis, from any side. */
+static void add_wall(tm_polygon_surface *p, const int at[3], int axis)
+{
+    static const int ring[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    const uint32_t turned = random_below(4), back = random_below(2);
+    uint32_t node[4];
+    for (uint32_t c = 0; c < 4; c++) {
+        const int *corner = ring[(back ? 7 - c - turned : c + turned) % 4];
+        int q[3] = {at[0], at[1], at[2]};
+        q[(axis + 1) % 3] += corner[0];
+        q[(axis + 2) % 3] += corner[1];
+        node[c] = add_node(p, q[0], q[1], q[2]);
+    }
+    add_polygon(p, node, 4);
+}
+
+static void add_walls(tm_polygon_surface *p, const unsigned *label)
+{
+    for (int i = 0; i < (SIDE + 1) * (SIDE + 1) * (SIDE + 1); i++)
+        for (int axis = 0; axis < 3; axis++) {
+            const int at[3] = {i % (SIDE + 1), i / (SIDE + 1) % (SIDE + 1),
+                               i / (SIDE + 1) / (SIDE + 1)};
+            int below[3] = {at[0], at[1], at[2]};
+            below[axis]--;
+            if (label_at(label, at) == label_at(label, below))
+                continue;
+            add_wall(p, at, axis);
+            if (random_below(4) == 0) /* each region has its own */
+                add_wall(p, at, axis);
+        }
+}
+
+/* Fills group[cube] with one of its cubes: those that faces join have the same. */
+static void find_groups(const unsigned *label, int *group)
+{
+    for (int i = 0; i < CUBES; i++)
+        group[i] = i;
+    for (int sweep = 0; sweep < CUBES; sweep++)
+        for (int i = 0; i < CUBES; i++)
+            for (int side = 0; side < 6; side++) {
+                static const int step[3] = {1, SIDE, SIDE * SIDE};
+                int at[3] = {i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE};
+                at[side / 2] += side % 2 ? 1 : -1;
+                const int next = i + (side % 2 ? 1 : -1) * step[side / 2];
+                if (at[side / 2] < 0 || at[side / 2] >= SIDE || label[next] != label[i])
+                    continue;
+                if (group[next] < group[i])
+                    group[i] = group[next];
+            }
+}
+
+/* Whether a group of empty cubes is closed in. */
+static bool is_closed_in(const int *group, int which)
+{
+    for (int i = 0; i < CUBES; i++)
+        if (group[i] == which &&
+            (i % SIDE != 1 || i / SIDE % SIDE != 1 || i / SIDE / SIDE != 1))
+            return false;
+    return true;
+}
+
+/* A block of cubes of three regions, and some of none, with walls; turned or not. Some
+ * have no edge at which three walls meet: then another one is made. */
+static void make_surface(tm_surface *surface, unsigned *label, tm_polygon_surface *p)
+{
+    const tm_surface_options options = {
+        .feature_angle = TM_FEATURE_ANGLE, .regions = true, .walls = true};
+    tm_error error;
+    for (bool walls = false; !walls; walls = surface->walls) {
+        for (int i = 0; i < CUBES; i++)
+            label[i] = random_below(4);
+        label[0] = 1;
+        label[1] = 2;
+        tm_polygon_surface_init(p);
+        add_walls(p, label);
+        assert_ok(tm_surface_build(surface, p, &options, &error), &error);
+        assert_ok(tm_surface_check(surface, &error), &error);
+        if (!surface->walls) {
+            tm_surface_free(surface);
+            tm_polygon_surface_free(p);
+        }
+    }
+}
+
+static void test_regions(void **state)
+{
+    (void)state;
+    for (int round = 0; round < ROUNDS; round++) {
+        unsigned label[CUBES];
+        int group[CUBES];
+        size_t regions = 0;
+        tm_polygon_surface p;
+        tm_surface surface;
+        make_surface(&surface, label, &p);
+        find_groups(label, group);
+        uint32_t region[CUBES];
+        for (int i = 0; i < CUBES; i++) {
+            const double centre[3] = {i % SIDE + 0.5, i / SIDE % SIDE + 0.5,
+                                      i / SIDE / SIDE + 0.5};
+            region[i] = tm_surface_region_at(&surface, centre);
+            const bool is = label[i] != 0 || is_closed_in(group, group[i]);
+            assert_int_equal(region[i] != 0, is);
+            regions += is && group[i] == i;
+            assert_int_equal(tm_surface_has_mesh(&surface, centre), is);
+            for (int k = 0; k < i && is; k++)
+                assert_int_equal(region[k] == region[i], group[k] == group[i]);
+        }
+        assert_int_equal(surface.cells, regions);
+        const double far[3] = {-1, -1, -1}, beside[3] = {-0.001, 0.5, 0.5};
+        assert_int_equal(tm_surface_region_at(&surface, far), 0);
+        assert_int_equal(tm_surface_region_at(&surface, beside), 0);
+        tm_surface_free(&surface);
+        tm_polygon_surface_free(&p);
+    }
+}
+
+/* The octants around each node: of each region they are a good mask, and in each part of
+ * one region at most. */
+static void check_parts(const tm_octree *octree, const tm_interior *part, size_t parts)
+{
+    for (size_t n = 0; n < octree->nodes; n++) {
+        const uint32_t *octant = part->octant[n];
+        unsigned of_part[OCTANTS] = {0};
+        for (unsigned o = 0; o < OCTANTS; o++) {
+            unsigned mask = 0;
+            for (unsigned i = 0; i < OCTANTS; i++)
+                mask |= (unsigned)(octant[i] == octant[o]) << i;
+            assert_true(tm_octant_mask_is_good((tm_octant_mask)mask));
+            for (size_t p = 0; p < parts; p++)
+                if (part[p].mask[n] >> o & 1) {
+                    assert_true(octant[o] != 0 && p < OCTANTS);
+                    assert_true(of_part[p] == 0 || of_part[p] == octant[o]);
+                    of_part[p] = octant[o];
+                }
+        }
+    }
+    for (size_t l = 0; l < octree->leaves; l++)
+        assert_int_equal(tm_interior_part_of(part, parts, l) < parts,
+                         part->label[l] != 0);
+}
+
+/* Cuts some quadrilaterals, as the paths of curves do. */
+static void cut_some(tm_interior_boundary *boundary)
+{
+    for (size_t f = 0; f < boundary->faces; f++)
+        if (tm_boundary_face_corners(boundary, f) == 4 && random_below(8) == 0)
+            boundary->cut[f] = random_below(2) ? TM_CUT_02 : TM_CUT_13;
+}
+
+/* On the lattice all elements are valid, those of each leaf fill it but for the layer,
+ * all together fill what there is, and they fit together. */
+static void check_elements(const tm_octree *octree, const tm_interior *part, size_t parts,
+                           const tm_interior_boundary *boundary, const tm_assembly *a)
+{
+    const tm_mixed_mesh *mesh = &a->mesh;
+    const double clearly = 0.05;
+    tm_error error;
+    double(*base)[3] = malloc(mesh->nodes * sizeof *base);
+    assert_ok(tm_lattice_points(a, octree, part, parts, boundary, base, &error), &error);
+    double volume = 0, sum = 0;
+    for (size_t l = 0; l < octree->leaves; l++) {
+        const double side = tm_leaf_side(octree, &octree->leaf[l]);
+        volume += part->label[l] != 0 ? side * side * side : 0;
+        assert_int_equal(a->first[l + 1] > a->first[l], part->label[l] != 0);
+    }
+    for (size_t e = 0; e < mesh->elements; e++) {
+        const size_t k = mesh->start[e + 1] - mesh->start[e];
+        const uint32_t *item = mesh->item + mesh->start[e];
+        assert_true(tm_jens(k, (const double(*)[3])base, item) > clearly);
+        sum += tm_mixed_volume((const double(*)[3])base, item, k);
+    }
+    assert_true(fabs(sum - volume) <= 1e-9 * volume);
+    tm_examination found;
+    const tm_mesh_view arrays = {.nodes = mesh->nodes,
+                                 .xyz = (const double(*)[3])base,
+                                 .elements = mesh->elements,
+                                 .start = mesh->start,
+                                 .item = mesh->item};
+    assert_ok(tm_element_examine(&found, &arrays, 1, &error), &error);
+    assert_true(tm_examination_is_good(&found));
+    for (size_t f = 0; f < boundary->faces; f++)
+        assert_int_equal(a->layer_across && a->layer_across[f] != TM_NONE,
+                         boundary->region[f][1] != 0);
+    free(base);
+}
+
+static void test_leaves(void **state)
+{
+    (void)state;
+    size_t shared = 0;
+    for (int round = 0; round < ROUNDS; round++) {
+        const uint64_t seed = random_state;
+        unsigned label[CUBES];
+        tm_polygon_surface p;
+        tm_surface surface;
+        tm_octree octree;
+        tm_interior *part = malloc(sizeof *part);
+        tm_interior_boundary boundary;
+        tm_assembly assembly;
+        tm_error error;
+        size_t parts = 1;
+        make_surface(&surface, label, &p);
+        make_random_octree(&octree, &surface);
+        printf("round %d (TM_SEED=%" PRIu64 "): %zu leaves\n", round, seed,
+               octree.leaves);
+        assert_ok(tm_interior_choose(part, &octree, &surface, &error), &error);
+        assert_ok(tm_interior_divide(&part, &parts, &octree, surface.cells, &error),
+                  &error);
+        check_parts(&octree, part, parts);
+        assert_ok(tm_interior_boundary_of_parts(&boundary, &octree, part, parts, &error),
+                  &error);
+        cut_some(&boundary);
+        assert_ok(tm_assemble(&assembly, &octree, part, parts, &boundary, &error),
+                  &error);
+        check_elements(&octree, part, parts, &boundary, &assembly);
+        for (size_t f = 0; f < boundary.faces; f++)
+            shared += boundary.region[f][1] != 0;
+        tm_assembly_free(&assembly);
+        tm_interior_boundary_free(&boundary);
+        for (size_t i = 0; i < parts; i++)
+            tm_interior_free(&part[i]);
+        free(part);
+        tm_octree_free(&octree);
+        tm_surface_free(&surface);
+        tm_polygon_surface_free(&p);
+    }
+    assert_true(shared > 0);
+}
+
+/* Meshes of cubes at odd angles, too: no element is inverted, whatever comes together. */
+static void test_meshes(void **state)
+{
+    (void)state;
+    const tm_surface_options options = {
+        .feature_angle = TM_FEATURE_ANGLE, .regions = true, .walls = true};
+    for (int round = 0; round < ROUNDS / 5; round++) {
+        const uint64_t seed = random_state;
+        const tm_octree_rule rule = {.kind = TM_RULE_SURFACE, .level = 3};
+        unsigned label[CUBES];
+        tm_polygon_surface p;
+        tm_surface surface;
+        tm_octree octree;
+        tm_octree_mesh mesh;
+        tm_error error;
+        make_surface(&surface, label, &p);
+        tm_surface_free(&surface);
+        turn_nodes(&p, random_between(0, 2));
+        assert_ok(tm_surface_build(&surface, &p, &options, &error), &error);
+        assert_ok(tm_surface_check(&surface, &error), &error);
+        assert_ok(tm_octree_build(&octree, &surface, &rule, 1, &error), &error);
+        printf("mesh %d (TM_SEED=%" PRIu64 "): %zu leaves\n", round, seed, octree.leaves);
+        assert_ok(
+            tm_octree_mesh_refine_lost(&mesh, &octree, &surface, 3, 0, NULL, &error),
+            &error);
+        assert_int_equal(mesh.report.invalid, 0);
+        const tm_mixed_mesh *m = &mesh.assembly.mesh;
+        tm_examination found;
+        const tm_mesh_view arrays = {.nodes = m->nodes,
+                                     .xyz = (const double(*)[3])m->xyz,
+                                     .elements = m->elements,
+                                     .start = m->start,
+                                     .item = m->item};
+        assert_ok(tm_element_examine(&found, &arrays, 1, &error), &error);
+        assert_true(tm_examination_is_good(&found));
+        tm_octree_mesh_free(&mesh);
+        tm_octree_free(&octree);
+        tm_surface_free(&surface);
+        tm_polygon_surface_free(&p);
+    }
+}
+
+int main(void)
+{
+    random_start();
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_regions),
+        cmocka_unit_test(test_leaves),
+        cmocka_unit_test(test_meshes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
