@@ -114,9 +114,9 @@ static tm_status add_facets(view_writer *w, const view_source *s, tm_error *erro
     const tm_block *facet = found ? found : &none;
     uint32_t *place = find_places(s);
     facet_lists l = {0};
-    const bool room = list_new(&l.side, 2 * facet->count) &
-                      list_new(&l.size, facet->count) &
-                      list_new(&l.item, facet->count ? facet->start[facet->count] : 0) &
+    const bool room = list_new(&l.side, 2 * facet->count) &&
+                      list_new(&l.size, facet->count) &&
+                      list_new(&l.item, facet->count ? facet->start[facet->count] : 0) &&
                       list_new(&l.marker, facet->count);
     if (room && place) {
         take_facets(&l, facet, place, s->cell->count);

@@ -290,4 +290,10 @@ examples() {
         [ -s "made/$model.mixed.txt" ]
         [ -s "made/$model.mixed.vtu" ]
     done
+    ! is_left_out mesh-view || return 0
+    run -0 make -s -C "$root/examples" build="$TM_BUILD" to="$PWD/made" LEVEL=4 view
+    for model in knot bar gear; do
+        grep -q '"content": "tetrahedra"' "made/$model.html"
+        grep -q '"content": "mixed"' "made/$model.mixed.html"
+    done
 }

@@ -328,6 +328,29 @@ with Browser() as browser:
         .filter(e => e.offsetParent).every(e => { const r = e.getBoundingClientRect();
                                                   return r.left >= 0 && r.right <= 390 })''')
     assert inside
+    # one finger turns, two zoom, a tap picks
+    browser.call('Emulation.setTouchEmulationEnabled', enabled=True, maxTouchPoints=2)
+    browser.run('meshView.set({show: "a"}), meshView.setCut("none"), meshView.update()')
+    def touch(kind, *points):
+        browser.call('Input.dispatchTouchEvent', type=kind, touchPoints=[
+            {'x': x, 'y': y, 'id': i} for i, (x, y) in enumerate(points)])
+    turn, distance = browser.run('[meshView.state.camera.turn, meshView.state.camera.distance]')
+    touch('touchStart', (200, 200))
+    touch('touchMove', (240, 210))
+    touch('touchMove', (260, 210))
+    touch('touchEnd')
+    assert browser.run('meshView.state.camera.turn') < turn
+    assert browser.run('meshView.state.camera.distance') == distance
+    touch('touchStart', (150, 200))
+    touch('touchStart', (150, 200), (250, 200))
+    touch('touchMove', (130, 200), (270, 200))
+    touch('touchMove', (100, 200), (300, 200))
+    touch('touchEnd')
+    assert abs(browser.run('meshView.state.camera.distance') - distance / 2) < 0.2 * distance
+    assert browser.run('meshView.view.meshes[0].picked') == -1
+    touch('touchStart', tuple(round(x) for x in browser.run('meshView.pixelsOf(0, 0)')))
+    touch('touchEnd')
+    assert browser.run('meshView.view.meshes[0].picked') >= 0
     browser.run('document.getElementById("fold").click()')
     browser.run('new Promise(r => setTimeout(r, 100))')
     assert browser.run('document.getElementById("canvas").clientHeight') > box[3] + 100

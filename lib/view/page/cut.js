@@ -2,8 +2,15 @@
 /* Which elements are seen: those on one side of a plane, as whole ones, behind so many
  * layers, in a range of the field, and not hidden. */
 
-/* The `count` elements with the least values, as bytes. */
+/* The `count` elements with the least values, as bytes; kept until others are asked for. */
 function worstOf(mesh, values, count) {
+    const {worst} = mesh;
+    if (!worst || worst.values !== values || worst.count !== count)
+        mesh.worst = {values, count, chosen: findWorst(mesh, values, count)};
+    return mesh.worst.chosen;
+}
+
+function findWorst(mesh, values, count) {
     const chosen = new Uint8Array(mesh.elements);
     if (count >= mesh.elements)
         return chosen.fill(1);

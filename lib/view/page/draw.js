@@ -36,7 +36,7 @@ void main() {
     vec3 normal = normalize(cross(dFdx(vPlace), dFdy(vPlace)));
     if (dot(normal, vPlace) > 0.0)
         normal = -normal;
-    float light = 0.5 + 0.52 * max(dot(normal, vec3(0.267, 0.445, 0.855)), 0.0);
+    float light = 0.58 + 0.44 * max(dot(normal, vec3(0.267, 0.445, 0.855)), 0.0);
     vec3 wide = max(fwidth(vCorner), vec3(1e-6));
     vec3 away = smoothstep(wide * (edgeWidth - 0.6), wide * (edgeWidth + 0.6), vCorner);
     float line = edges * (1.0 - min(min(away.x, away.y), away.z));

@@ -5,18 +5,20 @@
  * … . Ends are in x y z, and known by the edge on which they are. */
 function segmentsOf(mesh, height) {
     const {xyz, facetStart, facetItem, side, facets, nodes} = mesh;
-    const end = [], key = [], element = [];
+    const end = [], key = [], element = [], above = new Uint8Array(nodes);
+    for (let v = 0; v < nodes; v++)
+        above[v] = height[v] > 0 ? 1 : 0;
     for (let f = 0; f < facets; f++) {
-        const from = facetStart[f], to = facetStart[f + 1];
-        let above = 0;
-        for (let i = from; i < to; i++)
-            above += height[facetItem[i]] > 0 ? 1 : 0;
-        if (above === 0 || above === to - from)
+        const from = facetStart[f], to = facetStart[f + 1], first = above[facetItem[from]];
+        let i = from + 1;
+        while (i < to && above[facetItem[i]] === first)
+            i++;
+        if (i === to)
             continue;
         const ends = [];
-        for (let i = from; i < to; i++) {
+        for (i = from; i < to; i++) {
             const p = facetItem[i], q = facetItem[i + 1 < to ? i + 1 : from];
-            if (height[p] > 0 === height[q] > 0)
+            if (above[p] === above[q])
                 continue;
             const low = Math.min(p, q), high = Math.max(p, q);
             const t = height[low] / (height[low] - height[high]);
@@ -25,7 +27,7 @@ function segmentsOf(mesh, height) {
                            t * (xyz[3 * high + a] - xyz[3 * low + a]))});
         }
         sortAlong(ends);
-        for (let i = 0; i + 1 < ends.length; i += 2) {
+        for (i = 0; i + 1 < ends.length; i += 2) {
             for (let s = 0; s < 2; s++) {
                 const e = side[2 * f + s];
                 if (e >= LEFT_OUT || !mesh.visible[e])
