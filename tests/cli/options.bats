@@ -117,9 +117,9 @@ offers() {
     words lepp-improve --ops
     words polylla3d --mode
     words visf-export --binary
-    [ "$(offers polylla3d --mode te)" = terminal ]
-    [ "$(offers polylla3d --mode = te)" = terminal ]
-    [ "$(offers polylla3d --mode = | wc -l)" -eq 5 ]
+    [ "$(offers polylla3d --mode edg)" = edge ]
+    [ "$(offers polylla3d --mode = edg)" = edge ]
+    [ "$(offers polylla3d --mode = | wc -l)" -eq 6 ]
     [ "$(offers lepp-improve -s c)" = converged ]
     [ "$(offers polylla3d -o te)" = '' ]
 }
@@ -135,6 +135,6 @@ offers() {
     done
     zsh -fc '_arguments() { print -rl -- "$@" }; source "$1"' zsh \
         "$TM_BUILD/completion/zsh/_polylla3d" >specs
-    grep -qxF -e '--star[each star-shaped with respect to a ball]' specs
-    grep -qF -e ':MODE:(terminal edge face cavity)' specs
+    grep -qxF -e '--absorb[those of a few tetrahedra join others beside them]' specs
+    grep -qF -e ':MODE:(terminal edge face terminal-face cavity compact)' specs
 }
