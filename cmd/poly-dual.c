@@ -20,19 +20,20 @@ static const double most_feature_angle = 90;
 /* Puts the blocks of the dual in the place of those of the tetrahedra. */
 static void put_blocks(filter *f, tm_stream *stream, tm_dual_blocks *made)
 {
-    static const char *const gone[] = {".node", ".ele", ".face", ".edge"};
-    const bool has_edges = tm_stream_find(stream, ".edge");
-    tm_block *const block[] = {&made->node, &made->facet, &made->cell, &made->edge};
-    const size_t blocks = has_edges ? 4 : 3;
-    for (size_t k = 0; k < 4; k++)
+    static const char *const gone[] = {".ele", ".face"};
+    tm_block *const block[] = {&made->node, &made->edge, &made->facet, &made->cell};
+    for (size_t k = 0; k < sizeof gone / sizeof *gone; k++)
         if (tm_stream_find(stream, gone[k]))
             tm_stream_remove(stream, tm_stream_find(stream, gone[k]));
-    for (size_t k = 0; k < blocks; k++) {
-        tm_block *to = tm_stream_add(stream, block[k]->name);
-        if (!to)
+    for (size_t k = 0; k < sizeof block / sizeof *block; k++) {
+        tm_block *to = tm_stream_find(stream, block[k]->name);
+        if (!to && block[k] == &made->edge)
+            continue;
+        if (!to && !(to = tm_stream_add(stream, block[k]->name)))
             filter_fail_memory(f);
+        const tm_block old = *to;
         *to = *block[k];
-        *block[k] = (tm_block){.kind = block[k]->kind};
+        *block[k] = old;
     }
     tm_dual_blocks_free(made);
 }

@@ -37,6 +37,10 @@ static void drop_attribute(tm_block *block, size_t which)
 tm_status tm_take_given(tm_block *block, size_t which, uint32_t **label, tm_error *error)
 {
     *label = NULL;
+    if (block->attributes == 0)
+        return tm_fail(error, TM_ERROR_INPUT,
+                       "%s has no attributes, of which the partition could be one",
+                       block->name);
     if (which >= block->attributes)
         return tm_fail(error, TM_ERROR_INPUT,
                        "%s has %zu attributes, but the partition is to be attribute %zu",

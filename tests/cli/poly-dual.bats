@@ -149,6 +149,7 @@ END
     [[ $output == *'2 11 bottom side'* ]]
     [[ $output == *'surface.node'* ]]
     [[ $output != *'.mine'* ]]
+    mesh-check -q <<<"$output"
 }
 
 @test "the same bytes whatever the number of threads and the order of tetrahedra" {

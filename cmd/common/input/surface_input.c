@@ -202,8 +202,11 @@ static void note_mending(const filter *f, const tm_surface *s)
     if (s->turned)
         filter_note(f, "%s: triangles were turned, so that all look outward", name);
     if (s->duplicates)
-        filter_note(f, "%s: %zu triangles were there twice and are dropped", name,
-                    s->duplicates);
+        filter_note(f,
+                    s->walls ? "%s: %zu triangles are walls that both regions give; the "
+                               "first of each stays"
+                             : "%s: %zu triangles were there twice and are dropped",
+                    name, s->duplicates);
     if (s->flat)
         filter_note(f, "%s: %zu triangles without area are dropped", name, s->flat);
     if (s->open_edges)
