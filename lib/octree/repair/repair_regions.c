@@ -171,7 +171,7 @@ static tm_status fill_table(tm_repair_state *to, const tm_surface *surface,
             fill[count++] =
                 (tm_repair_region){number[r], surface->by_winding ? NAN : volume[r]};
     free(volume);
-    if (status != TM_OK || !fill)
+    if (status != TM_OK)
         return status;
     qsort(fill, count, sizeof *fill, compare_regions);
     for (size_t i = 0; i < count; i++)
