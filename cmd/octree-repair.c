@@ -117,8 +117,7 @@ static void fail(const program *p, tm_error *error)
     filter_fail(&p->f, error);
 }
 
-/* With `regions` a surface within another one bounds a region, else a hole. */
-static void build_surface(program *p, const tm_stream *stream, bool regions)
+static void build_surface(program *p, const tm_stream *stream)
 {
     tm_error error;
     tm_polygon_surface polygons;
@@ -134,7 +133,6 @@ static void build_surface(program *p, const tm_stream *stream, bool regions)
     tm_polygon_surface_init(&polygons);
     tm_status status =
         surface_input_of_stream(stream, filter_input_name(&p->f), &polygons, &error);
-    p->surface.regions = regions;
     p->surface.walls = true;
     while (status == TM_OK) {
         status = tm_surface_build(&p->boundary, &polygons, &p->surface, &error);
@@ -412,9 +410,7 @@ static void prepare(program *p, const tm_stream *stream, tm_repair_state *state,
     if (p->octants)
         p->listed = octant_list_read(&p->f, p->octants, stream, &p->repair.octants);
     p->repair.octant = p->listed;
-    if (tm_repair_find_regions(state, stream, &error) != TM_OK)
-        fail(p, &error);
-    build_surface(p, stream, state->region != NULL);
+    build_surface(p, stream);
     mpi_environment_set(&p->f);
     if (tm_repair_prepare(state, stream, p->has_surface ? &p->boundary : NULL, notes,
                           &error) != TM_OK)

@@ -162,14 +162,6 @@ bool tm_surface_is_beside(const tm_surface *surface, size_t t, int behind,
 /* The volume of each shell, [components]; negative where it looks inward. */
 void tm_surface_shell_volumes(const tm_surface *surface, double *volume);
 
-/* The volume of each region, with walls [cells + 1], else [components + 1], where region
- * s + 1 is what shell s encloses without what shells inside of it do, and 0 has none; of
- * surfaces that do not cross themselves and are not open. TM_ERROR_SYSTEM where memory is
- * out. O(triangles
- * + shells²) rays. */
-tm_status tm_surface_region_volumes(const tm_surface *surface, double *volume,
-                                    tm_error *error);
-
 /* Whether a point is in what is meshed: inside, or with `regions` within any shell. */
 bool tm_surface_has_mesh(const tm_surface *surface, const double point[3]);
 

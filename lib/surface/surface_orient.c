@@ -198,50 +198,16 @@ void tm_surface_shell_volumes(const tm_surface *surface, double *volume)
     }
 }
 
-/* The innermost shell around a point but one: the smallest; TM_NONE where there is none.
- */
+/* The innermost shell around a point: the smallest; TM_NONE where there is none. */
 static uint32_t shell_around(const tm_surface *surface, const double *volume,
-                             const double point[3], uint32_t but)
+                             const double point[3])
 {
     uint32_t least = TM_NONE;
     for (uint32_t s = 0; s < surface->components; s++)
-        if (s != but && tm_surface_is_within(surface, s, point) &&
+        if (tm_surface_is_within(surface, s, point) &&
             (least == TM_NONE || fabs(volume[s]) < fabs(volume[least])))
             least = s;
     return least;
-}
-
-tm_status tm_surface_region_volumes(const tm_surface *surface, double *volume,
-                                    tm_error *error)
-{
-    const size_t shells = surface->components;
-    const double *from = surface->xyz[surface->triangle[0][0]];
-    double *within = tm_new(shells, sizeof *within);
-    uint32_t *node = tm_new(shells, sizeof *node);
-    const bool done = within && node;
-    memset(volume, 0, ((surface->walls ? surface->cells : shells) + 1) * sizeof *volume);
-    for (size_t t = 0; done && t < surface->triangles; t++) {
-        const uint32_t *v = surface->triangle[t];
-        const double part = tm_tet_volume(from, surface->xyz[v[0]], surface->xyz[v[1]],
-                                          surface->xyz[v[2]]);
-        node[surface->shell[t]] = v[0];
-        if (surface->walls) {
-            volume[surface->side[t][1]] += part;
-            volume[surface->side[t][0]] -= part;
-        }
-    }
-    if (done && !surface->walls)
-        tm_surface_shell_volumes(surface, within);
-    for (uint32_t s = 0; done && !surface->walls && s < shells; s++) {
-        const uint32_t around = shell_around(surface, within, surface->xyz[node[s]], s);
-        volume[s + 1] += fabs(within[s]);
-        if (around != TM_NONE)
-            volume[around + 1] -= fabs(within[s]);
-    }
-    volume[0] = 0;
-    free(within);
-    free(node);
-    return done ? TM_OK : tm_fail_memory(error);
 }
 
 /* The numbers of the file; those that have none get the next whole ones. */
@@ -257,7 +223,7 @@ static tm_status number_shells(tm_surface *surface, const tm_polygon_surface *po
     for (size_t r = 0; r < polygons->regions; r++) {
         const tm_region *region = &polygons->region[r];
         const double *p = region->point;
-        const uint32_t s = shell_around(surface, volume, p, TM_NONE);
+        const uint32_t s = shell_around(surface, volume, p);
         if (s == TM_NONE)
             return tm_fail(error, TM_ERROR_INPUT,
                            "region %zu, at (%g, %g, %g), is outside", r + 1, p[0], p[1],
@@ -282,7 +248,7 @@ static tm_status find_holes(tm_surface *surface, const tm_polygon_surface *polyg
         return tm_fail_memory(error);
     for (size_t h = 0; h < polygons->holes; h++) {
         const double *p = polygons->hole[h];
-        const uint32_t s = shell_around(surface, volume, p, TM_NONE);
+        const uint32_t s = shell_around(surface, volume, p);
         if (s == TM_NONE)
             continue;
         if (volume[s] > 0)

@@ -24,15 +24,11 @@ typedef struct repair_case {
     tm_repair_state state;
 } repair_case;
 
-/* Of an octree of the surface with leaves of a level at it; facets have markers. With
- * `regions` surfaces in others, and walls, bound regions. */
-static inline void start_case_of(repair_case *c, tm_polygon_surface *p, unsigned level,
-                                 bool regions)
+/* Of an octree of the surface with leaves of a level at it; facets have markers. */
+static inline void start_case(repair_case *c, tm_polygon_surface *p, unsigned level)
 {
     const tm_surface_options options = {.feature_angle = TM_FEATURE_ANGLE,
-                                        .unless_rough = true,
-                                        .regions = regions,
-                                        .walls = regions};
+                                        .unless_rough = true};
     const tm_octree_rule rule = {.kind = TM_RULE_SURFACE, .level = level};
     tm_error error;
     tm_surface surface;
@@ -50,8 +46,6 @@ static inline void start_case_of(repair_case *c, tm_polygon_surface *p, unsigned
         tm_octree_mesh_to_stream(&mesh, &octree, &surface, true, &c->stream, &error),
         &error);
     assert_ok(tm_repair_from_stream(&c->state, &c->stream, &error), &error);
-    assert_ok(tm_repair_find_regions(&c->state, &c->stream, &error), &error);
-    assert_int_equal(c->state.region != NULL, mesh.report.regions > 1);
     assert_ok(tm_repair_prepare(&c->state, &c->stream, &c->surface, &c->notes, &error),
               &error);
     assert_true(c->notes.attributed);
@@ -60,11 +54,6 @@ static inline void start_case_of(repair_case *c, tm_polygon_surface *p, unsigned
     tm_octree_free(&octree);
     tm_surface_free(&surface);
     tm_polygon_surface_free(p);
-}
-
-static inline void start_case(repair_case *c, tm_polygon_surface *p, unsigned level)
-{
-    start_case_of(c, p, level, false);
 }
 
 static inline void end_case(repair_case *c)
@@ -137,28 +126,6 @@ static inline void start_random_case(repair_case *c)
     tm_polygon_surface_init(&p);
     add_random_solid(&p);
     start_case(c, &p, 2 + random_below(2));
-}
-
-/* A solid within another one, or a box with a wall in it. */
-static inline void add_random_regions(tm_polygon_surface *p)
-{
-    const double low[3] = {0, 0, 0}, high[3] = {1, 1, 1}, middle[3] = {0.5, 0.5, 0.5};
-    const double wall = random_between(0.3, 0.7), radius = random_between(0.6, 0.9);
-    switch (random_below(3)) {
-    case 0:
-        add_box(p, low, high, false);
-        add_sphere(p, middle, random_between(0.25, 0.35), 4, random_below(2));
-        break;
-    case 1:
-        add_sphere(p, middle, radius, 6, false);
-        add_cube(p, 0.25, 0.25, 0.25, random_between(0.4, 0.5));
-        break;
-    default: /* a wall that each of both has */
-        add_box(p, low, (const double[3]){wall, 1, 1}, false);
-        add_box(p, (const double[3]){wall, 0, 0}, high, false);
-    }
-    if (random_below(2))
-        turn_nodes(p, random_between(0, 2));
 }
 
 /* Moves some nodes inside, and takes some off their patch, by up to a half of `size`. */

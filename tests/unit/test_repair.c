@@ -7,14 +7,9 @@
 #include "../../lib/octree/repair/repair_trace.h"
 #include "repair_fixture.h"
 
-#include "../../lib/base/array.h"
-#include "../../lib/element/shape.h"
-#include "../../lib/geom/vector.h"
-
 enum { ROUNDS = 4 };
 
-/* The elements of each octant, in order, are those of its row; their last attribute is
- * its level. */
+/* The elements of each octant, in order, are those of its row. */
 static void check_octants(const tm_stream *stream)
 {
     enum { FIRST = 4, PAST, COLUMNS };
@@ -28,73 +23,12 @@ static void check_octants(const tm_stream *stream)
         assert_int_equal(row[FIRST], next);
         next = row[PAST];
         for (uint32_t e = row[FIRST]; e < next; e++)
-            assert_true(mix->attribute[mix->attributes * (e + 1) - 1] == row[0]);
+            assert_true(mix->attribute[e] == row[0]);
     }
     assert_int_equal(next, mix->count);
 }
 
-/* The faces between elements of different regions, found by sorting. */
-static int compare_faces(const void *a, const void *b)
-{
-    return memcmp(a, b, sizeof(uint32_t[4]));
-}
-
-static size_t count_interfaces(const tm_stream *stream)
-{
-    const tm_block *mix = tm_stream_find(stream, ".mix");
-    const size_t k = mix->attributes;
-    size_t faces = 0, between = 0;
-    uint32_t(*face)[5] = calloc(6 * mix->count + 1, sizeof *face);
-    assert_non_null(face);
-    for (uint32_t e = 0; e < mix->count; e++) {
-        const uint32_t *item = mix->item + mix->start[e];
-        const tm_element_shape *shape =
-            &tm_element_shapes[mix->start[e + 1] - mix->start[e]];
-        for (size_t f = 0; f < shape->faces; f++, faces++) {
-            const size_t n = tm_mixed_face_nodes(shape->face[f]);
-            for (size_t i = 0; i < 4; i++)
-                face[faces][i] = i < n ? item[shape->face[f][i]] : TM_NONE;
-            qsort(face[faces], 4, sizeof **face, tm_compare_numbers);
-            face[faces][4] = e;
-        }
-    }
-    qsort(face, faces, sizeof *face, compare_faces);
-    for (size_t f = 1; f < faces; f++)
-        between += compare_faces(face[f - 1], face[f]) == 0 &&
-                   mix->attribute[k * face[f - 1][4]] != mix->attribute[k * face[f][4]];
-    free(face);
-    return between;
-}
-
-/* Facets of two elements are between regions, and are what both have in common. */
-static size_t check_interfaces(const tm_stream *stream)
-{
-    const tm_block *facet = tm_stream_find(stream, ".facet");
-    const tm_block *mix = tm_stream_find(stream, ".mix");
-    size_t between = 0;
-    for (size_t f = 0; f < facet->count; f++) {
-        const uint32_t *e = facet->integer + 2 * f;
-        assert_true(e[0] != TM_NONE || e[1] != TM_NONE);
-        for (size_t side = 0; side < 2; side++) {
-            size_t same = 0;
-            for (size_t i = facet->start[f]; i < facet->start[f + 1]; i++)
-                for (size_t j = e[side] == TM_NONE ? 0 : mix->start[e[side]];
-                     e[side] != TM_NONE && j < mix->start[e[side] + 1]; j++)
-                    same += facet->item[i] == mix->item[j];
-            assert_true(e[side] == TM_NONE ||
-                        same == facet->start[f + 1] - facet->start[f]);
-        }
-        if (e[0] == TM_NONE || e[1] == TM_NONE)
-            continue;
-        assert_true(mix->attribute[mix->attributes * e[0]] !=
-                    mix->attribute[mix->attributes * e[1]]);
-        between++;
-    }
-    return between;
-}
-
-/* Each face of the boundary is a row of .facet, with a marker of the surface, and where
- * there are regions each face between two. */
+/* Each face of the boundary is a row of .facet, with a marker of the surface. */
 static void check_facets(const tm_stream *stream, const tm_examination *found)
 {
     const tm_block *facet = tm_stream_find(stream, ".facet");
@@ -102,10 +36,7 @@ static void check_facets(const tm_stream *stream, const tm_examination *found)
     int32_t most = 0;
     assert_non_null(facet);
     assert_true(facet->markers);
-    const size_t between =
-        tm_stream_find(stream, ".mix")->attributes > 1 ? count_interfaces(stream) : 0;
-    assert_int_equal(check_interfaces(stream), between);
-    assert_int_equal(facet->count, found->boundary_faces + between);
+    assert_int_equal(facet->count, found->boundary_faces);
     for (size_t f = 0; f < face->count; f++)
         most = face->marker[f] > most ? face->marker[f] : most;
     for (size_t f = 0; f < facet->count; f++)
@@ -388,127 +319,6 @@ static void test_divided(void **unused)
     assert_true(divided > 0);
 }
 
-/* The volume of each region, by its number, from 1; 0 of those that there are not. */
-enum { REGIONS = 4 };
-
-static void measure_regions(const tm_repair_state *s, double volume[REGIONS])
-{
-    for (int r = 0; r < REGIONS; r++)
-        volume[r] = 0;
-    for (size_t e = 0; e < s->mesh.elements; e++) {
-        const double number = s->region[s->origin[e]];
-        assert_true(number == 1 || number == 2 || number == 3);
-        const uint32_t *item = s->mesh.item + s->mesh.start[e];
-        const tm_element_shape *shape =
-            &tm_element_shapes[s->mesh.start[e + 1] - s->mesh.start[e]];
-        for (size_t f = 0; f < shape->faces; f++) {
-            const uint8_t *corner = shape->face[f];
-            for (size_t i = 2; i < tm_mixed_face_nodes(corner); i++)
-                volume[(int)number] += tm_tet_volume(
-                    s->mesh.xyz[item[corner[0]]], s->mesh.xyz[item[corner[i]]],
-                    s->mesh.xyz[item[corner[i - 1]]], s->mesh.xyz[item[0]]);
-        }
-    }
-}
-
-/* Regions have their numbers, and their volumes, by other means, still: octants are split
- * where thresholds are high, where a list says so, or by the thesis' loop. */
-static void test_regions(void **unused)
-{
-    (void)unused;
-    size_t split = 0;
-    for (int round = 0; round < 3 * ROUNDS; round++) {
-        static const double close = 0.02, coarse = 0.2; /* nothing is promised */
-        const int method = round % 3;                   /* full, refine, a list */
-        tm_polygon_surface p;
-        repair_case c;
-        tm_error error;
-        double was[REGIONS], is[REGIONS], whole[REGIONS] = {0};
-        tm_polygon_surface_init(&p);
-        if (round == 0) { /* it is known that splitting helps */
-            add_pyramid(&p, 2.4);
-            add_cube(&p, 0.3, 0.3, 0.2, 0.35);
-        } else {
-            add_random_regions(&p);
-        }
-        start_case_of(&c, &p, 3, true);
-        assert_non_null(c.state.region);
-        assert_ok(tm_surface_region_volumes(&c.surface, whole, &error), &error);
-        measure_regions(&c.state, was);
-        const uint32_t octant =
-            c.state.octant[random_below((unsigned)c.state.mesh.elements)];
-        const tm_repair_options options = {
-            .method = method == 1 ? TM_REPAIR_REFINE : TM_REPAIR_FULL,
-            .threshold = method == 2  ? 0.1
-                         : round == 0 ? 0.2
-                                      : random_between(0.3, 0.5),
-            .iterations = method == 2 ? 1 : 2,
-            .growth = 4,
-            .octant = method == 2 ? &octant : NULL,
-            .octants = method == 2};
-        tm_repair_report report;
-        const tm_examination first = examine_state(&c.state);
-        assert_ok(tm_repair(&c.state, &c.surface, &options, &report, &error), &error);
-        assert_true(method != 2 || c.state.remade);
-        measure_regions(&c.state, is);
-        for (int r = 0; r < REGIONS; r++) {
-            assert_int_equal(is[r] > 0, was[r] > 0);
-            assert_true(fabs(is[r] - whole[r]) <=
-                        fabs(was[r] - whole[r]) +
-                            (method == 0 && c.state.remade ? close : coarse) * whole[r]);
-        }
-        if (method == 0)
-            check_not_worse(&report.before, &report.after);
-        check_state(&c.state, &c.surface, &first);
-        split += c.state.remade && method == 0;
-        check_stream(&c, &report);
-        end_case(&c);
-    }
-    assert_true(split > 0);
-}
-
-/* One surface in another one that the mesh has as a hole: it is not filled. */
-static void test_hole(void **unused)
-{
-    (void)unused;
-    tm_error error;
-    tm_repair_report report;
-    tm_polygon_surface p;
-    repair_case c;
-    const uint32_t octant = 0;
-    const double middle[3] = {0.5, 0.5, 0.5};
-    tm_polygon_surface_init(&p);
-    add_cube(&p, 0, 0, 0, 1);
-    add_sphere(&p, middle, 0.3, 4, true);
-    add_cube(&p, 0.4, 0.4, 0.4, 0.2);
-    start_case_of(&c, &p, 4, true);
-    /* the innermost one is left out */
-    size_t kept = 0;
-    tm_mixed_mesh *mesh = &c.state.mesh;
-    for (size_t e = 0; e < mesh->elements; e++) {
-        if (c.state.region[e] == 3)
-            continue;
-        const size_t begin = mesh->start[e], k = mesh->start[e + 1] - begin;
-        memmove(mesh->item + mesh->start[kept], mesh->item + begin,
-                k * sizeof *mesh->item);
-        c.state.octant[kept] = c.state.octant[e];
-        c.state.origin[kept] = (uint32_t)e;
-        mesh->start[kept + 1] = mesh->start[kept] + k;
-        kept++;
-    }
-    assert_in_range(kept, 1, mesh->elements - 1);
-    mesh->elements = kept;
-    assert_int_equal(tm_repair(&c.state, &c.surface,
-                               &(tm_repair_options){.method = TM_REPAIR_FULL,
-                                                    .octant = &octant,
-                                                    .octants = 1,
-                                                    .growth = 2},
-                               &report, &error),
-                     TM_ERROR_INPUT);
-    assert_non_null(strstr(error.what, "regions"));
-    end_case(&c);
-}
-
 typedef struct {
     size_t left; /* questions until it is wanted */
     bool wanted;
@@ -612,8 +422,7 @@ int main(void)
         cmocka_unit_test(test_split),       cmocka_unit_test(test_held),
         cmocka_unit_test(test_refine),      cmocka_unit_test(test_divided),
         cmocka_unit_test(test_alone),       cmocka_unit_test(test_ended),
-        cmocka_unit_test(test_valid_first), cmocka_unit_test(test_regions),
-        cmocka_unit_test(test_hole),
+        cmocka_unit_test(test_valid_first),
     };
     return cmocka_run_group_tests(tests, start_mpi, NULL);
 }

@@ -184,8 +184,6 @@ static tm_status compare(const repair *r, const tm_repair_state *made,
     if (status == TM_OK)
         status = tm_repair_shape_measure(&is, made, r->surface, error);
     *better = status == TM_OK && tm_repair_shape_keeps(&is, &was, r->surface);
-    if (status == TM_OK && *better)
-        status = tm_repair_regions_keep(made, r->state, r->surface, better, error);
     return status;
 }
 
@@ -199,7 +197,7 @@ static tm_status refine(repair *r, const uint32_t *octant, size_t count, outcome
     r->report->iterations++;
     tm_status status =
         tm_repair_remake(&made, r->state, r->surface, octant, count, true, error);
-    if (status == TM_ERROR_INPUT) { /* too deep, or no such regions */
+    if (status == TM_ERROR_INPUT) { /* too deep: there is no such octree */
         tm_repair_state_free(&made);
         r->remade = r->remade_at_most;
         return TM_OK;

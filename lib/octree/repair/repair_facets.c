@@ -2,7 +2,6 @@
 #include "repair_facets.h"
 
 #include "../../element/shape.h"
-#include "../layer/octree_mesh_stream.h"
 #include "repair_trial.h"
 
 #include <string.h>
@@ -106,79 +105,5 @@ tm_status tm_repair_move_facets(tm_block *facet, const tm_mixed_mesh *mesh,
     }
     tm_node_elements_free(&around);
     tm_stream_free(&other);
-    return status;
-}
-
-/* The element beyond a face, if the face is to be a facet: TM_NONE on the boundary. Seen
- * from the other side, and within a region, it is none. */
-static bool is_outer(const tm_repair_state *state, const tm_node_elements *around,
-                     size_t e, size_t k, const uint32_t *node, uint32_t *beyond)
-{
-    for (size_t i = 0; i < k; i++)
-        if (state->on[node[i]] == TM_NODE_INSIDE)
-            return false;
-    *beyond = find(&state->mesh, around, k, node, true);
-    return *beyond == TM_NONE ||
-           (state->region && *beyond > e &&
-            state->region[state->origin[e]] != state->region[state->origin[*beyond]]);
-}
-
-static int32_t marker_of(const tm_mixed_mesh *mesh, const tm_surface *surface, size_t k,
-                         const uint32_t *node, tm_surface_point *at)
-{
-    double middle[3] = {0, 0, 0};
-    for (size_t i = 0; i < k; i++)
-        for (int j = 0; j < 3; j++)
-            middle[j] += mesh->xyz[node[i]][j] / (double)k;
-    tm_surface_closest(surface, middle, TM_NONE, at);
-    return surface->marker[at->triangle];
-}
-
-/* Fills the rows of a block, or, where it is NULL, counts them, and their nodes. */
-static void list_outer(tm_block *facet, size_t *rows, size_t *items,
-                       const tm_repair_state *state, const tm_surface *surface,
-                       const tm_node_elements *around)
-{
-    const tm_mixed_mesh *mesh = &state->mesh;
-    tm_surface_point at = {.triangle = TM_NONE};
-    *rows = *items = 0;
-    for (size_t e = 0; e < mesh->elements; e++) {
-        const uint32_t *item = mesh->item + mesh->start[e];
-        const tm_element_shape *shape =
-            &tm_element_shapes[mesh->start[e + 1] - mesh->start[e]];
-        for (size_t f = 0; f < shape->faces; f++) {
-            const size_t k = tm_mixed_face_nodes(shape->face[f]);
-            uint32_t node[QUADRILATERAL], beyond;
-            for (size_t i = 0; i < k; i++)
-                node[i] = item[shape->face[f][i]];
-            if (!is_outer(state, around, e, k, node, &beyond))
-                continue;
-            if (facet) {
-                facet->start[*rows] = *items;
-                facet->integer[2 * *rows] = (uint32_t)e;
-                facet->integer[2 * *rows + 1] = beyond;
-                facet->marker[*rows] = marker_of(mesh, surface, k, node, &at);
-                memcpy(facet->item + *items, node, k * sizeof *node);
-                facet->start[*rows + 1] = *items + k;
-            }
-            *rows += 1;
-            *items += k;
-        }
-    }
-}
-
-tm_status tm_repair_remake_facets(tm_block *facet, const tm_repair_state *state,
-                                  const tm_surface *surface, tm_error *error)
-{
-    tm_node_elements around = {0};
-    size_t rows, items;
-    tm_status status = tm_node_elements_find(&around, &state->mesh, error);
-    if (status == TM_OK) {
-        list_outer(NULL, &rows, &items, state, surface, &around);
-        status = tm_block_allocate(facet, rows, items, error);
-    }
-    if (status == TM_OK)
-        list_outer(facet, &rows, &items, state, surface, &around);
-    tm_node_elements_free(&around);
     return status;
 }

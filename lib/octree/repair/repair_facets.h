@@ -5,8 +5,6 @@
 
 #include "../../mesh/mixed_mesh.h"
 #include "../../stream/stream.h"
-#include "../../surface/surface.h"
-#include "repair_state.h"
 
 /* Names the elements at each facet anew, which have a face with its nodes; a
  * quadrilateral that is no more, but two triangles in its place, becomes two rows. A
@@ -14,11 +12,5 @@
  * memory is out. O(elements + facets). */
 tm_status tm_repair_move_facets(tm_block *facet, const tm_mixed_mesh *mesh,
                                 tm_error *error);
-
-/* Makes rows, with markers, of all faces of the boundary, and of those between elements
- * of different regions: the marker is that of the triangle that is closest to the middle.
- * TM_ERROR_SYSTEM where memory is out. O(elements + facets log n). */
-tm_status tm_repair_remake_facets(tm_block *facet, const tm_repair_state *state,
-                                  const tm_surface *surface, tm_error *error);
 
 #endif

@@ -124,41 +124,26 @@ static tm_status find_interfaces(const tm_mixed_mesh *mesh, const tm_block *mix,
     return TM_OK;
 }
 
-/* Whether elements differ in their first attribute. */
-static bool has_several(const tm_block *mix)
+/* Whether the attribute of .node is the place of nodes that are marked; or it is if those
+ * between regions are, too. */
+static tm_status find_places(const tm_repair_state *state, const tm_block *node,
+                             const tm_block *mix, bool *where, tm_repair_notes *notes,
+                             tm_error *error)
 {
-    const size_t k = mix->attributes;
-    for (size_t e = 1; k > 0 && e < mix->count; e++)
-        if (mix->attribute[k * e] != mix->attribute[0])
-            return true;
-    return false;
-}
-
-tm_status tm_repair_find_regions(tm_repair_state *state, const tm_stream *stream,
-                                 tm_error *error)
-{
-    const tm_block *node = tm_stream_find(stream, ".node");
-    const tm_block *mix = tm_stream_find(stream, ".mix");
-    if (!has_several(mix))
+    notes->attributed = are_places(node, where);
+    if (notes->attributed || mix->attributes == 0)
         return TM_OK;
-    bool *where = calloc(state->mesh.nodes + 1, sizeof *where);
-    if (!where)
+    bool *both = tm_new(state->mesh.nodes, sizeof *both);
+    if (!both)
         return tm_fail_memory(error);
-    tm_status status = find_boundary(&state->mesh, where, error);
-    bool has = status == TM_OK && !are_places(node, where);
-    if (has) {
-        status = find_interfaces(&state->mesh, mix, where, error);
-        has = status == TM_OK && are_places(node, where);
+    memcpy(both, where, state->mesh.nodes * sizeof *both);
+    const tm_status status = find_interfaces(&state->mesh, mix, both, error);
+    if (status == TM_OK && are_places(node, both)) {
+        notes->attributed = notes->regions = true;
+        memcpy(where, both, state->mesh.nodes * sizeof *both);
     }
-    free(where);
-    if (!has)
-        return status;
-    state->region = tm_new(mix->count, sizeof *state->region);
-    if (!state->region)
-        return tm_fail_memory(error);
-    for (size_t e = 0; e < mix->count; e++)
-        state->region[e] = mix->attribute[mix->attributes * e];
-    return TM_OK;
+    free(both);
+    return status;
 }
 
 static void hold_all(tm_repair_state *state, const bool *where)
@@ -180,9 +165,8 @@ static tm_status find_rules(tm_repair_state *state, const tm_stream *stream,
     if (!where)
         return tm_fail_memory(error);
     tm_status status = find_boundary(&state->mesh, where, error);
-    if (status == TM_OK && state->region)
-        status = find_interfaces(&state->mesh, mix, where, error);
-    notes->attributed = are_places(node, where);
+    if (status == TM_OK)
+        status = find_places(state, node, mix, where, notes, error);
     if (status == TM_OK && surface)
         status = tm_repair_find_rules(surface, state->mesh.nodes,
                                       (const double(*)[3])state->mesh.xyz,
@@ -238,5 +222,10 @@ tm_status tm_repair_prepare(tm_repair_state *state, const tm_stream *stream,
     tm_status status = find_octree(state, stream, surface, notes, error);
     if (status == TM_OK)
         status = find_rules(state, stream, surface, notes, error);
-    return status;
+    if (status != TM_OK || !notes->regions)
+        return status;
+    tm_octree_free(&state->octree);
+    tm_fail(&notes->no_octree, TM_ERROR_INPUT,
+            "octants of several regions cannot be split");
+    return TM_OK;
 }

@@ -116,8 +116,6 @@ tm_status tm_repair_remake(tm_repair_state *to, const tm_repair_state *from,
     status = tm_octree_mesh_make(&made, &to->octree, surface, inner, error);
     if (status == TM_OK)
         status = take_mesh(to, &made, surface, error);
-    if (status == TM_OK)
-        status = tm_repair_take_regions(to, from, &made, surface, error);
     tm_octree_mesh_free(&made);
     return status;
 }

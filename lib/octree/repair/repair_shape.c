@@ -162,11 +162,6 @@ static double volume_of(const tm_surface *s)
     return volume;
 }
 
-bool tm_repair_volume_keeps(double a, double b, double volume)
-{
-    return fabs(a - volume) <= fabs(b - volume) + volume_off * fabs(volume);
-}
-
 static size_t apart(int64_t a, int64_t b)
 {
     return (size_t)(a > b ? a - b : b - a);
@@ -178,13 +173,14 @@ bool tm_repair_shape_keeps(const tm_repair_shape *a, const tm_repair_shape *b,
     if (a->corners < b->corners || a->curves < (1 - curves_less) * b->curves ||
         a->defects > b->defects)
         return false;
-    if (surface->by_winding || surface->regions)
-        /* it is open, or crosses itself, and has no volume; or each region has its own */
+    if (surface->by_winding) /* open, or it crosses itself: it has no volume */
         return a->components == b->components && a->euler == b->euler;
+    const double volume = volume_of(surface);
     return apart((int64_t)a->components, (int64_t)surface->components) <=
                apart((int64_t)b->components, (int64_t)surface->components) &&
            apart(a->euler, surface->euler) <= apart(b->euler, surface->euler) &&
-           tm_repair_volume_keeps(a->volume, b->volume, volume_of(surface));
+           fabs(a->volume - volume) <=
+               fabs(b->volume - volume) + volume_off * fabs(volume);
 }
 
 /* The triangles of the boundary; quadrilaterals are two. malloc'ed. */

@@ -25,14 +25,9 @@ typedef struct tm_repair_shape {
 tm_status tm_repair_shape_measure(tm_repair_shape *shape, const tm_repair_state *state,
                                   const tm_surface *surface, tm_error *error);
 
-/* Whether a volume is no further from the surface's than b is, but for a thousandth. */
-bool tm_repair_volume_keeps(double a, double b, double volume);
-
 /* Whether `a` keeps as much as `b` does: all of its corners, its sharp edges but for a
  * hundredth, no more defects, and pieces, Euler characteristic and volume no further from
- * the surface's; the volume may be off by a thousandth. Where the surface has regions, or
- * no volume, pieces and Euler characteristic are to be the same, and the volume is not
- * looked at. */
+ * the surface's; the volume may be off by a thousandth. */
 bool tm_repair_shape_keeps(const tm_repair_shape *a, const tm_repair_shape *b,
                            const tm_surface *surface);
 

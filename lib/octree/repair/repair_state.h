@@ -19,29 +19,18 @@ TM_EXTERN_C_BEGIN
 #define TM_REPAIR_FLAT 0.02
 #define TM_REPAIR_GOOD 0.2
 
-/* What the surface has of a region: its volume, NAN where it has none (it is open, or it
- * crosses itself). */
-typedef struct tm_repair_region {
-    double number;
-    double volume;
-} tm_repair_region;
-
 /* Numbers of octants are those of rows of .octant. */
 typedef struct tm_repair_state {
     tm_mixed_mesh mesh;
     tm_node_rule *rule; /* [nodes]; of repair_boundary.h */
     uint8_t *on;        /* [nodes]: tm_node_class */
     uint32_t *octant;   /* [elements]: TM_NONE where it is in none */
-    uint32_t *origin;   /* [elements]: of which it is a part, ascending */
+    uint32_t *origin;   /* [elements]: of which it is a part, ascending, until `remade` */
     tm_octree octree;   /* no leaves: there is none */
     uint32_t *row;      /* [leaves]: of the octant, TM_NONE of one that was missing */
     uint32_t *id;       /* [octants]: in .oct and .ref; NULL: their numbers from 0 */
-    double *region; /* [elements, as they were read or remade]: the number of the region
-                       of element e is region[origin[e]]; NULL: there is one */
-    size_t regions; /* of `fill`; 0 unless `remade` */
-    tm_repair_region *fill; /* by number, ascending */
-    bool divided; /* some elements are parts of what they were; nodes were added */
-    bool remade;  /* from another octree: all of it is new */
+    bool divided;       /* some elements are parts of what they were; nodes were added */
+    bool remade;        /* from another octree: all of it is new */
     const tm_progress *progress; /* of the repair; NULL in trials */
     const tm_stop *stop;         /* the same */
 } tm_repair_state;

@@ -4,7 +4,6 @@
 #define TM_REPAIR_REPAIR_STEPS_H
 
 #include "../../surface/surface.h"
-#include "../layer/octree_mesh.h"
 #include "repair_state.h"
 
 /* Room for as many nodes and elements as to->mesh says, and their items. */
@@ -58,24 +57,9 @@ tm_status tm_repair_divide(tm_repair_state *state, const tm_surface *surface,
 
 /* Makes *to, which must be zeros, of the octree with those octants split once, balanced
  * and meshed again; with `layer` also those between them and the surface. It is to be
- * freed, after an error too. TM_ERROR_INPUT: octants would be too deep, none is inside,
- * or regions would not be what they were. */
+ * freed, after an error too. */
 tm_status tm_repair_remake(tm_repair_state *to, const tm_repair_state *from,
                            tm_surface *surface, const uint32_t *octant, size_t count,
                            bool layer, tm_error *error);
-
-/* Gives the elements of *to, which was made of a refinement of the octree of *from, the
- * numbers of regions: of the one with which each has most octants in common. *to is
- * otherwise
- * whole. TM_ERROR_INPUT where a region of the surface was not there, or one of *from is
- * there no more. Where *from has one region nothing is done. O(n log n). */
-tm_status tm_repair_take_regions(tm_repair_state *to, const tm_repair_state *from,
-                                 const tm_octree_mesh *made, const tm_surface *surface,
-                                 tm_error *error);
-
-/* Whether the regions of `a`, which was remade, keep what those of `b` have: each by
- * itself, by tm_repair_shape_keeps(), and its volume. O(n log n). */
-tm_status tm_repair_regions_keep(const tm_repair_state *a, const tm_repair_state *b,
-                                 const tm_surface *surface, bool *keeps, tm_error *error);
 
 #endif

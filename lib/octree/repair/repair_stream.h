@@ -13,6 +13,7 @@ TM_EXTERN_C_BEGIN
 /* What of the stream could be used, and what was left out. */
 typedef struct tm_repair_notes {
     bool attributed;    /* the attribute of .node says where nodes are */
+    bool regions;       /* nodes between regions have places, too: no octree is found */
     tm_error no_octree; /* why there is none; its message is empty where there is one */
     char dropped[256];  /* blocks that were removed, with blanks between */
 } tm_repair_notes;
@@ -24,13 +25,6 @@ typedef struct tm_repair_notes {
 tm_status tm_repair_from_stream(tm_repair_state *state, tm_stream *stream,
                                 tm_error *error);
 
-/* Finds state->region: where the first attribute of .mix has several values and places,
- * the only attribute of .node, say that nodes between elements that differ in it are on
- * the surface as those of the boundary are. The surface is to be built with regions then.
- * TM_ERROR_SYSTEM where memory is out. O(elements). */
-tm_status tm_repair_find_regions(tm_repair_state *state, const tm_stream *stream,
-                                 tm_error *error);
-
 /* Whether there is something to do: an element is bad, or there is a surface and a node
  * is off the surface, or may be, as the attribute of .node does not say that none is. */
 bool tm_repair_is_needed(const tm_repair_state *state, const tm_stream *stream,
@@ -38,8 +32,9 @@ bool tm_repair_is_needed(const tm_repair_state *state, const tm_stream *stream,
 
 /* Finds what nodes may do, and the octree. The place of a node is that of the only
  * attribute of .node, as tm_octree_mesh_to_stream() writes it, if the nodes of the
- * boundary and between regions, and no others, have one; else it is found. With surface
- * NULL these nodes do not move, and there is no octree. *notes need not be initialised.
+ * boundary, or these and those between regions of .mix, and no others, have one; else it
+ * is found. With surface NULL nodes of the
+ * boundary do not move, and there is no octree. *notes need not be initialised.
  * TM_ERROR_SYSTEM where memory is out. */
 tm_status tm_repair_prepare(tm_repair_state *state, const tm_stream *stream,
                             const tm_surface *surface, tm_repair_notes *notes,

@@ -2,9 +2,11 @@
 #include "repair_stream.h"
 
 #include "../../base/array.h"
+#include "../../element/shape.h"
 #include "../layer/octree_mesh_stream.h"
 #include "../forest/octree_stream.h"
 #include "repair_facets.h"
+#include "../../mesh/mixed_boundary.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -155,40 +157,32 @@ static tm_status give_divided(tm_repair_state *state, tm_stream *stream,
     return status == TM_OK ? spread_elements(state, mix, error) : status;
 }
 
-/* The region of an element is its first attribute again, and the level of its octant the
- * last one, if it was. */
-static tm_status give_attributes(const tm_repair_state *state, tm_block *mix, bool levels,
-                                 tm_error *error)
+/* The level of its octant is an element's attribute again, if it was. */
+static tm_status give_levels(const tm_repair_state *state, tm_block *mix, bool levels,
+                             tm_error *error)
 {
-    const size_t k = (state->region ? 1u : 0u) + (levels ? 1u : 0u);
-    mix->attributes = k;
+    mix->attributes = levels ? 1 : 0;
     mix->markers = false;
     free(mix->marker);
     mix->marker = NULL;
-    if (!renew((void **)&mix->attribute, k * state->mesh.elements,
+    if (!renew((void **)&mix->attribute, levels ? state->mesh.elements : 0,
                sizeof *mix->attribute))
         return tm_fail_memory(error);
-    for (size_t e = 0; k > 0 && e < state->mesh.elements; e++) {
-        if (levels)
-            mix->attribute[k * e + k - 1] = state->octree.leaf[state->octant[e]].level;
-        if (state->region)
-            mix->attribute[k * e] = state->region[state->origin[e]];
-    }
+    for (size_t e = 0; levels && e < state->mesh.elements; e++)
+        mix->attribute[e] = state->octree.leaf[state->octant[e]].level;
     return TM_OK;
 }
 
-/* Whether the only attribute of .mix, or that behind the region, is the level of the
- * octant. */
-static bool has_levels(const tm_block *mix, const tm_block *octant, size_t attributes)
+/* Whether the only attribute of .mix is the level of the octant. */
+static bool has_levels(const tm_block *mix, const tm_block *octant)
 {
     enum { FIRST = 4, PAST, COLUMNS };
-    const size_t k = attributes;
-    if (mix->attributes != k || !octant)
+    if (mix->attributes != 1 || !octant)
         return false;
     for (size_t o = 0; o < octant->count; o++) {
         const uint32_t *row = octant->integer + o * COLUMNS;
         for (uint32_t e = row[FIRST]; e < row[PAST]; e++)
-            if (mix->attribute[k * e + k - 1] != row[0])
+            if (mix->attribute[e] != row[0])
                 return false;
     }
     return true;
@@ -211,17 +205,48 @@ static tm_status give_octants(const tm_repair_state *state, tm_stream *stream,
     return status;
 }
 
-/* Facets of nothing but the boundary, and between regions, are made anew; others are of
- * elements that are gone. */
-static bool are_outer(const tm_block *facet, const tm_block *mix)
+/* The boundary faces with the markers of the triangles closest to their middles. */
+static tm_status give_facets(const tm_repair_state *state, const tm_surface *surface,
+                             tm_block *facet, tm_error *error)
 {
-    for (size_t f = 0; f < facet->count; f++) {
-        const uint32_t *e = facet->integer + 2 * f;
-        if (e[0] != TM_NONE && e[1] != TM_NONE &&
-            (mix->attributes == 0 || mix->attribute[mix->attributes * e[0]] ==
-                                         mix->attribute[mix->attributes * e[1]]))
-            return false;
+    const tm_mixed_mesh *mesh = &state->mesh;
+    uint32_t *face;
+    size_t faces;
+    tm_status status = tm_mixed_boundary_faces(mesh, &face, &faces, error);
+    if (status == TM_OK)
+        status = tm_block_allocate(facet, faces, 4 * faces, error);
+    size_t items = 0;
+    tm_surface_point at = {.triangle = TM_NONE};
+    for (size_t f = 0; status == TM_OK && f < faces; f++) {
+        const size_t e = face[f] >> TM_FACE_SHIFT;
+        const uint32_t *item = mesh->item + mesh->start[e];
+        const uint8_t *corner = tm_element_shapes[mesh->start[e + 1] - mesh->start[e]]
+                                    .face[face[f] & ((1u << TM_FACE_SHIFT) - 1)];
+        const size_t k = tm_mixed_face_nodes(corner);
+        double middle[3] = {0, 0, 0};
+        facet->start[f] = items;
+        for (size_t i = 0; i < k; i++) {
+            facet->item[items++] = item[corner[i]];
+            for (int j = 0; j < 3; j++)
+                middle[j] += mesh->xyz[item[corner[i]]][j] / (double)k;
+        }
+        facet->start[f + 1] = items;
+        tm_surface_closest(surface, middle, TM_NONE, &at);
+        facet->integer[2 * f] = (uint32_t)e;
+        facet->integer[2 * f + 1] = TM_NONE;
+        facet->marker[f] = surface->marker[at.triangle];
     }
+    free(face);
+    return status;
+}
+
+/* Facets of nothing but the boundary are made anew; others are of elements that are gone.
+ */
+static bool is_boundary(const tm_block *facet)
+{
+    for (size_t f = 0; f < facet->count; f++)
+        if (facet->integer[2 * f + 1] != TM_NONE)
+            return false;
     return true;
 }
 
@@ -232,14 +257,10 @@ static tm_status give_remade(tm_repair_state *state, tm_stream *stream,
     remove_others(stream, true, notes);
     tm_block *node = tm_stream_find(stream, ".node");
     tm_block *mix = tm_stream_find(stream, ".mix");
-    tm_block *facet = tm_stream_find(stream, ".facet");
-    const bool again =
-        facet && surface->marker && facet->markers && are_outer(facet, mix);
-    const size_t regions = state->region ? 1 : 0;
-    const bool levels = has_levels(mix, tm_stream_find(stream, ".octant"), regions + 1);
-    if (!levels && mix->attributes > regions)
+    const bool levels = has_levels(mix, tm_stream_find(stream, ".octant"));
+    if (!levels && mix->attributes > 0)
         note_dropped(notes, "attributes of .mix");
-    tm_status status = give_attributes(state, mix, levels, error);
+    tm_status status = give_levels(state, mix, levels, error);
     node->attributes = 1;
     node->markers = false;
     free(node->marker);
@@ -249,15 +270,15 @@ static tm_status give_remade(tm_repair_state *state, tm_stream *stream,
         status = tm_fail_memory(error);
     if (status == TM_OK)
         status = give_octants(state, stream, error);
-    facet = tm_stream_find(stream, ".facet");
+    tm_block *facet = tm_stream_find(stream, ".facet");
     if (status != TM_OK || !facet)
         return status;
-    if (!again) {
+    if (!surface->marker || !facet->markers || !is_boundary(facet)) {
         note_dropped(notes, facet->name);
         tm_stream_remove(stream, facet);
         return TM_OK;
     }
-    return tm_repair_remake_facets(facet, state, surface, error);
+    return give_facets(state, surface, facet, error);
 }
 
 /* Moves an array. */
