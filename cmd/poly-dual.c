@@ -21,11 +21,12 @@ static const double most_feature_angle = 90;
 static void put_blocks(filter *f, tm_stream *stream, tm_dual_blocks *made)
 {
     static const char *const gone[] = {".ele", ".face"};
-    tm_block *const block[] = {&made->node, &made->edge, &made->facet, &made->cell};
+    enum { BLOCKS = 4 };
+    tm_block *const block[BLOCKS] = {&made->node, &made->edge, &made->facet, &made->cell};
     for (size_t k = 0; k < sizeof gone / sizeof *gone; k++)
         if (tm_stream_find(stream, gone[k]))
             tm_stream_remove(stream, tm_stream_find(stream, gone[k]));
-    for (size_t k = 0; k < sizeof block / sizeof *block; k++) {
+    for (size_t k = 0; k < BLOCKS; k++) {
         tm_block *to = tm_stream_find(stream, block[k]->name);
         if (!to && block[k] == &made->edge)
             continue;
