@@ -122,8 +122,8 @@ static void test_regions(void **state)
         find_groups(label, group);
         uint32_t region[CUBES];
         for (int i = 0; i < CUBES; i++) {
-            const double centre[3] = {i % SIDE + 0.5, i / SIDE % SIDE + 0.5,
-                                      i / SIDE / SIDE + 0.5};
+            const int at[3] = {i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE};
+            const double centre[3] = {at[0] + 0.5, at[1] + 0.5, at[2] + 0.5};
             region[i] = tm_surface_region_at(&surface, centre);
             const bool is = label[i] != 0 || is_closed_in(group, group[i]);
             assert_int_equal(region[i] != 0, is);
