@@ -21,21 +21,16 @@ static const double most_feature_angle = 90;
 static void put_blocks(filter *f, tm_stream *stream, tm_dual_blocks *made)
 {
     static const char *const gone[] = {".ele", ".face"};
-    enum { BLOCKS = 4 };
-    tm_block *const block[BLOCKS] = {&made->node, &made->edge, &made->facet, &made->cell};
+    tm_error error;
+    const bool has_edges = tm_stream_find(stream, ".edge");
     for (size_t k = 0; k < sizeof gone / sizeof *gone; k++)
         if (tm_stream_find(stream, gone[k]))
             tm_stream_remove(stream, tm_stream_find(stream, gone[k]));
-    for (size_t k = 0; k < BLOCKS; k++) {
-        tm_block *to = tm_stream_find(stream, block[k]->name);
-        if (!to && block[k] == &made->edge)
-            continue;
-        if (!to && !(to = tm_stream_add(stream, block[k]->name)))
-            filter_fail_memory(f);
-        const tm_block old = *to;
-        *to = *block[k];
-        *block[k] = old;
-    }
+    if (tm_stream_put(stream, &made->node, &error) != TM_OK ||
+        (has_edges && tm_stream_put(stream, &made->edge, &error) != TM_OK) ||
+        tm_stream_put(stream, &made->facet, &error) != TM_OK ||
+        tm_stream_put(stream, &made->cell, &error) != TM_OK)
+        filter_fail(f, &error);
     tm_dual_blocks_free(made);
 }
 

@@ -192,19 +192,17 @@ static settings read_options(filter *f)
 
 /* Puts the blocks of the polyhedra in the place of others. */
 static void put_blocks(filter *f, tm_stream *stream, const char *const *gone,
-                       size_t count, const tm_block made[2])
+                       size_t count, tm_block made[2])
 {
+    tm_error error;
     for (size_t k = 0; k < count; k++) {
         tm_block *block = tm_stream_find(stream, gone[k]);
         if (block)
             tm_stream_remove(stream, block);
     }
-    for (int k = 0; k < 2; k++) {
-        tm_block *block = tm_stream_add(stream, made[k].name);
-        if (!block)
-            filter_fail_memory(f);
-        *block = made[k];
-    }
+    for (int k = 0; k < 2; k++)
+        if (tm_stream_put(stream, &made[k], &error) != TM_OK)
+            filter_fail(f, &error);
 }
 
 /* Appends the polyhedra of the tetrahedra to their attributes; order[k] is the k-th of
@@ -212,22 +210,18 @@ static void put_blocks(filter *f, tm_stream *stream, const char *const *gone,
 static void put_labels(filter *f, tm_stream *stream, const tm_partition *partition,
                        const uint32_t *order)
 {
+    tm_error error;
     tm_block *ele = tm_stream_find(stream, ".ele");
     if (!ele)
         return;
-    size_t width = ele->attributes;
-    double *attribute = malloc((width + 1) * ele->count * sizeof *attribute + 1);
-    if (!attribute)
+    double *number = malloc(ele->count * sizeof *number + 1);
+    if (!number)
         filter_fail_memory(f);
-    for (size_t k = 0; k < ele->count; k++) {
-        size_t t = order[k];
-        for (size_t a = 0; a < width; a++)
-            attribute[t * (width + 1) + a] = ele->attribute[t * width + a];
-        attribute[t * (width + 1) + width] = partition->cell[k] + stream->base;
-    }
-    free(ele->attribute);
-    ele->attribute = attribute;
-    ele->attributes = width + 1;
+    for (size_t k = 0; k < ele->count; k++)
+        number[order[k]] = partition->cell[k] + stream->base;
+    if (tm_block_add_attribute(ele, number, &error) != TM_OK)
+        filter_fail(f, &error);
+    free(number);
 }
 
 /* What was done, for the note, the history and --json. */

@@ -7,7 +7,6 @@
 #include "../base/array.h"
 #include "../examine/poly/poly_statistics.h"
 #include "../geom/vector.h"
-#include "../stream/block.h"
 
 #include <stdlib.h>
 #include <string.h>

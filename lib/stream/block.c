@@ -120,3 +120,20 @@ tm_status tm_block_allocate(tm_block *block, size_t count, size_t items, tm_erro
     zero(block->marker, count * sizeof *block->marker);
     return TM_OK;
 }
+
+tm_status tm_block_add_attribute(tm_block *block, const double *value, tm_error *error)
+{
+    const size_t width = block->attributes, wider = width + 1;
+    double *attribute = tm_new(wider * block->count, sizeof *attribute);
+    if (!attribute)
+        return tm_fail_memory(error);
+    for (size_t r = 0; r < block->count; r++) {
+        for (size_t a = 0; a < width; a++)
+            attribute[wider * r + a] = block->attribute[width * r + a];
+        attribute[wider * r + width] = value[r];
+    }
+    free(block->attribute);
+    block->attribute = attribute;
+    block->attributes = wider;
+    return TM_OK;
+}

@@ -28,7 +28,4 @@ const tm_block_shape *tm_block_shape_of(tm_block_kind kind);
  * their contents. False where memory is out; the block is then still consistent. */
 bool tm_block_resize(tm_block *block, size_t rows);
 
-/* Frees the arrays; name, kind, attributes and markers stay. */
-void tm_block_clear(tm_block *block);
-
 #endif

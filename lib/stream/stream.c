@@ -46,6 +46,17 @@ tm_block *tm_stream_add(tm_stream *stream, const char *name)
     return block;
 }
 
+tm_status tm_stream_put(tm_stream *stream, tm_block *made, tm_error *error)
+{
+    tm_block *to = tm_stream_find(stream, made->name);
+    if (!to && !(to = tm_stream_add(stream, made->name)))
+        return tm_fail_memory(error);
+    const tm_block old = *to;
+    *to = *made;
+    *made = old;
+    return TM_OK;
+}
+
 void tm_stream_remove(tm_stream *stream, tm_block *block)
 {
     tm_block_clear(block);

@@ -108,6 +108,11 @@ tm_block *tm_stream_find(const tm_stream *stream, const char *name);
  * name. NULL where memory is out. */
 tm_block *tm_stream_add(tm_stream *stream, const char *name);
 
+/* Puts a block where the one of its name is, or appends it. Its arrays are the stream's
+ * then, and *made has those that were there, or none. TM_ERROR_SYSTEM where memory is
+ * out: nothing has changed then. */
+tm_status tm_stream_put(tm_stream *stream, tm_block *made, tm_error *error);
+
 /* Removes a block and frees what it holds. */
 void tm_stream_remove(tm_stream *stream, tm_block *block);
 
@@ -118,6 +123,13 @@ void tm_stream_remove_if(tm_stream *stream, tm_block_test *gone, const void *con
 /* Allocates the arrays of a block for `count` rows (and `items` list items) by its kind,
  * attributes and markers; the arrays that were there are freed. Contents are zero. */
 tm_status tm_block_allocate(tm_block *block, size_t count, size_t items, tm_error *error);
+
+/* Frees the arrays; name, kind, attributes and markers stay. */
+void tm_block_clear(tm_block *block);
+
+/* Gives the rows one attribute more, value[count], after those that they have.
+ * TM_ERROR_SYSTEM where memory is out: nothing has changed then. */
+tm_status tm_block_add_attribute(tm_block *block, const double *value, tm_error *error);
 
 /* Appends "# line\n" to the history, or nothing where memory is out; line breaks inside
  * become blanks. */

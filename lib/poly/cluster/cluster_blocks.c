@@ -3,7 +3,6 @@
 #include "clusters.h"
 
 #include "../../base/array.h"
-#include "../../stream/block.h"
 #include "../facets.h"
 
 #include <stdio.h>
@@ -100,22 +99,16 @@ tm_status tm_cluster_blocks(const tm_cluster_mesh *mesh, const uint32_t *label,
 }
 
 /* One more attribute of cells: their parents' numbers. */
-static bool add_parents(tm_block *cell, const uint32_t *parent, unsigned base)
+static tm_status add_parents(tm_block *cell, const uint32_t *parent, unsigned base,
+                             tm_error *error)
 {
-    const size_t width = cell->attributes;
-    double *wide = tm_new((width + 1) * cell->count, sizeof *wide);
-    for (size_t c = 0; c < cell->count && wide; c++) {
-        if (width > 0)
-            memcpy(wide + c * (width + 1), cell->attribute + c * width,
-                   width * sizeof *wide);
-        wide[c * (width + 1) + width] = (double)parent[c] + base;
-    }
-    if (!wide)
-        return false;
-    free(cell->attribute);
-    cell->attribute = wide;
-    cell->attributes = width + 1;
-    return true;
+    double *number = tm_new(cell->count, sizeof *number);
+    for (size_t c = 0; c < cell->count && number; c++)
+        number[c] = (double)parent[c] + base;
+    const tm_status status =
+        number ? tm_block_add_attribute(cell, number, error) : tm_fail_memory(error);
+    free(number);
+    return status;
 }
 
 /* Fills the block of the nodes that facets have, and renumbers these. */
@@ -178,13 +171,9 @@ static tm_status put_level(tm_stream *stream, size_t number, level *l, tm_error 
         take_nodes(tm_stream_find(stream, ".node"), &made[1], &made[0], error);
     for (int k = 0; k < 3; k++) {
         snprintf(made[k].name, sizeof made[k].name, "level%zu%s", number, suffix[k]);
-        tm_block *to = status == TM_OK ? tm_stream_add(stream, made[k].name) : NULL;
-        if (to) {
-            *to = made[k];
-            continue;
-        }
+        if (status == TM_OK)
+            status = tm_stream_put(stream, &made[k], error);
         tm_block_clear(&made[k]);
-        status = status == TM_OK ? tm_fail_memory(error) : status;
     }
     return status;
 }
@@ -237,8 +226,8 @@ tm_status tm_cluster_levels(tm_stream *stream, size_t most,
         level next;
         status =
             make_next(stream, &now, &next, &parent, &own, ignore_markers, &joined, error);
-        if (status == TM_OK && joined && !add_parents(&now.cell, parent, stream->base))
-            status = tm_fail_memory(error);
+        if (status == TM_OK && joined)
+            status = add_parents(&now.cell, parent, stream->base, error);
         free(parent);
         if (*levels == 0)
             *tm_stream_find(stream, ".cell") = now.cell;

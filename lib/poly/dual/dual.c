@@ -2,7 +2,6 @@
 #include "dual.h"
 
 #include "../../base/array.h"
-#include "../../stream/block.h"
 #include "../../tet/mesh_measure.h"
 #include "../facets.h"
 #include "dual_steps.h"

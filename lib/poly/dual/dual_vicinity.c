@@ -2,7 +2,6 @@
 #include "dual_vicinity.h"
 
 #include "../../base/array.h"
-#include "../../stream/block.h"
 #include "../facets.h"
 
 #include <stdlib.h>

@@ -26,6 +26,8 @@ typedef struct {
 static void free_joining(joining *j)
 {
     tm_cell_faces_free(&j->faces);
+    tm_block_clear(&j->facet); /* what has not been put into the stream */
+    tm_block_clear(&j->cell);
     free(j->outer);
     free(j->label);
 }
@@ -146,15 +148,9 @@ static bool is_replaced(const tm_block *block, const void *context)
 
 static tm_status put_cells(joining *j, tm_error *error)
 {
-    tm_block *made[] = {&j->facet, &j->cell};
     tm_stream_remove_if(j->stream, is_replaced, NULL);
-    for (int k = 0; k < 2; k++) {
-        tm_block *block = tm_stream_add(j->stream, made[k]->name);
-        if (!block)
-            return tm_fail_memory(error);
-        *block = *made[k];
-    }
-    return TM_OK;
+    const tm_status status = tm_stream_put(j->stream, &j->facet, error);
+    return status == TM_OK ? tm_stream_put(j->stream, &j->cell, error) : status;
 }
 
 tm_status tm_join_octants(tm_stream *stream, tm_octant_join *report, tm_error *error)
