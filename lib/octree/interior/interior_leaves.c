@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "interior_leaves.h"
+#include "contacts.h"
 #include "region_leaves.h"
 
 #include "../../base/array.h"
@@ -69,52 +70,20 @@ void tm_interior_flip(tm_interior *interior, const tm_octree *octree, size_t lea
     put_in_masks(interior, octree, leaf);
 }
 
-/* A leaf at a node whose mask is bad. */
-typedef struct {
-    uint32_t node;
-    uint32_t leaf;
-} contact;
-
 typedef struct {
     const tm_octree *octree;
     const tm_surface *surface;
     tm_interior *interior;
     bool *bad; /* [nodes] */
-    size_t contacts, room;
-    contact *contact;
+    tm_contacts contacts;
 } cleaner;
 
-static int compare_contacts(const void *a, const void *b)
-{
-    const contact *ca = a;
-    const contact *cb = b;
-    if (ca->node != cb->node)
-        return ca->node < cb->node ? -1 : 1;
-    return (ca->leaf > cb->leaf) - (ca->leaf < cb->leaf);
-}
-
-/* Lists the leaves at bad nodes, node by node. */
+/* Lists the leaves at nodes whose mask is bad. */
 static tm_status find_contacts(cleaner *c, tm_error *error)
 {
-    c->contacts = 0;
     for (size_t n = 0; n < c->octree->nodes; n++)
         c->bad[n] = !tm_octant_mask_is_good(c->interior->mask[n]);
-    for (size_t l = 0; l < c->octree->leaves; l++) {
-        for (int p = 0; p < TM_LEAF_NODES; p++) {
-            const uint32_t node = c->octree->node[l][p];
-            if (node == TM_NONE || !c->bad[node])
-                continue;
-            void *more =
-                tm_grow(c->contact, &c->room, c->contacts + 1, sizeof *c->contact);
-            if (!more)
-                return tm_fail_memory(error);
-            c->contact = more;
-            c->contact[c->contacts++] = (contact){node, (uint32_t)l};
-        }
-    }
-    if (c->contacts > 0)
-        qsort(c->contact, c->contacts, sizeof *c->contact, compare_contacts);
-    return TM_OK;
+    return tm_contacts_find(&c->contacts, c->octree, c->bad, error);
 }
 
 double tm_leaf_depth(const tm_octree *octree, const tm_surface *surface, size_t l)
@@ -148,7 +117,7 @@ static int harm(const cleaner *c, size_t l)
 
 /* Changes one of the leaves contact[0 … count) around a node that is still bad: the one
  * that does most good, of these the one closest to the surface. */
-static void mend(cleaner *c, const contact *around, size_t count, bool only_remove)
+static void mend(cleaner *c, const tm_contact *around, size_t count, bool only_remove)
 {
     const double good = 1; /* a bad node less is worth a side of a leaf */
     size_t best = count;
@@ -171,14 +140,13 @@ static tm_status clean(cleaner *c, tm_error *error)
 {
     for (int round = 0;; round++) {
         tm_status status = find_contacts(c, error);
-        if (status != TM_OK || c->contacts == 0)
+        if (status != TM_OK || c->contacts.count == 0)
             return status;
-        for (size_t i = 0, next; i < c->contacts; i = next) {
-            const uint32_t node = c->contact[i].node;
-            for (next = i; next < c->contacts && c->contact[next].node == node;)
-                next++;
-            if (!tm_octant_mask_is_good(c->interior->mask[node]))
-                mend(c, &c->contact[i], next - i, round >= FREE_ROUNDS);
+        for (size_t i = 0, next; i < c->contacts.count; i = next) {
+            const tm_contact *around = &c->contacts.contact[i];
+            next = tm_contacts_next(&c->contacts, i);
+            if (!tm_octant_mask_is_good(c->interior->mask[around->node]))
+                mend(c, around, next - i, round >= FREE_ROUNDS);
         }
     }
 }
@@ -231,7 +199,7 @@ tm_status tm_interior_choose(tm_interior *interior, const tm_octree *octree,
                  .bad = malloc(octree->nodes)};
     tm_status status = c.bad ? clean(&c, error) : tm_fail_memory(error);
     free(c.bad);
-    free(c.contact);
+    free(c.contacts.contact);
     if (status == TM_OK)
         tm_interior_find_used(interior, octree);
     return status;

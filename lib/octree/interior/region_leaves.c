@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "region_leaves.h"
+#include "contacts.h"
 #include "region_sets.h"
 
 #include "../../base/array.h"
@@ -55,11 +56,6 @@ static void put(tm_interior *interior, const tm_octree *octree, size_t l, uint32
 
 static const uint8_t all_octants[OCTANTS] = {0, 1, 2, 3, 4, 5, 6, 7};
 
-/* A leaf at a node where something is wrong. */
-typedef struct {
-    uint32_t node, leaf;
-} contact;
-
 typedef struct {
     const tm_octree *octree;
     const tm_surface *surface;
@@ -70,17 +66,8 @@ typedef struct {
     bool *bad;        /* [nodes] */
     uint8_t *changes; /* [leaves]: how often it was changed, at most MOST_CHANGES */
     size_t wrong;     /* what is, at the beginning of a round */
-    size_t contacts, room;
-    contact *contact;
+    tm_contacts contacts;
 } cleaner;
-
-static int compare_contacts(const void *a, const void *b)
-{
-    const contact *ca = a, *cb = b;
-    if (ca->node != cb->node)
-        return ca->node < cb->node ? -1 : 1;
-    return (ca->leaf > cb->leaf) - (ca->leaf < cb->leaf);
-}
 
 /* The set of some of the octants' labels, and how many there are. */
 static uint64_t set_of(const uint32_t *octant, const uint8_t *which, unsigned count,
@@ -202,7 +189,7 @@ static unsigned badness(const cleaner *c, size_t l)
 /* Lists the leaves at bad nodes, node by node. */
 static tm_status find_contacts(cleaner *c, tm_error *error)
 {
-    c->contacts = c->wrong = 0;
+    c->wrong = 0;
     for (uint32_t n = 0; n < c->octree->nodes; n++) {
         const unsigned bad = node_badness(c, n);
         c->bad[n] = bad > 0;
@@ -214,21 +201,7 @@ static tm_status find_contacts(cleaner *c, tm_error *error)
             c->bad[c->octree->node[l][p]] = true;
         c->wrong += flat;
     }
-    for (size_t l = 0; l < c->octree->leaves; l++)
-        for (int p = 0; p < TM_LEAF_NODES; p++) {
-            const uint32_t node = c->octree->node[l][p];
-            if (node == TM_NONE || !c->bad[node])
-                continue;
-            void *more =
-                tm_grow(c->contact, &c->room, c->contacts + 1, sizeof *c->contact);
-            if (!more)
-                return tm_fail_memory(error);
-            c->contact = more;
-            c->contact[c->contacts++] = (contact){node, (uint32_t)l};
-        }
-    if (c->contacts > 0)
-        qsort(c->contact, c->contacts, sizeof *c->contact, compare_contacts);
-    return TM_OK;
+    return tm_contacts_find(&c->contacts, c->octree, c->bad, error);
 }
 
 /* How bad it would be if a leaf had that label. */
@@ -272,7 +245,7 @@ typedef struct {
 /* The best change of one of the leaves contact[0 … count) around a node that makes it
  * worse by no more than `most`: what does most good, and of that the leaf closest to the
  * surface. */
-static change find_change(const cleaner *c, const contact *around, size_t count,
+static change find_change(const cleaner *c, const tm_contact *around, size_t count,
                           const label_list *to, int most, bool only_smaller)
 {
     change best = {.leaf = TM_NONE, .cost = INFINITY};
@@ -308,7 +281,7 @@ static void make_change(cleaner *c, const change *made)
 
 /* Gives one of the leaves around a node one of the other labels there. Where all masks
  * are good that must do no harm. */
-static bool mend(cleaner *c, const contact *around, size_t count, bool only_smaller)
+static bool mend(cleaner *c, const tm_contact *around, size_t count, bool only_smaller)
 {
     const uint32_t *octant = c->interior->octant[around->node];
     const bool must = count_bad(octant) > 0;
@@ -321,7 +294,7 @@ static bool mend(cleaner *c, const contact *around, size_t count, bool only_smal
 }
 
 /* Whether something is wrong at a node still: also with the leaves around it. */
-static bool is_bad(const cleaner *c, const contact *around, size_t count)
+static bool is_bad(const cleaner *c, const tm_contact *around, size_t count)
 {
     if (node_badness(c, around->node) > 0)
         return true;
@@ -340,15 +313,13 @@ static tm_status clean(cleaner *c, tm_error *error)
         const tm_status status = find_contacts(c, error);
         vain = c->wrong < least ? 0 : vain + 1;
         least = c->wrong < least ? c->wrong : least;
-        if (status != TM_OK || (c->contacts == 0 && !c->strict))
+        if (status != TM_OK || (c->contacts.count == 0 && !c->strict))
             return status;
-        for (size_t i = 0, next; i < c->contacts; i = next) {
-            const uint32_t node = c->contact[i].node;
-            for (next = i; next < c->contacts && c->contact[next].node == node;)
-                next++;
-            if (is_bad(c, &c->contact[i], next - i))
-                any |= mend(c, &c->contact[i], next - i,
-                            round >= STRICT_ROUNDS + FREE_ROUNDS);
+        for (size_t i = 0, next; i < c->contacts.count; i = next) {
+            const tm_contact *around = &c->contacts.contact[i];
+            next = tm_contacts_next(&c->contacts, i);
+            if (is_bad(c, around, next - i))
+                any |= mend(c, around, next - i, round >= STRICT_ROUNDS + FREE_ROUNDS);
         }
         c->strict &= any;
     }
@@ -405,6 +376,6 @@ tm_status tm_interior_label(tm_interior *interior, const tm_octree *octree,
     free(c.leaf);
     free(c.bad);
     free(c.changes);
-    free(c.contact);
+    free(c.contacts.contact);
     return status;
 }
