@@ -4,6 +4,7 @@
 #include "../base/array.h"
 #include "../geom/vector.h"
 #include "correction.h"
+#include "item_sets.h"
 #include "shelling_star.h"
 #include "simple.h"
 
@@ -13,37 +14,6 @@
 /* Pieces of so many tetrahedra are absorbed; by one that is small, too, until it has so
  * many, by a larger one as many as it had. */
 enum { SMALL = 8, ENOUGH = 4 * SMALL };
-
-/* Sets of tetrahedra as lists: those of set s are item[start[s] … start[s+1]). */
-typedef struct {
-    size_t sets;
-    uint32_t *start;
-    uint32_t *item;
-} lists;
-
-static void free_lists(lists *l)
-{
-    free(l->start);
-    free(l->item);
-}
-
-/* By the set of each tetrahedron; each list ascends. */
-static bool make_lists(lists *l, const uint32_t *set, size_t tets, size_t sets)
-{
-    l->sets = sets;
-    l->start = calloc(sets + 2, sizeof *l->start);
-    l->item = tm_new(tets, sizeof *l->item);
-    if (!l->start || !l->item)
-        return false;
-    uint32_t *end = l->start + 1; /* while they are filled, start[s + 1] */
-    for (size_t t = 0; t < tets; t++)
-        end[set[t] + 1]++;
-    for (size_t s = 0; s < sets; s++)
-        end[s + 1] += end[s];
-    for (uint32_t t = 0; t < tets; t++)
-        l->item[end[set[t]]++] = t;
-    return true;
-}
 
 /* What the repair works with. */
 typedef struct {
@@ -119,22 +89,22 @@ static tm_status take_apart(repair *r, const uint32_t *tet, size_t count)
 
 static tm_status take_all_apart(repair *r, size_t regions)
 {
-    lists l = {0};
+    tm_item_lists l = {0};
     tm_progress_at at = {.what = "taking regions apart", .of = regions};
     tm_status status = TM_OK;
-    if (!make_lists(&l, r->label, r->mesh->slots, regions))
+    if (!tm_item_lists_make(&l, r->label, r->mesh->slots, regions, NULL))
         status = tm_fail_memory(r->error);
     for (size_t k = 0; k < regions && status == TM_OK; k++) {
         tm_progress_step(r->options->progress, &at, k);
         status = take_apart(r, l.item + l.start[k], l.start[k + 1] - l.start[k]);
     }
-    free_lists(&l);
+    tm_item_lists_free(&l);
     return status;
 }
 
 /* Lets piece p take up small ones beside it, each whole. size[q] is that of piece q, 0
  * where it has been taken up, and large where it must not be. */
-static tm_status take_up(repair *r, const lists *l, uint32_t p, uint32_t *size)
+static tm_status take_up(repair *r, const tm_item_lists *l, uint32_t p, uint32_t *size)
 {
     tm_shelling *s = &r->shelling;
     uint32_t had = l->start[p + 1] - l->start[p];
@@ -183,11 +153,12 @@ static bool spare_even_ones(const repair *r, uint32_t *size)
  */
 static tm_status absorb(repair *r)
 {
-    lists l = {0};
+    tm_item_lists l = {0};
     tm_status status = TM_OK;
     tm_progress_stage(r->options->progress, "absorbing");
     uint32_t *size = tm_new(r->pieces, sizeof *size);
-    if (!size || !make_lists(&l, r->shelling.piece, r->mesh->slots, r->pieces))
+    if (!size ||
+        !tm_item_lists_make(&l, r->shelling.piece, r->mesh->slots, r->pieces, NULL))
         status = tm_fail_memory(r->error);
     for (size_t p = 0; p < r->pieces && status == TM_OK; p++)
         size[p] = l.start[p + 1] - l.start[p];
@@ -199,7 +170,7 @@ static tm_status absorb(repair *r)
             if (round == 0 ? size[p] > SMALL : size[p] > 0 && size[p] <= SMALL)
                 status = take_up(r, &l, p, size);
     free(size);
-    free_lists(&l);
+    tm_item_lists_free(&l);
     return status;
 }
 
@@ -208,8 +179,8 @@ static tm_status absorb(repair *r)
 static tm_status count_stars(repair *r)
 {
     tm_shelling *s = &r->shelling;
-    lists l = {0};
-    bool memory = make_lists(&l, s->piece, r->mesh->slots, r->pieces);
+    tm_item_lists l = {0};
+    bool memory = tm_item_lists_make(&l, s->piece, r->mesh->slots, r->pieces, NULL);
     for (uint32_t p = 0; p < l.sets && memory; p++) {
         const size_t size = l.start[p + 1] - l.start[p];
         if (size != 1 && r->options->star != TM_STAR_RADIUS)
@@ -218,27 +189,8 @@ static tm_status count_stars(repair *r)
         if (memory && size > 0 && !tm_shelling_is_star(s, &memory))
             r->report->not_star++;
     }
-    free_lists(&l);
+    tm_item_lists_free(&l);
     return memory ? TM_OK : tm_fail_memory(r->error);
-}
-
-/* Numbers the cells in the order of their first tetrahedra. */
-static tm_status number_cells(tm_partition *partition, size_t tets, tm_error *error)
-{
-    uint32_t *set = partition->cell;
-    uint32_t *name = tm_new(partition->cells, sizeof *name);
-    if (!name)
-        return tm_fail_memory(error);
-    for (size_t s = 0; s < partition->cells; s++)
-        name[s] = TM_NONE;
-    partition->cells = 0;
-    for (size_t t = 0; t < tets; t++) {
-        if (name[set[t]] == TM_NONE)
-            name[set[t]] = (uint32_t)partition->cells++;
-        set[t] = name[set[t]];
-    }
-    free(name);
-    return TM_OK;
 }
 
 static tm_status repair_regions(tm_partition *partition, const tm_tet_mesh *mesh,
@@ -291,8 +243,8 @@ void tm_partition_free(tm_partition *partition)
 
 static tm_status order_by_cell(tm_partition *partition, size_t tets, tm_error *error)
 {
-    lists l = {0};
-    bool done = make_lists(&l, partition->cell, tets, partition->cells);
+    tm_item_lists l = {0};
+    bool done = tm_item_lists_make(&l, partition->cell, tets, partition->cells, NULL);
     free(l.start);
     partition->order = l.item;
     return done ? TM_OK : tm_fail_memory(error);
@@ -363,11 +315,12 @@ tm_status tm_partition_make(tm_partition *partition, const tm_tet_mesh *mesh,
     if (status == TM_OK && options->repair)
         status = repair_regions(partition, mesh, options, report, error);
     if (status == TM_OK)
-        status = number_cells(partition, mesh->slots, error);
+        status = tm_number_sets(partition->cell, mesh->slots, &partition->cells, error);
     if (status == TM_OK && options->star == TM_STAR_CENTROID) {
         status = tm_calm_cells(mesh, partition->cell, &partition->cells, error);
         if (status == TM_OK)
-            status = number_cells(partition, mesh->slots, error);
+            status =
+                tm_number_sets(partition->cell, mesh->slots, &partition->cells, error);
     }
     if (status == TM_OK)
         status = order_by_cell(partition, mesh->slots, error);

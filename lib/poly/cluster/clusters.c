@@ -5,6 +5,7 @@
 #include "../../geom/space_order.h"
 #include "../../geom/vector.h"
 #include "../compact.h"
+#include "../item_sets.h"
 #include "cluster_growth.h"
 
 #include <stdlib.h>
@@ -22,8 +23,7 @@ typedef struct {
     bool *kept;          /* [facets] */
     double (*centre)[4]; /* [cells]: centroid, from the first node, and volume */
     uint32_t *order;     /* [cells] along the curve */
-    size_t *start;       /* [sets + 1]: members of set s are item[start[s] … ) */
-    uint32_t *item;
+    tm_item_lists list;  /* of the cells of each set, along the curve */
 } joiner;
 
 static bool differ(const tm_cluster_mesh *mesh, uint32_t c, uint32_t d)
@@ -162,19 +162,8 @@ static tm_status find_regions(joiner *j, uint32_t *label)
 /* The members of each set, along the curve. */
 static bool list_members(joiner *j, const uint32_t *set, size_t sets)
 {
-    const size_t cells = j->mesh->faces->cells;
-    free(j->start);
-    j->start = calloc(sets + 2, sizeof *j->start);
-    if (!j->start)
-        return false;
-    size_t *end = j->start + 1; /* while they are filled, start[s + 1] */
-    for (size_t c = 0; c < cells; c++)
-        end[set[c] + 1]++;
-    for (size_t s = 0; s < sets; s++)
-        end[s + 1] += end[s];
-    for (size_t k = 0; k < cells; k++)
-        j->item[end[set[j->order[k]]]++] = j->order[k];
-    return true;
+    tm_item_lists_free(&j->list);
+    return tm_item_lists_make(&j->list, set, j->mesh->faces->cells, sets, j->order);
 }
 
 /* Takes regions apart into balls; *pieces is how many. */
@@ -184,8 +173,8 @@ static bool take_apart(joiner *j, tm_growth *g, const uint32_t *label, size_t *p
     *pieces = 0;
     for (size_t s = 0; s < j->report->regions && memory; s++) {
         const size_t first = *pieces;
-        for (size_t k = j->start[s]; k < j->start[s + 1] && memory; k++) {
-            const uint32_t c = j->item[k];
+        for (size_t k = j->list.start[s]; k < j->list.start[s + 1] && memory; k++) {
+            const uint32_t c = j->list.item[k];
             if (g->piece[c] == TM_NONE)
                 memory = tm_growth_begin(g, (uint32_t)(*pieces)++, &c, 1) &&
                          tm_growth_grow(g, label, (uint32_t)s);
@@ -198,18 +187,18 @@ static bool take_apart(joiner *j, tm_growth *g, const uint32_t *label, size_t *p
 /* Lets piece p take up small ones beside it, each whole. */
 static bool take_up(joiner *j, tm_growth *g, uint32_t p, double *volume, double small)
 {
-    bool memory =
-        tm_growth_begin(g, p, j->item + j->start[p], j->start[p + 1] - j->start[p]);
+    bool memory = tm_growth_begin(g, p, j->list.item + j->list.start[p],
+                                  j->list.start[p + 1] - j->list.start[p]);
     for (size_t next = 0; next < g->queued && memory; next++) {
         const uint32_t q = g->piece[g->queue[next]];
         bool taken = false;
         if (q == p || !(volume[q] < small))
             continue;
-        memory = tm_growth_add(g, j->item + j->start[q], j->start[q + 1] - j->start[q],
-                               &taken);
+        memory = tm_growth_add(g, j->list.item + j->list.start[q],
+                               j->list.start[q + 1] - j->list.start[q], &taken);
         if (!taken)
             continue;
-        j->report->absorbed += j->start[q + 1] - j->start[q];
+        j->report->absorbed += j->list.start[q + 1] - j->list.start[q];
         volume[p] = volume[q] = HUGE_VAL; /* the lists are not of pieces any more */
     }
     return memory;
@@ -244,22 +233,15 @@ static bool absorb(joiner *j, tm_growth *g, size_t pieces)
 static tm_status number(joiner *j, uint32_t *set, size_t sets)
 {
     const size_t cells = j->mesh->faces->cells;
-    uint32_t *name = tm_new(sets, sizeof *name);
-    size_t *size = calloc(sets + 1, sizeof *size);
-    const bool memory = name && size;
-    for (size_t s = 0; s < sets && memory; s++)
-        name[s] = TM_NONE;
-    for (size_t c = 0; c < cells && memory; c++) {
-        if (name[set[c]] == TM_NONE)
-            name[set[c]] = (uint32_t)j->report->cells++;
-        set[c] = name[set[c]];
-        size[set[c]]++;
-    }
-    for (size_t s = 0; s < j->report->cells && memory; s++)
-        j->report->single += size[s] == 1;
-    free(name);
-    free(size);
-    return memory ? TM_OK : tm_fail_memory(j->error);
+    const tm_status status = tm_number_sets(set, cells, &sets, j->error);
+    if (status != TM_OK)
+        return status;
+    if (!list_members(j, set, sets))
+        return tm_fail_memory(j->error);
+    j->report->cells = sets;
+    for (size_t s = 0; s < sets; s++)
+        j->report->single += j->list.start[s + 1] - j->list.start[s] == 1;
+    return TM_OK;
 }
 
 static tm_status repair(joiner *j, uint32_t *label, size_t *pieces)
@@ -284,10 +266,9 @@ tm_status tm_cluster_cells(const tm_cluster_mesh *mesh, const tm_poly_options *o
     j.kept = tm_new(faces->facets, sizeof *j.kept);
     j.centre = tm_new(faces->cells, sizeof *j.centre);
     j.order = tm_new(faces->cells, sizeof *j.order);
-    j.item = tm_new(faces->cells, sizeof *j.item);
     tm_status status = TM_OK;
     tm_progress_stage(options->progress, "joining polyhedra");
-    if (!j.kept || !j.centre || !j.order || !j.item)
+    if (!j.kept || !j.centre || !j.order)
         status = tm_fail_memory(error);
     if (status == TM_OK) {
         find_kept(&j);
@@ -302,7 +283,6 @@ tm_status tm_cluster_cells(const tm_cluster_mesh *mesh, const tm_poly_options *o
     free(j.kept);
     free(j.centre);
     free(j.order);
-    free(j.start);
-    free(j.item);
+    tm_item_lists_free(&j.list);
     return status;
 }
