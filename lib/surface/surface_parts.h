@@ -75,6 +75,17 @@ tm_status tm_surface_find_regions(tm_surface *surface, const tm_polygon_surface 
 tm_status tm_surface_find_walls(tm_surface *surface, const tm_polygon_surface *polygons,
                                 tm_error *error);
 
+/* The region that a point is in, from 0; TM_NONE: outside. */
+typedef uint32_t tm_region_finder(const tm_surface *surface, const double point[3],
+                                  const void *context);
+
+/* region[regions], repeated_regions: the numbers of the file; regions that have none get
+ * the next whole ones, from 1. TM_ERROR_INPUT where the file has one outside. */
+tm_status tm_surface_number_regions(tm_surface *surface,
+                                    const tm_polygon_surface *polygons, size_t regions,
+                                    tm_region_finder *at, const void *context,
+                                    tm_error *error);
+
 /* The unit normal of t; false where it is so thin that it has none of its own. */
 bool tm_surface_own_normal(const tm_surface *surface, uint32_t t, double normal[3]);
 

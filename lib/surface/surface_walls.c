@@ -10,7 +10,6 @@
 #include "../geom/vector.h"
 #include "surface_tree.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -246,34 +245,13 @@ static void turn(tm_surface *s)
     tm_surface_tree_refresh(s);
 }
 
-/* The numbers of the file; those that have none get the next whole ones. */
-static tm_status find_attributes(tm_surface *s, const tm_polygon_surface *polygons,
-                                 tm_error *error)
+/* The place of a region among those that there are. */
+static uint32_t region_at(const tm_surface *surface, const double point[3],
+                          const void *context)
 {
-    double next = 0;
-    s->region = tm_new(s->cells, sizeof *s->region);
-    if (!s->region)
-        return tm_fail_memory(error);
-    for (size_t r = 0; r < s->cells; r++)
-        s->region[r] = NAN;
-    for (size_t i = 0; i < polygons->regions; i++) {
-        const tm_region *region = &polygons->region[i];
-        const double *p = region->point;
-        const uint32_t r = tm_surface_region_at(s, p);
-        if (r == 0)
-            return tm_fail(error, TM_ERROR_INPUT,
-                           "region %zu, at (%g, %g, %g), is outside", i + 1, p[0], p[1],
-                           p[2]);
-        if (!isnan(s->region[r - 1]))
-            s->repeated_regions++;
-        else
-            s->region[r - 1] = region->attribute;
-        next = fmax(next, floor(region->attribute));
-    }
-    for (size_t r = 0; r < s->cells; r++)
-        if (isnan(s->region[r]))
-            s->region[r] = next += 1;
-    return TM_OK;
+    (void)context;
+    const uint32_t r = tm_surface_region_at(surface, point);
+    return r == 0 ? TM_NONE : r - 1;
 }
 
 static tm_status find_walls(finder *f, const tm_polygon_surface *polygons,
@@ -295,7 +273,8 @@ static tm_status find_walls(finder *f, const tm_polygon_surface *polygons,
         return status;
     turn(f->surface);
     f->surface->regions = true;
-    return find_attributes(f->surface, polygons, error);
+    return tm_surface_number_regions(f->surface, polygons, f->surface->cells, region_at,
+                                     NULL, error);
 }
 
 tm_status tm_surface_find_walls(tm_surface *surface, const tm_polygon_surface *polygons,
