@@ -33,3 +33,9 @@ int tm_compare_numbers(const void *a, const void *b)
     const uint32_t *p = a, *q = b;
     return (*p > *q) - (*p < *q);
 }
+
+int tm_compare_reals(const void *a, const void *b)
+{
+    const double *p = a, *q = b;
+    return (*p > *q) - (*p < *q);
+}

@@ -28,6 +28,9 @@ static inline bool tm_append(uint32_t **list, size_t *count, size_t *room, uint3
 /* Compares two uint32_t, for qsort() and bsearch(). */
 int tm_compare_numbers(const void *a, const void *b);
 
+/* The same of two double. */
+int tm_compare_reals(const void *a, const void *b);
+
 /* malloc(count * size) with the product checked; never NULL for count 0. */
 void *tm_new(size_t count, size_t size);
 

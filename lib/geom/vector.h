@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 TM_EXTERN_C_BEGIN
 
@@ -59,6 +60,20 @@ static inline void tm_triangle_normal(double out[3], const double a[3], const do
     tm_subtract(ab, b, a);
     tm_subtract(ac, c, a);
     tm_cross(out, ab, ac);
+}
+
+/* The vector area of a polygon, ½ Σ (x_i - x_0) × (x_(i+1) - x_0): normal to it, as long
+ * as its area where it is plane. O(count). */
+static inline void tm_polygon_area(const double (*xyz)[3], const uint32_t *node,
+                                   size_t count, double area[3])
+{
+    area[0] = area[1] = area[2] = 0;
+    for (size_t i = 1; i + 1 < count; i++) {
+        double normal[3];
+        tm_triangle_normal(normal, xyz[node[0]], xyz[node[i]], xyz[node[i + 1]]);
+        for (int k = 0; k < 3; k++)
+            area[k] += normal[k] / 2;
+    }
 }
 
 static inline double tm_triangle_area(const double a[3], const double b[3],

@@ -2,6 +2,7 @@
 #include "correction.h"
 
 #include "../base/array.h"
+#include "../examine/poly/poly_finite_volume.h"
 #include "../geom/predicates.h"
 #include "../geom/vector.h"
 #include "../tet/operation/ball.h"
@@ -11,10 +12,6 @@
 /* The gain of a cell is at most so much: then its neighbours' may add some to it. */
 static const double most_gain = 0.6;
 enum { ROUNDS_MAX = 100 };
-
-/* The cosine of 70 degrees: between centroids that are further off the normal of a face
- * than that, checkMesh calls it severely non-orthogonal. */
-static const double steepest = 0.342020143325669;
 
 typedef struct {
     double volume, centre[3];
@@ -57,7 +54,7 @@ static void measure_inner(const calmer *m, face *f)
     double d[3], distances[2];
     tm_subtract(d, m->state[f->cell[1]].centre, m->state[f->cell[0]].centre);
     const double along = tm_dot(d, f->area);
-    f->is_steep = along < steepest * tm_norm(d) * tm_norm(f->area) * (1 - 1e-9);
+    f->is_steep = along < TM_FV_COSINE * tm_norm(d) * tm_norm(f->area) * (1 - 1e-9);
     f->solved = along > 0 ? tm_norm2(f->area) / along : 0;
     for (int x = 0; x < 3; x++)
         f->rest[x] = f->area[x] - d[x] * f->solved;

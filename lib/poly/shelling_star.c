@@ -2,6 +2,7 @@
 #include "shelling_star.h"
 
 #include "../base/array.h"
+#include "../examine/poly/poly_finite_volume.h"
 #include "../geom/kernel.h"
 #include "../geom/vector.h"
 #include "../geom/predicates.h"
@@ -18,9 +19,8 @@ static const double least_radius = 1e-8;
 static const double least_depth = 1e-6;
 
 /* Cosines of the largest angles between the normal of a face and the line from the
- * centroid to that of the face, 85 degrees; and to that of the cell beyond the face, 70
- * degrees, more than which checkMesh calls severe. */
-static const double steepest_face = 0.087155742747658, steepest_cell = 0.342020143325669;
+ * centroid to that of the face, 85 degrees; and to that of the cell beyond the face. */
+static const double steepest_face = 0.087155742747658, steepest_cell = TM_FV_COSINE;
 
 bool tm_shelling_scale(tm_shelling *s)
 {

@@ -37,12 +37,6 @@ static void mark_polyhedra(const view_source *s, uint8_t *outer)
             outer[mesh.side[f][0]] = 1;
 }
 
-static int compare(const void *a, const void *b)
-{
-    const double p = *(const double *)a, q = *(const double *)b;
-    return (p > q) - (p < q);
-}
-
 /* keep[e] of the worst hundredth; of those that are equally bad the first. */
 static tm_status mark_worst(const view_source *s, unsigned threads, bool *keep,
                             tm_error *error)
@@ -54,7 +48,7 @@ static tm_status mark_worst(const view_source *s, unsigned threads, bool *keep,
     if (status == TM_OK) {
         for (size_t e = 0; e < count; e++)
             sorted[e] = value[e];
-        qsort(sorted, count, sizeof *sorted, compare);
+        qsort(sorted, count, sizeof *sorted, tm_compare_reals);
         const double limit = sorted[count / WORST_PART];
         size_t equal = count / WORST_PART;
         while (equal > 0 && sorted[equal - 1] == limit)

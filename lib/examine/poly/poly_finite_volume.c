@@ -94,12 +94,6 @@ static void judge_facets(const tm_poly_centroids *m, tm_poly_finite_volume *out)
         out->mean_non_orthogonality /= (double)inner;
 }
 
-static int compare(const void *a, const void *b)
-{
-    const double *p = a, *q = b;
-    return (*p > *q) - (*p < *q);
-}
-
 static void judge_cells(const tm_poly_centroids *m, double *volume,
                         tm_poly_finite_volume *out)
 {
@@ -107,7 +101,7 @@ static void judge_cells(const tm_poly_centroids *m, double *volume,
     const size_t cells = m->mesh->cells;
     for (size_t c = 0; c < cells; c++)
         volume[c] = m->cell[c].volume;
-    qsort(volume, cells, sizeof *volume, compare);
+    qsort(volume, cells, sizeof *volume, tm_compare_reals);
     if (cells > 0) {
         size_t low = (size_t)(few * (double)(cells - 1));
         out->volume_spread =

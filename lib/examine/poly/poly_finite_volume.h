@@ -15,7 +15,8 @@
 TM_EXTERN_C_BEGIN
 
 /* Beyond these checkMesh complains. */
-#define TM_FV_NON_ORTHOGONALITY 70.0 /* degrees */
+#define TM_FV_NON_ORTHOGONALITY 70.0              /* degrees */
+#define TM_FV_COSINE            0.342020143325669 /* of that */
 #define TM_FV_SKEWNESS          4.0
 /* Below these, with -allGeometry. */
 #define TM_FV_WEIGHT       0.05

@@ -8,18 +8,6 @@
 #include <float.h>
 #include <math.h>
 
-void tm_polygon_area(const double (*xyz)[3], const uint32_t *node, size_t count,
-                     double area[3])
-{
-    area[0] = area[1] = area[2] = 0;
-    for (size_t i = 1; i + 1 < count; i++) {
-        double normal[3];
-        tm_triangle_normal(normal, xyz[node[0]], xyz[node[i]], xyz[node[i + 1]]);
-        for (size_t k = 0; k < 3; k++)
-            area[k] += normal[k] / 2;
-    }
-}
-
 /* The determinant, and what it would be without signs. */
 static double determinant(const double a[3], const double b[3], const double c[3],
                           double *magnitude)

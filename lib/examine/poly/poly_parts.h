@@ -20,11 +20,6 @@ tm_status tm_poly_examine_facets(tm_examination *found, const tm_poly_arrays *me
 
 /* poly_measure.c: volume and areas of a polyhedron by its boundary. */
 
-/* The vector area of a polygon, ½ Σ (x_i - x_0) × (x_(i+1) - x_0): normal to it, as long
- * as its area where it is plane. O(count). */
-void tm_polygon_area(const double (*xyz)[3], const uint32_t *node, size_t count,
-                     double area[3]);
-
 /* The volume that the faces enclose, positive if their normals point outward: the sum of
  * the tetrahedra of a node and the triangles into which each facet falls around its
  * first node, which are the same for both its cells. *uncertain is what rounding may

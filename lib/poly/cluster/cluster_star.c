@@ -20,17 +20,11 @@ static bool plane_of(const tm_growth *g, uint32_t f, uint32_t c, const double or
     const tm_cell_faces *faces = g->mesh->faces;
     const uint32_t *node = faces->node + faces->start[f];
     const size_t count = faces->start[f + 1] - faces->start[f];
-    double part[3], to[3];
-    memset(plane, 0, 3 * sizeof *plane);
-    for (size_t i = 1; i + 1 < count; i++) {
-        tm_triangle_normal(part, g->mesh->xyz[node[0]], g->mesh->xyz[node[i]],
-                           g->mesh->xyz[node[i + 1]]);
-        for (int x = 0; x < 3; x++)
-            plane[x] += tm_facet_is_outward(faces, f, c) ? part[x] : -part[x];
-    }
+    double to[3];
+    tm_polygon_area(g->mesh->xyz, node, count, plane);
     const double length = tm_norm(plane);
     for (int x = 0; x < 3; x++)
-        plane[x] /= length;
+        plane[x] /= tm_facet_is_outward(faces, f, c) ? length : -length;
     plane[3] = HUGE_VAL;
     for (size_t i = 0; i < count; i++) {
         tm_subtract(to, g->mesh->xyz[node[i]], origin);

@@ -108,13 +108,8 @@ static void fill_items(const joiner *j, const uint32_t *rank, tm_compact_items *
         for (size_t i = faces->cell_start[c]; i < faces->cell_start[c + 1]; i++) {
             const uint32_t f = faces->cell_facet[i], *side = faces->side[f];
             const uint32_t *n = faces->node + faces->start[f];
-            double area[3] = {0}, part[3];
-            for (size_t e = 1; e + 1 < faces->start[f + 1] - faces->start[f]; e++) {
-                tm_triangle_normal(part, j->mesh->xyz[n[0]], j->mesh->xyz[n[e]],
-                                   j->mesh->xyz[n[e + 1]]);
-                for (int x = 0; x < 3; x++)
-                    area[x] += part[x] / 2;
-            }
+            double area[3];
+            tm_polygon_area(j->mesh->xyz, n, faces->start[f + 1] - faces->start[f], area);
             items->area[count] = tm_norm(area);
             items->beside[count++] =
                 j->kept[f] ? TM_NONE : rank[side[0] == c ? side[1] : side[0]];

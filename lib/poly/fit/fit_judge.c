@@ -42,7 +42,6 @@ static double cosine_of_line(const tm_poly_centroids *m, size_t f)
 void tm_fit_judge_facet(const tm_poly_centroids *m, size_t f, tm_fit_sum *sum)
 {
     const double sight = 0.002, margin = 0.01;
-    const double least_cosine = 0.34202014332566873; /* of TM_FV_NON_ORTHOGONALITY */
     double least = tm_facet_fan(m, f, sight);
     for (int s = 0; s < 2; s++) {
         if (m->mesh->side[f][s] == TM_NONE)
@@ -55,7 +54,7 @@ void tm_fit_judge_facet(const tm_poly_centroids *m, size_t f, tm_fit_sum *sum)
     ask(sum, TM_FIT_SKEW, 1 - tm_facet_skewness(m, f) / TM_FV_SKEWNESS, 0, 10 * margin);
     if (m->mesh->side[f][1] == TM_NONE)
         return;
-    ask(sum, TM_FIT_OBLIQUE, cosine_of_line(m, f), least_cosine, margin);
+    ask(sum, TM_FIT_OBLIQUE, cosine_of_line(m, f), TM_FV_COSINE, margin);
     ask(sum, TM_FIT_UNEVEN, tm_facet_weight(m, f), TM_FV_WEIGHT, margin);
     ask(sum, TM_FIT_UNEQUAL, tm_facet_volume_ratio(m, f), TM_FV_VOLUME_RATIO, margin / 2);
 }
