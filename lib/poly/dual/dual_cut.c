@@ -221,15 +221,8 @@ static size_t largest_sector(const cutter *c)
 /* Where there is nothing to cut, points may have been put too far. */
 static void put_at_centroids(tm_dual *d, const uint32_t *piece, size_t pieces)
 {
-    const tm_tet_mesh *mesh = d->mesh;
-    for (size_t k = 0; k < pieces; k++) {
-        const uint32_t t = piece[k] / 4;
-        for (int x = 0; x < 3; x++) {
-            d->tet_xyz[t][x] = 0;
-            for (int i = 0; i < 4; i++)
-                d->tet_xyz[t][x] += mesh->xyz[mesh->tet[t][i]][x] / 4;
-        }
-    }
+    for (size_t k = 0; k < pieces; k++)
+        tm_dual_put_at_centroid(d, piece[k] / 4);
 }
 
 /* Cuts a node until no sector turns too far; *done is false where that cannot be. */

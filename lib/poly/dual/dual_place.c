@@ -97,6 +97,16 @@ static void place_in_face(const tm_dual *d, const tm_dual_wall *wall, double out
     put_towards(out, corner, to, 3, d->frozen[wall->half / 4] ? 1.0 / 3 : least_in_face);
 }
 
+void tm_dual_put_at_centroid(tm_dual *d, size_t t)
+{
+    const tm_tet_mesh *mesh = d->mesh;
+    for (int x = 0; x < 3; x++) {
+        d->tet_xyz[t][x] = 0;
+        for (int i = 0; i < 4; i++)
+            d->tet_xyz[t][x] += mesh->xyz[mesh->tet[t][i]][x] / 4;
+    }
+}
+
 /* Where a node is taken apart, the points in its tetrahedra are their centroids. */
 static void freeze(tm_dual *d)
 {
@@ -106,11 +116,7 @@ static void freeze(tm_dual *d)
             if (d->level[mesh->tet[t][i]] != TM_DUAL_PIECES)
                 continue;
             d->frozen[t] = true;
-            for (int x = 0; x < 3; x++) {
-                d->tet_xyz[t][x] = 0;
-                for (int k = 0; k < 4; k++)
-                    d->tet_xyz[t][x] += mesh->xyz[mesh->tet[t][k]][x] / 4;
-            }
+            tm_dual_put_at_centroid(d, t);
         }
 }
 

@@ -38,6 +38,9 @@ uint32_t tm_dual_quad_edge(const tm_dual *d, uint32_t q, bool last);
 void tm_dual_place_tets(tm_dual *d);
 tm_status tm_dual_place_walls(tm_dual *d, tm_error *error);
 
+/* Puts the point in a tetrahedron at its centroid: in tet_xyz. */
+void tm_dual_put_at_centroid(tm_dual *d, size_t t);
+
 /* Puts the points of cuts, for where those in tetrahedra are. */
 void tm_dual_place_cuts(tm_dual *d);
 

@@ -61,14 +61,6 @@ static bool find_outer(joining *j)
     return j->outer;
 }
 
-static bool has_outer(const joining *j, const tm_block *mix, size_t e)
-{
-    for (size_t i = mix->start[e]; i < mix->start[e + 1]; i++)
-        if (j->outer[mix->item[i]])
-            return true;
-    return false;
-}
-
 /* One label for the inner elements of each octant, one for each other element. */
 static bool label_elements(joining *j)
 {
@@ -84,7 +76,7 @@ static bool label_elements(joining *j)
         const uint32_t *row = octant->integer + tm_block_integers(TM_OCTANT) * o;
         label_of[o] = TM_NONE;
         for (uint32_t e = row[FIRST]; e < row[PAST]; e++)
-            of[e] = has_outer(j, mix, e) ? TM_NONE : o;
+            of[e] = tm_element_has(mix, e, j->outer) ? TM_NONE : o;
     }
     for (size_t e = 0; e < mix->count && done; e++) {
         const uint32_t o = of[e];

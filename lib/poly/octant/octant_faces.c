@@ -81,23 +81,19 @@ static void level_all(const tm_octant_points *points, double (*xyz)[3], const bo
  * them. */
 typedef struct {
     tm_mixed_mesh mesh;
-    const bool *outer;
     double (*old)[3];
     uint32_t *element; /* those that have outer nodes */
     size_t elements, room;
     double *jens; /* [elements]: before */
 } layer;
 
-static bool find_layer(layer *l)
+static bool find_layer(layer *l, const tm_block *mix, const bool *outer)
 {
     const tm_mixed_mesh *mesh = &l->mesh;
-    for (uint32_t e = 0; e < mesh->elements; e++) {
-        bool is_outer = false;
-        for (size_t i = mesh->start[e]; i < mesh->start[e + 1]; i++)
-            is_outer |= l->outer[mesh->item[i]];
-        if (is_outer && !tm_append(&l->element, &l->elements, &l->room, e))
+    for (uint32_t e = 0; e < mesh->elements; e++)
+        if (tm_element_has(mix, e, outer) &&
+            !tm_append(&l->element, &l->elements, &l->room, e))
             return false;
-    }
     l->jens = tm_new(l->elements, sizeof *l->jens);
     for (size_t k = 0; k < l->elements && l->jens; k++)
         l->jens[k] = tm_mixed_jens(mesh, l->element[k]);
@@ -140,9 +136,9 @@ tm_status tm_octant_faces_level(const tm_octant_points *points, double (*xyz)[3]
                                 tm_error *error)
 {
     const tm_block *mix = points->mix;
-    layer l = {.mesh = {nodes, xyz, mix->count, mix->start, mix->item}, .outer = outer};
+    layer l = {.mesh = {nodes, xyz, mix->count, mix->start, mix->item}};
     l.old = tm_new(nodes, sizeof *l.old);
-    const bool done = l.old && find_layer(&l);
+    const bool done = l.old && find_layer(&l, mix, outer);
     *moved = 0;
     if (done) {
         memcpy(l.old, xyz, nodes * sizeof *xyz);

@@ -35,6 +35,15 @@ void tm_octant_points_free(tm_octant_points *points);
 bool tm_octant_points_find(const tm_octant_points *points, size_t o,
                            uint32_t node[TM_OCTANT_POINTS]);
 
+/* Whether element e of .mix has a node that is marked. */
+static inline bool tm_element_has(const tm_block *mix, size_t e, const bool *marked)
+{
+    for (size_t i = mix->start[e]; i < mix->start[e + 1]; i++)
+        if (marked[mix->item[i]])
+            return true;
+    return false;
+}
+
 /* The level of octant o, and whether it has elements. */
 unsigned tm_octant_level(const tm_octant_points *points, size_t o);
 bool tm_octant_is_filled(const tm_octant_points *points, size_t o);
