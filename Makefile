@@ -144,7 +144,7 @@ $(BUILD)/generated/view_page.h: $(BUILD)/generate/embed $(THREE) $(page) Makefil
 	$< $(THREE) $(page) >$@.new
 	mv $@.new $@
 
-$(BUILD)/generate/embed: lib/view/generate/embed.c
+$(BUILD)/generate/embed: lib/view/generate/embed.c lib/view/base64.h
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $< $(LDFLAGS) $(LDLIBS)
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base64.h"
 #include "view_parts.h"
 
 #include "../base/array.h"
@@ -65,43 +66,17 @@ static void pack_chunk(void *context, size_t c)
     free(bytes);
 }
 
-/* Base64 (RFC 4648) ------------------------------------------------------------------ */
-
-static void encode_three(const unsigned char *from, char *to)
-{
-    static const char letter[] =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    to[0] = letter[from[0] >> 2];
-    to[1] = letter[(from[0] & 3) << 4 | from[1] >> 4];
-    to[2] = letter[(from[1] & 15) << 2 | from[2] >> 6];
-    to[3] = letter[from[2] & 63];
-}
-
 static void append_base64(tm_text *text, const char *bytes, size_t size)
 {
-    const unsigned char *from = (const unsigned char *)bytes;
-    char *room = malloc(size / 3 * 4 + 4);
+    char *room = malloc(tm_base64_size(size) + 1);
     if (!room) {
         text->failed = true;
         return;
     }
-    char *to = room;
-    size_t i = 0;
-    for (; i + 3 <= size; i += 3, to += 4)
-        encode_three(from + i, to);
-    if (i < size) {
-        const unsigned char rest[3] = {from[i], i + 1 < size ? from[i + 1] : 0, 0};
-        encode_three(rest, to);
-        to[3] = '=';
-        if (i + 1 == size)
-            to[2] = '=';
-        to += 4;
-    }
-    tm_text_append(text, room, (size_t)(to - room));
+    tm_base64((const unsigned char *)bytes, size, room);
+    tm_text_append(text, room, tm_base64_size(size));
     free(room);
 }
-
-/* ------------------------------------------------------------------------------------ */
 
 static void pack(view_writer *w, packing *p)
 {

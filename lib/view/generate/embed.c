@@ -2,6 +2,8 @@
 /* Writes the frame of mesh-view's page as arrays of C: embed THREE PAGE.html STYLE.css
  * SCRIPT.js… . In the page a line "@style", "@script" or "@three" is what goes in there;
  * "@title", "@header" and "@arrays" are cuts, where a mesh goes in. */
+#include "../base64.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -48,10 +50,8 @@ static void append_file(text *to, const char *name)
 /* Deflated (RFC 1951), in base64. */
 static void append_packed(text *to, const text *from)
 {
-    static const char letter[] =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     const uLong room = compressBound((uLong)from->size);
-    unsigned char *packed = calloc(room + 3, 1);
+    unsigned char *packed = malloc(room);
     z_stream z = {.next_in = (unsigned char *)from->byte, .avail_in = (uInt)from->size};
     const int raw_window = -15, memory_level = 9;
     if (!packed || deflateInit2(&z, Z_BEST_COMPRESSION, Z_DEFLATED, raw_window,
@@ -61,15 +61,14 @@ static void append_packed(text *to, const text *from)
     z.avail_out = (uInt)room;
     if (deflate(&z, Z_FINISH) != Z_STREAM_END)
         fail("cannot be deflated", "");
-    const size_t size = z.total_out;
+    const size_t size = z.total_out, letters = tm_base64_size(size);
     deflateEnd(&z);
-    for (size_t i = 0; i < size; i += 3) {
-        const unsigned char *b = packed + i;
-        const char four[4] = {letter[b[0] >> 2], letter[(b[0] & 3) << 4 | b[1] >> 4],
-                              i + 1 < size ? letter[(b[1] & 15) << 2 | b[2] >> 6] : '=',
-                              i + 2 < size ? letter[b[2] & 63] : '='};
-        append(to, four, sizeof four);
-    }
+    char *letter = malloc(letters + 1);
+    if (!letter)
+        fail("out of memory", "");
+    tm_base64(packed, size, letter);
+    append(to, letter, letters);
+    free(letter);
     free(packed);
 }
 
