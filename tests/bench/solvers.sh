@@ -61,14 +61,6 @@ have_voronoi() {
         c++ -std=c++17 -O2 -o build/bench/voronoi $source -lvoro++
 }
 
-unit_cube() {
-    awk 'BEGIN {
-        print "OFF\n8 6 0"
-        for (v = 0; v < 8; v++) print v % 2, int(v / 2) % 2, int(v / 4)
-        print "4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5"
-    }'
-}
-
 # grid N: the unit cube as N^3 cubes.
 grid() {
     awk -v n="$1" '

@@ -5,24 +5,7 @@
 # CPU seconds of the page's thread, for a loaded machine says nothing by its clock.
 # shellcheck source-path=SCRIPTDIR source=common.inc
 . "$(dirname "$0")/common.inc"
-cat >"$work/cube.off" <<'END'
-OFF
-8 6 0
-0 0 0
-1 0 0
-1 1 0
-0 1 0
-0 0 1
-1 0 1
-1 1 1
-0 1 1
-4 0 3 2 1
-4 4 5 6 7
-4 0 1 5 4
-4 1 2 6 5
-4 2 3 7 6
-4 3 0 4 7
-END
+unit_cube >"$work/cube.off"
 tetgen-mesh --quiet -q -a"${VOLUME:-0.0000019}" -o "$work/grid.tm" "$work/cube.off"
 tets_of "$work/grid.tm" | awk '{ printf "%d tetrahedra\n", $1 }'
 mesh-view -q -o "$work/grid.html" "$work/grid.tm"

@@ -3,6 +3,8 @@
 #ifndef TESTS_UNIT_OCTREE_FIXTURE_H
 #define TESTS_UNIT_OCTREE_FIXTURE_H
 
+#include "../../lib/examine/element_examine.h"
+#include "../../lib/mesh/mixed_mesh.h"
 #include "../../lib/octree/forest/octree_build.h"
 #include "random.h"
 #include "surface_shapes.h"
@@ -11,6 +13,22 @@ static inline void assert_ok(tm_status status, const tm_error *error)
 {
     if (status != TM_OK)
         fail_msg("%s", error->what);
+}
+
+/* The elements, with these coordinates, fit together and none is wrong. */
+static inline tm_examination assert_elements_fit(const tm_mixed_mesh *mesh,
+                                                 const double (*xyz)[3])
+{
+    tm_examination found;
+    tm_error error;
+    const tm_mesh_view view = {.nodes = mesh->nodes,
+                               .xyz = xyz,
+                               .elements = mesh->elements,
+                               .start = mesh->start,
+                               .item = mesh->item};
+    assert_ok(tm_element_examine(&found, &view, 1, &error), &error);
+    assert_true(tm_examination_is_good(&found));
+    return found;
 }
 
 static inline double random_between(double low, double high)

@@ -370,14 +370,7 @@ static void check_elements(const tm_octree *octree, const tm_interior *interior,
         skin_point(octree, boundary, s, at);
         assert_memory_equal(base[a->outer + s], at, sizeof at);
     }
-    tm_examination found;
-    const tm_mesh_view arrays = {.nodes = mesh->nodes,
-                                 .xyz = (const double(*)[3])base,
-                                 .elements = mesh->elements,
-                                 .start = mesh->start,
-                                 .item = mesh->item};
-    assert_ok(tm_element_examine(&found, &arrays, 1, &error), &error);
-    assert_true(tm_examination_is_good(&found));
+    const tm_examination found = assert_elements_fit(mesh, (const double(*)[3])base);
     assert_int_equal(found.unused_nodes, 0);
     free(base);
 }

@@ -28,19 +28,11 @@ static void check_elements(const tm_octree_mesh *mesh)
 {
     const tm_mixed_mesh *m = &mesh->assembly.mesh;
     const double(*xyz)[3] = (const double(*)[3])m->xyz;
-    tm_error error;
-    tm_examination found;
     for (size_t e = 0; e < m->elements; e++)
         assert_true(tm_jens(m->start[e + 1] - m->start[e], xyz, m->item + m->start[e]) >
                     0);
     assert_int_equal(mesh->report.invalid, 0);
-    const tm_mesh_view arrays = {.nodes = m->nodes,
-                                 .xyz = xyz,
-                                 .elements = m->elements,
-                                 .start = m->start,
-                                 .item = m->item};
-    assert_ok(tm_element_examine(&found, &arrays, 1, &error), &error);
-    assert_true(tm_examination_is_good(&found));
+    const tm_examination found = assert_elements_fit(m, xyz);
     assert_int_equal(found.unused_nodes, 0);
     assert_true(found.components <= mesh->report.components);
     assert_int_equal(2 * found.euler, mesh->report.euler);

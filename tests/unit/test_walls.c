@@ -197,14 +197,7 @@ static void check_elements(const tm_octree *octree, const tm_interior *part, siz
         sum += tm_mixed_volume((const double(*)[3])base, item, k);
     }
     assert_true(fabs(sum - volume) <= 1e-9 * volume);
-    tm_examination found;
-    const tm_mesh_view arrays = {.nodes = mesh->nodes,
-                                 .xyz = (const double(*)[3])base,
-                                 .elements = mesh->elements,
-                                 .start = mesh->start,
-                                 .item = mesh->item};
-    assert_ok(tm_element_examine(&found, &arrays, 1, &error), &error);
-    assert_true(tm_examination_is_good(&found));
+    assert_elements_fit(mesh, (const double(*)[3])base);
     for (size_t f = 0; f < boundary->faces; f++)
         assert_int_equal(a->layer_across && a->layer_across[f] != TM_NONE,
                          boundary->region[f][1] != 0);
