@@ -75,12 +75,8 @@ static void measure_facet(solve_mesh *m, size_t f)
 {
     const double *origin = m->of.xyz[solve_corner(m, f, 0)];
     double *area = m->area[f], *middle = m->middle[f], x[3][3], normal[3];
-    memset(area, 0, sizeof m->area[f]);
-    for (size_t i = 2; i < solve_corners(m, f); i++) {
-        triangle(m, f, i, origin, x, normal);
-        for (int k = 0; k < 3; k++)
-            area[k] += normal[k] / 2;
-    }
+    tm_polygon_area(m->of.xyz, m->of.facet_node + m->of.facet_start[f],
+                    solve_corners(m, f), area);
     memcpy(middle, origin, sizeof m->middle[f]);
     const double area2 = tm_norm2(area);
     for (size_t i = 2; i < solve_corners(m, f) && area2 > 0; i++) {
