@@ -193,12 +193,12 @@ tm_status tm_interior_choose(tm_interior *interior, const tm_octree *octree,
     for (size_t l = 0; l < octree->leaves; l++)
         if (interior->chosen[l])
             put_in_masks(interior, octree, l);
-    cleaner c = {.octree = octree,
-                 .surface = surface,
-                 .interior = interior,
-                 .bad = malloc(octree->nodes)};
-    tm_status status = c.bad ? clean(&c, error) : tm_fail_memory(error);
-    free(c.bad);
+    bool *bad = malloc(octree->nodes);
+    if (!bad)
+        return tm_fail_memory(error);
+    cleaner c = {.octree = octree, .surface = surface, .interior = interior, .bad = bad};
+    const tm_status status = clean(&c, error);
+    free(bad);
     free(c.contacts.contact);
     if (status == TM_OK)
         tm_interior_find_used(interior, octree);

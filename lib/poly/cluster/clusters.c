@@ -251,30 +251,30 @@ static tm_status repair(joiner *j, uint32_t *label, size_t *pieces)
     return status;
 }
 
+static tm_status join(joiner *j, uint32_t *label)
+{
+    const tm_cell_faces *faces = j->mesh->faces;
+    j->kept = tm_new(faces->facets, sizeof *j->kept);
+    j->centre = tm_new(faces->cells, sizeof *j->centre);
+    j->order = tm_new(faces->cells, sizeof *j->order);
+    if (!j->kept || !j->centre || !j->order)
+        return tm_fail_memory(j->error);
+    find_kept(j);
+    measure(j);
+    tm_status status = sort(j) ? find_regions(j, label) : tm_fail_memory(j->error);
+    size_t sets = j->report->regions;
+    if (status == TM_OK && j->options->repair)
+        status = repair(j, label, &sets);
+    return status == TM_OK ? number(j, label, sets) : status;
+}
+
 tm_status tm_cluster_cells(const tm_cluster_mesh *mesh, const tm_poly_options *options,
                            uint32_t *label, tm_poly_report *report, tm_error *error)
 {
-    const tm_cell_faces *faces = mesh->faces;
     joiner j = {.mesh = mesh, .options = options, .report = report, .error = error};
-    size_t sets = 0;
-    *report = (tm_poly_report){.tets = faces->cells};
-    j.kept = tm_new(faces->facets, sizeof *j.kept);
-    j.centre = tm_new(faces->cells, sizeof *j.centre);
-    j.order = tm_new(faces->cells, sizeof *j.order);
-    tm_status status = TM_OK;
+    *report = (tm_poly_report){.tets = mesh->faces->cells};
     tm_progress_stage(options->progress, "joining polyhedra");
-    if (!j.kept || !j.centre || !j.order)
-        status = tm_fail_memory(error);
-    if (status == TM_OK) {
-        find_kept(&j);
-        measure(&j);
-        status = sort(&j) ? find_regions(&j, label) : tm_fail_memory(error);
-    }
-    sets = report->regions;
-    if (status == TM_OK && options->repair)
-        status = repair(&j, label, &sets);
-    if (status == TM_OK)
-        status = number(&j, label, sets);
+    const tm_status status = join(&j, label);
     free(j.kept);
     free(j.centre);
     free(j.order);
