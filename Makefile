@@ -85,7 +85,8 @@ TM_CFLAGS = -std=c17 -D_GNU_SOURCE -ffp-contract=off -fPIC -fno-semantic-interpo
 in_library = $(foreach file,$(wildcard lib/*/*$(1) lib/*/*/*$(1)),\
 	$(if $(findstring /generate/,$(file)),,$(file)))
 
-filters := $(filter-out $(left_out),$(basename $(notdir $(wildcard cmd/*.c))))
+filter_sources := $(wildcard cmd/*.c cmd/import/*.c cmd/export/*.c)
+filters := $(filter-out $(left_out),$(basename $(notdir $(filter_sources))))
 bin := $(filters:%=$(BUILD)/bin/%)
 completions := $(filters:%=$(BUILD)/completion/bash/%)
 library := $(BUILD)/libtermesh.a
@@ -108,8 +109,8 @@ page := lib/view/page/page.html lib/view/page/page.css $(addprefix lib/view/page
 generated := $(BUILD)/generated/powers.h $(BUILD)/generated/transitions.h \
 	$(if $(wildcard $(THREE)),$(BUILD)/generated/view_page.h)
 pages := $(wildcard man/*.[157])
-sources := $(wildcard lib/*.h lib/*/*.[ch] lib/*/*/*.[ch] lib/*/*/*/*.[ch] cmd/*.c \
-	cmd/common/*/*.[ch] tests/*/*.[ch] tests/*/*.cc examples/*.c examples/*.cc)
+sources := $(wildcard lib/*.h lib/*/*.[ch] lib/*/*/*.[ch] lib/*/*/*/*.[ch] \
+	$(filter_sources) cmd/common/*/*.[ch] tests/*/*.[ch] tests/*/*.cc examples/*.c examples/*.cc)
 
 .PHONY: all tests check benchers bench fuzz lint warnings format install uninstall clean
 .SECONDARY:
@@ -162,9 +163,16 @@ $(shared): $(library_objects) lib/termesh.map
 	$(CC) $(TM_CFLAGS) -shared -Wl,-soname,libtermesh.so.$(SOVERSION) \
 		-Wl,--version-script=lib/termesh.map -o $@ $(library_objects) $(LDFLAGS) $(LDLIBS)
 
-$(bin): $(BUILD)/bin/%: $(BUILD)/cmd/%.o $(common) $(library)
+define link
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) $(LDLIBS)
+endef
+$(filter %-import,$(bin)): $(BUILD)/bin/%: $(BUILD)/cmd/import/%.o $(common) $(library)
+	$(link)
+$(filter %-export,$(bin)): $(BUILD)/bin/%: $(BUILD)/cmd/export/%.o $(common) $(library)
+	$(link)
+$(filter-out %-import %-export,$(bin)): $(BUILD)/bin/%: $(BUILD)/cmd/%.o $(common) $(library)
+	$(link)
 
 # A filter prints its options; the file for zsh is made with that for bash.
 $(completions): $(BUILD)/completion/bash/%: $(BUILD)/bin/% cmd/completion.sh

@@ -218,7 +218,7 @@ examples() {
     [ "$output" = "" ]
     [ "${#stderr_lines[@]}" -eq 1 ]
     [[ "$stderr" == *"octree-mesh and octree-repair are left out." ]]
-    for file in "$root"/cmd/*.c; do
+    for file in "$root"/cmd/*.c "$root"/cmd/import/*.c "$root"/cmd/export/*.c; do
         filter=$(basename "$file" .c)
         if needs_p4est "$filter"; then
             [ ! -e "build/bin/$filter" ]

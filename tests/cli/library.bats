@@ -56,7 +56,7 @@ all_headers() {
 
 @test "filters use installed headers only, and these no others" {
     (cd "$headers" && find . -name '*.h' | sed 's|^\./||' | sort) >installed
-    for file in "$root"/cmd/*.c "$root"/cmd/common/*/*.[ch]; do
+    for file in "$root"/cmd/*.c "$root"/cmd/*/*.c "$root"/cmd/common/*/*.[ch]; do
         sed -n 's|^#include "\(\.\./\)*lib/\([^"]*\)"|\2|p' "$file"
     done | sort -u >used
     run -0 comm -13 installed used

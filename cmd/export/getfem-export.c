@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* getfem-export: a stream as a mesh file of the finite element library GetFEM. */
-#include "common/input/mesh_input.h"
+#include "../common/input/mesh_input.h"
 
-#include "../lib/format/mesh_format.h"
+#include "../../lib/format/mesh_format.h"
 
 int main(int argc, char **argv)
 {

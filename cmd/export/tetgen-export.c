@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* tetgen-export: a stream as TetGen's files. */
-#include "common/app/filter.h"
-#include "common/app/output_files.h"
-#include "common/input/left_out.h"
+#include "../common/app/filter.h"
+#include "../common/app/output_files.h"
+#include "../common/input/left_out.h"
 
 #include <stdlib.h>
 #include <string.h>

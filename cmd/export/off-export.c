@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* off-export: the boundary of a mesh, or all its faces, as an OFF file. */
-#include "common/input/mesh_input.h"
+#include "../common/input/mesh_input.h"
 
-#include "../lib/format/mesh_format.h"
+#include "../../lib/format/mesh_format.h"
 
 enum { OPTION_ALL = FILTER_OWN };
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* mvm-export: a stream as a mixed volume mesh (.mvm). */
-#include "common/input/mesh_input.h"
+#include "../common/input/mesh_input.h"
 
-#include "../lib/format/mesh_format.h"
+#include "../../lib/format/mesh_format.h"
 
 int main(int argc, char **argv)
 {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* m3d-import: a mesh of the mixed-element octree mesher as a stream. */
-#include "common/input/mesh_input.h"
+#include "../common/input/mesh_input.h"
 
-#include "../lib/format/mesh_format.h"
+#include "../../lib/format/mesh_format.h"
 
 static tm_status read_m3d(const filter *f, tm_stream *stream, const tm_text *bytes,
                           tm_error *error)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* visf-import: a ViSF file as a stream. */
-#include "common/input/mesh_input.h"
+#include "../common/input/mesh_input.h"
 
-#include "../lib/format/visf.h"
+#include "../../lib/format/visf.h"
 
 static tm_status read_visf(const filter *f, tm_stream *stream, const tm_text *bytes,
                            tm_error *error)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* m3d-export: a stream as a mesh of the mixed-element octree mesher (.m3d). */
-#include "common/input/mesh_input.h"
+#include "../common/input/mesh_input.h"
 
-#include "../lib/format/mesh_format.h"
+#include "../../lib/format/mesh_format.h"
 
 int main(int argc, char **argv)
 {

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* openfoam-export: the cells of a stream as a polyMesh folder of OpenFOAM. */
-#include "common/input/left_out.h"
-#include "common/input/mesh_input.h"
-#include "common/app/output_files.h"
+#include "../common/input/left_out.h"
+#include "../common/input/mesh_input.h"
+#include "../common/app/output_files.h"
 
-#include "../lib/format/mesh_format.h"
-#include "../lib/stream/coordinates.h"
+#include "../../lib/format/mesh_format.h"
+#include "../../lib/stream/coordinates.h"
 
 #include <dirent.h>
 #include <stdio.h>

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* oct-import: the octree of a restart file of the mixed-element octree mesher, with its
  * mesh and its surface, as a stream. */
-#include "common/input/mesh_input.h"
+#include "../common/input/mesh_input.h"
 
-#include "../lib/format/mesh_format.h"
-#include "../lib/format/oct.h"
-#include "../lib/format/surface_format.h"
-#include "../lib/surface/polygon_surface.h"
+#include "../../lib/format/mesh_format.h"
+#include "../../lib/format/oct.h"
+#include "../../lib/format/surface_format.h"
+#include "../../lib/surface/polygon_surface.h"
 
 static const struct option options[] = {
     {"mesh", required_argument, NULL, 'm'},

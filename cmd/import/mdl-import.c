@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* mdl-import: an .mdl surface as a stream. */
-#include "common/input/mesh_input.h"
+#include "../common/input/mesh_input.h"
 
-#include "../lib/format/surface_format.h"
-#include "../lib/surface/polygon_surface.h"
+#include "../../lib/format/surface_format.h"
+#include "../../lib/surface/polygon_surface.h"
 
 static tm_status read_mdl(const filter *f, tm_stream *stream, const tm_text *bytes,
                           tm_error *error)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* oct-export: the octants of a stream as a restart file of the octree mesher. */
-#include "common/input/mesh_input.h"
+#include "../common/input/mesh_input.h"
 
-#include "../lib/format/oct.h"
+#include "../../lib/format/oct.h"
 
 enum { OPTION_IDS = FILTER_OWN };
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* tetgen-import: TetGen's files as a stream. */
-#include "common/input/mesh_input.h"
+#include "../common/input/mesh_input.h"
 
-#include "../lib/text/input.h"
-#include "../lib/format/tetgen.h"
+#include "../../lib/text/input.h"
+#include "../../lib/format/tetgen.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* visf-export: a stream as a ViSF file. */
-#include "common/input/mesh_input.h"
+#include "../common/input/mesh_input.h"
 
-#include "../lib/format/visf.h"
+#include "../../lib/format/visf.h"
 
 enum { OPTION_BINARY = FILTER_OWN, OPTION_NEIGHBOURS, OPTION_PER_CELL };
 
