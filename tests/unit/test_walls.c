@@ -147,7 +147,7 @@ static void check_parts(const tm_octree *octree, const tm_interior *part, size_t
 {
     for (size_t n = 0; n < octree->nodes; n++) {
         const uint32_t *octant = part->octant[n];
-        unsigned of_part[OCTANTS] = {0};
+        unsigned of_part[CUBES] = {0}; /* there are no more regions, nor parts */
         for (unsigned o = 0; o < OCTANTS; o++) {
             unsigned mask = 0;
             for (unsigned i = 0; i < OCTANTS; i++)
@@ -155,7 +155,7 @@ static void check_parts(const tm_octree *octree, const tm_interior *part, size_t
             assert_true(tm_octant_mask_is_good((tm_octant_mask)mask));
             for (size_t p = 0; p < parts; p++)
                 if (part[p].mask[n] >> o & 1) {
-                    assert_true(octant[o] != 0 && p < OCTANTS);
+                    assert_true(octant[o] != 0 && p < CUBES);
                     assert_true(of_part[p] == 0 || of_part[p] == octant[o]);
                     of_part[p] = octant[o];
                 }
