@@ -2,7 +2,7 @@
 /* mdl-import: an .mdl surface as a stream. */
 #include "../common/input/mesh_input.h"
 
-#include "../../lib/format/surface_format.h"
+#include "../../lib/format/surface/surface_format.h"
 #include "../../lib/surface/polygon_surface.h"
 
 static tm_status read_mdl(const filter *f, tm_stream *stream, const tm_text *bytes,

@@ -5,7 +5,7 @@
 
 #include "../../lib/format/mesh_format.h"
 #include "../../lib/format/oct.h"
-#include "../../lib/format/surface_format.h"
+#include "../../lib/format/surface/surface_format.h"
 #include "../../lib/surface/polygon_surface.h"
 
 static const struct option options[] = {

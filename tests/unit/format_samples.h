@@ -4,7 +4,7 @@
 #ifndef TESTS_UNIT_FORMAT_SAMPLES_H
 #define TESTS_UNIT_FORMAT_SAMPLES_H
 
-#include "../../lib/format/surface_format.h"
+#include "../../lib/format/surface/surface_format.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -9,7 +9,7 @@
 
 #include "../../lib/format/mesh_format.h"
 #include "../../lib/format/oct.h"
-#include "../../lib/format/surface_format.h"
+#include "../../lib/format/surface/surface_format.h"
 #include "../../lib/format/tetgen.h"
 #include "../../lib/format/visf.h"
 #include "../../lib/octree/forest/rule_files.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Names of markers and regions: from any bytes, by name and by value, and the groups of
  * foreign surfaces. */
-#include "../../lib/format/surface_format.h"
+#include "../../lib/format/surface/surface_format.h"
 #include "../../lib/stream/group_markers.h"
 #include "../../lib/text/utf8.h"
 #include "random.h"

@@ -4,7 +4,7 @@
 #ifndef CMD_COMMON_SURFACE_INPUT_H
 #define CMD_COMMON_SURFACE_INPUT_H
 
-#include "../../../lib/format/surface_format.h"
+#include "../../../lib/format/surface/surface_format.h"
 #include "../../../lib/surface/surface.h"
 #include "../app/filter.h"
 

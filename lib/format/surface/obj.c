@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "surface_format.h"
 
-#include "../base/array.h"
-#include "../number/number.h"
-#include "../stream/group_markers.h"
-#include "scan.h"
+#include "../../base/array.h"
+#include "../../number/number.h"
+#include "../../stream/group_markers.h"
+#include "../scan.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "mesh_format.h"
+#include "../mesh_format.h"
 #include "surface_format.h"
 
-#include "../base/array.h"
-#include "../mesh/cell_faces.h"
-#include "scan.h"
+#include "../../base/array.h"
+#include "../../mesh/cell_faces.h"
+#include "../scan.h"
 
 #include <stdlib.h>
 #include <string.h>

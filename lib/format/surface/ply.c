@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "surface_format.h"
 
-#include "../base/array.h"
-#include "binary.h"
-#include "scan.h"
+#include "../../base/array.h"
+#include "../binary.h"
+#include "../scan.h"
 
 #include <math.h>
 #include <stdlib.h>

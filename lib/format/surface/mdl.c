@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "surface_format.h"
 
-#include "scan.h"
+#include "../scan.h"
 
 enum { CORNERS = 3, IGNORED = 3 };
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "surface_format.h"
 
-#include "../text/input.h"
-#include "../stream/sniff.h"
-#include "scan.h"
-#include "tetgen.h"
+#include "../../text/input.h"
+#include "../../stream/sniff.h"
+#include "../scan.h"
+#include "../tetgen.h"
 
 #include <string.h>
 #include <strings.h>

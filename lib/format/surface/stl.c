@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "surface_format.h"
 
-#include "binary.h"
-#include "../surface/point_table.h"
-#include "../stream/group_markers.h"
-#include "scan.h"
+#include "../binary.h"
+#include "../../surface/point_table.h"
+#include "../../stream/group_markers.h"
+#include "../scan.h"
 
 #include <math.h>
 #include <string.h>

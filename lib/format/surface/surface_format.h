@@ -4,8 +4,8 @@
 #ifndef TM_FORMAT_SURFACE_FORMAT_H
 #define TM_FORMAT_SURFACE_FORMAT_H
 
-#include "../base/extern_c.h"
-#include "../surface/polygon_surface.h"
+#include "../../base/extern_c.h"
+#include "../../surface/polygon_surface.h"
 
 TM_EXTERN_C_BEGIN
 
