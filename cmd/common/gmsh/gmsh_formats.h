@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The formats of meshes that Gmsh's library (4.8) reads. */
+#ifndef CMD_COMMON_GMSH_FORMATS_H
+#define CMD_COMMON_GMSH_FORMATS_H
+
+#include "../../../lib/base/error.h"
+#include "../../../lib/text/text.h"
+
+#include <stdbool.h>
+
+/* By their names, which are their main suffixes, too. */
+typedef enum gmsh_input {
+    GMSH_MSH,
+    GMSH_MEDIT,
+    GMSH_UNV,
+    GMSH_VTK,
+    GMSH_MED,
+    GMSH_BDF,
+    GMSH_CGNS,
+    GMSH_STL,
+    GMSH_PLY,
+    GMSH_PLY2,
+    GMSH_WRL,
+    GMSH_DIFF,
+    GMSH_INPUTS
+} gmsh_input;
+extern const char *const gmsh_input_name[GMSH_INPUTS];
+
+/* The format of a file by its suffix, of NAME.gz that of NAME, or else by its first
+ * bytes; GMSH_INPUTS where neither tells. `name` may be NULL. */
+gmsh_input gmsh_input_of(const char *name, const tm_text *bytes);
+
+/* Whether the bytes can be of that format: what Gmsh does not know for a mesh it may run
+ * as a script, and part of a file it may take for the whole. TM_ERROR_INPUT says what is
+ * wrong. O(1) but for .msh files that end with a section of another program's. */
+tm_status gmsh_input_check(gmsh_input format, const tm_text *bytes, const char *name,
+                           tm_error *error);
+
+/* Whether a .msh file is of a version before 4. */
+bool gmsh_input_is_old(const tm_text *bytes);
+
+#endif
