@@ -36,6 +36,7 @@ static const struct {
     {"mesh-check", CELLS},
     {"mesh-view", ALL},
     {"getfem-export", SURFACE | TETRAHEDRA | MIXED},
+    {"gmsh-export", POINTS | SURFACE | TETRAHEDRA | MIXED},
     {"m3d-export", TETRAHEDRA | MIXED},
     {"mvm-export", TETRAHEDRA | MIXED},
     {"oct-export", MIXED},

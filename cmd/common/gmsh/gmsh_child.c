@@ -29,11 +29,51 @@ tm_status gmsh_fail(tm_status status, tm_error *error)
     char *what = NULL;
     int failed;
     gmshLoggerGetLastError(&what, &failed);
-    tm_fail(error, status, "Gmsh: %s",
-            !failed && what && *what ? what : "it cannot do it, and does not say why");
+    if (!failed && what && *what)
+        tm_fail(error, status, "Gmsh: %s", what);
+    else
+        tm_fail(error, status,
+                "Gmsh breaks off and does not say why (it asks for much memory where a "
+                "file is damaged)");
     gmshFree(what);
     return status;
 }
+
+/* The name ------------------------------------------------------------------------- */
+
+tm_status gmsh_link_make(gmsh_link *link, int fd, const char *suffix, tm_error *error)
+{
+    char to[64];
+    const tm_status status = private_folder_open(&link->folder, "gmsh", error);
+    if (status != TM_OK)
+        return status;
+    snprintf(to, sizeof to, "/proc/self/fd/%d", fd);
+    snprintf(link->path, sizeof link->path, "%s/mesh.%s", link->folder.path, suffix);
+    if (symlink(to, link->path) == 0)
+        return TM_OK;
+    tm_fail(error, TM_ERROR_SYSTEM, "cannot make %s: %s", link->path, strerror(errno));
+    private_folder_close(&link->folder);
+    return TM_ERROR_SYSTEM;
+}
+
+void gmsh_link_remove(gmsh_link *link)
+{
+    private_folder_close(&link->folder);
+}
+
+size_t gmsh_link_hide(const gmsh_link *link, char *bytes, size_t size)
+{
+    const char *name = strrchr(link->path, '/') + 1;
+    const size_t folder = (size_t)(name - link->path);
+    char *at;
+    while ((at = memmem(bytes, size, link->path, strlen(link->path)))) {
+        memmove(at, at + folder, size - (size_t)(at - bytes) - folder);
+        size -= folder;
+    }
+    return size;
+}
+
+/* The child ------------------------------------------------------------------------ */
 
 /* All that is mapped so far, in bytes. */
 static size_t address_space(void)

@@ -6,6 +6,7 @@
 #define CMD_COMMON_GMSH_CHILD_H
 
 #include "../../../lib/base/error.h"
+#include "../process/private.h"
 
 #include <stddef.h>
 
@@ -23,6 +24,22 @@ typedef struct gmsh_limits {
 typedef tm_status gmsh_work(void *context, tm_error *error);
 tm_status gmsh_child_run(gmsh_work *work, void *context, const gmsh_limits *limits,
                          tm_error *error);
+
+/* A name for a file, for Gmsh, which tells formats by the suffix, and of any file NAME
+ * reads NAME.opt, too, which may hold commands. In a folder in which there is nothing
+ * else. */
+typedef struct gmsh_link {
+    private_folder folder;
+    char path[1024];
+} gmsh_link;
+
+/* Makes it, for the file that is open as fd in this process and in its children. */
+tm_status gmsh_link_make(gmsh_link *link, int fd, const char *suffix, tm_error *error);
+void gmsh_link_remove(gmsh_link *link);
+
+/* Gmsh writes the path to files, and says it in messages: removes the folder from the
+ * first `size` bytes where it is there. Returns how many bytes are left. */
+size_t gmsh_link_hide(const gmsh_link *link, char *bytes, size_t size);
 
 /* In the child: sets *error to what Gmsh's last error says, with no more than `status`.
  */

@@ -2,7 +2,6 @@
 #include "gmsh_model.h"
 
 #include "../../../lib/base/array.h"
-#include "../process/private.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -12,23 +11,17 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Gmsh tells formats by the suffix, and of any file NAME it reads NAME.opt, too, which
- * may hold commands: it gets a name in a folder in which there is nothing else. */
 static tm_status read_named(const gmsh_source *source, int records, tm_error *error)
 {
-    private_folder folder;
-    tm_status status = private_folder_open(&folder, "gmsh-import", error);
+    gmsh_link link;
+    tm_status status = gmsh_link_make(&link, source->fd, source->suffix, error);
     if (status != TM_OK)
         return status;
-    char to[64], path[sizeof folder.path + 32];
-    snprintf(to, sizeof to, "/proc/self/fd/%d", source->fd);
-    snprintf(path, sizeof path, "%s/mesh.%s", folder.path, source->suffix);
-    gmsh_reading reading = {source, path, records};
-    status = symlink(to, path) == 0
-                 ? gmsh_child_run(gmsh_read_records, &reading, &source->limits, error)
-                 : tm_fail(error, TM_ERROR_SYSTEM, "cannot make %s: %s", path,
-                           strerror(errno));
-    private_folder_close(&folder);
+    gmsh_reading reading = {source, link.path, records};
+    status = gmsh_child_run(gmsh_read_records, &reading, &source->limits, error);
+    if (status != TM_OK)
+        gmsh_link_hide(&link, error->what, strlen(error->what) + 1);
+    gmsh_link_remove(&link);
     return status;
 }
 

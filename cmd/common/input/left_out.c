@@ -30,13 +30,26 @@ enum {
     TETRAHEDRA = 1 << 14 /* .ele whatever else there is, and nothing else */
 };
 
-/* One row for each exporter; of one that has none all is left out. OFF is of faces alone,
+/* One row for each exporter, of one of several formats for each of them; of one that has
+ * none all is left out. OFF is of faces alone,
  * and .oct of octants: what nodes and cells have is not asked for there. */
 static const struct {
     const char *filter;
     unsigned keeps;
 } formats[] = {
     {"getfem-export", FACES | REGIONS | FACE_NAMES | REGION_NAMES},
+    {"gmsh-export bdf", EDGES | FACES | REGIONS},
+    {"gmsh-export cgns", NODE_MARKERS | EDGES | FACES | REGIONS | NAMES},
+    {"gmsh-export inp", EDGES | FACES | REGIONS | EDGE_NAMES | FACE_NAMES | REGION_NAMES},
+    {"gmsh-export key", EDGES | FACES | REGIONS | EDGE_NAMES | FACE_NAMES | REGION_NAMES},
+    {"gmsh-export med", NODE_MARKERS | EDGES | FACES | REGIONS | NAMES},
+    {"gmsh-export mesh", EDGES | FACES | REGIONS},
+    {"gmsh-export msh1", NODE_MARKERS | EDGES | FACES | REGIONS},
+    {"gmsh-export msh2", NODE_MARKERS | EDGES | FACES | REGIONS | NAMES},
+    {"gmsh-export msh4", NODE_MARKERS | EDGES | FACES | REGIONS | NAMES},
+    {"gmsh-export msh40", NODE_MARKERS | EDGES | FACES | REGIONS | NAMES},
+    {"gmsh-export su2", FACES | FACE_NAMES},
+    {"gmsh-export unv", EDGES | FACES | REGIONS | EDGE_NAMES | FACE_NAMES | REGION_NAMES},
     {"m3d-export", 0},
     {"mesh-view", NODE_ATTRIBUTES | NODE_MARKERS | FACES | FACES_BELOW_0 | ALL_REGIONS |
                       ATTRIBUTES | NODE_NAMES | FACE_NAMES | REGION_NAMES},
@@ -175,6 +188,17 @@ static bool marks_nodes_of(const tm_block *node, const tm_block *block)
     return same;
 }
 
+bool mesh_marks_boundary_nodes(const tm_stream *stream)
+{
+    const tm_block *node = tm_stream_find(stream, ".node");
+    const tm_content content = tm_content_of(stream);
+    const tm_block *face =
+        tm_stream_find(stream, content == TM_CONTENT_POLYHEDRA ? ".facet" : ".face");
+    const bool has_faces = face && face->count > 0;
+    return node && node->marker && only_marker(node) != 0 &&
+           content != TM_CONTENT_POINTS && (!has_faces || marks_nodes_of(node, face));
+}
+
 static void add_nodes(finder *find)
 {
     const tm_block *node = tm_stream_find(find->stream, ".node");
@@ -186,11 +210,7 @@ static void add_nodes(finder *find)
             node->name);
     if (!node->marker || is_kept(find, NODE_MARKERS))
         return;
-    const tm_block *face = tm_stream_find(
-        find->stream, find->content == TM_CONTENT_POLYHEDRA ? ".facet" : ".face");
-    const bool has_faces = face && face->count > 0;
-    if (only_marker(node) != 0 && find->content != TM_CONTENT_POINTS &&
-        (!has_faces || marks_nodes_of(node, face)))
+    if (mesh_marks_boundary_nodes(find->stream))
         return;
     add(find, NODE_MARKERS, count_markers(node, false) + count_markers(node, true),
         "markers of nodes", node->name);
@@ -291,8 +311,13 @@ static void add_blocks(finder *find)
 
 void mesh_leave_out(const filter *f, const tm_stream *stream)
 {
+    mesh_leave_out_as(f, f->name, stream);
+}
+
+void mesh_leave_out_as(const filter *f, const char *format, const tm_stream *stream)
+{
     finder find = {
-        .stream = stream, .content = tm_content_of(stream), .keeps = kept_by(f->name)};
+        .stream = stream, .content = tm_content_of(stream), .keeps = kept_by(format)};
     add_nodes(&find);
     add_cells(&find);
     add_faces(&find, ".face");

@@ -17,4 +17,10 @@
  * beside them the part surface and the first attribute of nodes. */
 void mesh_leave_out(const filter *f, const tm_stream *stream);
 
+/* The same of an exporter of several formats: "gmsh-export mesh". */
+void mesh_leave_out_as(const filter *f, const char *format, const tm_stream *stream);
+
+/* Whether the markers of .node only say which nodes are on the boundary. O(n). */
+bool mesh_marks_boundary_nodes(const tm_stream *stream);
+
 #endif
