@@ -8,8 +8,10 @@
 #include "../../lib/text/file.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 enum { OPTION_FORMAT = FILTER_OWN };
@@ -45,40 +47,67 @@ static gmsh_input read_options(void)
 }
 
 /* An error of the file, which may be another one than the user thinks. */
-_Noreturn static void fail(const tm_text *bytes)
+_Noreturn static void fail(const gmsh_file *file)
 {
     if (!error.file[0] && error.status == TM_ERROR_INPUT)
         snprintf(error.file, sizeof error.file, "%s", filter_input_name(&f));
-    filter_fail_file(&f, &error, bytes, f.name);
+    filter_fail_file(&f, &error, &file->head, f.name);
 }
 
-static gmsh_input find_format(gmsh_input format, const tm_text *bytes)
+static gmsh_input find_format(gmsh_input format, const gmsh_file *file)
 {
     if (format == GMSH_INPUTS)
-        format = gmsh_input_of(f.input, bytes);
+        format = gmsh_input_of(f.input, file);
     if (format == GMSH_INPUTS) {
         tm_fail(&error, TM_ERROR_INPUT,
                 "neither its name nor its first bytes say that it is a mesh that Gmsh "
                 "reads (--format says it)");
-        fail(bytes);
+        fail(file);
     }
-    if (gmsh_input_check(format, bytes, filter_input_name(&f), &error) != TM_OK)
-        fail(bytes);
+    if (gmsh_input_check(format, file, filter_input_name(&f), &error) != TM_OK)
+        fail(file);
     return format;
 }
 
-/* Where Gmsh reads them. */
-static int hold(const tm_text *bytes)
+/* Whether Gmsh can read what is open as it is: a regular file that is not packed and does
+ * not begin with a byte order mark. */
+static bool is_plain(int fd)
 {
-    const size_t mark = tm_byte_order_mark(bytes->byte, bytes->size);
+    enum { FIRST = 3 };
+    static const char gzip[] = "\x1F\x8B";
+    char first[FIRST];
+    struct stat is;
+    return fstat(fd, &is) == 0 && S_ISREG(is.st_mode) &&
+           pread(fd, first, sizeof first, 0) == FIRST && lseek(fd, 0, SEEK_CUR) == 0 &&
+           memcmp(first, gzip, sizeof gzip - 1) != 0 &&
+           tm_byte_order_mark(first, sizeof first) == 0;
+}
+
+/* Any other input, in memory. */
+static int hold(void)
+{
+    tm_text bytes = {0};
+    filter_read_bytes(&f, &bytes);
+    const size_t mark = tm_byte_order_mark(bytes.byte, bytes.size);
     const int fd = memfd_create("input", MFD_CLOEXEC);
-    if (fd < 0) {
+    if (fd < 0)
         tm_fail(&error, TM_ERROR_SYSTEM, "cannot hold the input: %s", strerror(errno));
+    if (fd < 0 || (bytes.size > 0 && tm_write_all(fd, bytes.byte + mark,
+                                                  bytes.size - mark, &error) != TM_OK))
         filter_fail(&f, &error);
-    }
-    if (tm_write_all(fd, bytes->byte + mark, bytes->size - mark, &error) != TM_OK)
-        filter_fail(&f, &error);
+    tm_text_free(&bytes);
     return fd;
+}
+
+static int open_input(void)
+{
+    const int fd = f.input ? open(f.input, O_RDONLY | O_CLOEXEC)
+                           : fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+    if (fd >= 0 && is_plain(fd))
+        return fd;
+    if (fd >= 0)
+        close(fd);
+    return hold();
 }
 
 /* The most that Gmsh may take: several times what whole files need. */
@@ -161,15 +190,15 @@ static void say_what_was_done(const gmsh_done *done)
 }
 
 /* Reads the file, of old .msh files a second time where that tells more. */
-static void read_mesh(tm_stream *stream, gmsh_input format, const tm_text *bytes,
+static void read_mesh(tm_stream *stream, gmsh_input format, const gmsh_file *file,
                       gmsh_done *done)
 {
     gmsh_model model = {0}, swapped = {0};
-    gmsh_source source = {.fd = hold(bytes),
+    gmsh_source source = {.fd = file->fd,
                           .suffix = gmsh_input_name[format],
-                          .limits = limits_for(bytes->size)};
+                          .limits = limits_for(file->size)};
     tm_status status = gmsh_model_read(&model, &source, &error);
-    source.swap_tags = format == GMSH_MSH && gmsh_input_is_old(bytes);
+    source.swap_tags = format == GMSH_MSH && gmsh_input_is_old(file);
     const bool again = status == TM_OK && source.swap_tags && has_several_groups(&model);
     if (again)
         status = gmsh_model_read(&swapped, &source, &error);
@@ -178,13 +207,12 @@ static void read_mesh(tm_stream *stream, gmsh_input format, const tm_text *bytes
     if (status == TM_OK && done->nodes == 0)
         status = tm_fail(&error, TM_ERROR_INPUT, "has no nodes that Gmsh keeps");
     if (status != TM_OK)
-        fail(bytes);
+        fail(file);
     say_warnings(&model);
     leave_out(&model, done);
     say_what_was_done(done);
     gmsh_model_free(&model);
     gmsh_model_free(&swapped);
-    close(source.fd);
 }
 
 static void write_json(const gmsh_done *done)
@@ -199,17 +227,20 @@ static void write_json(const gmsh_done *done)
 
 int main(int argc, char **argv)
 {
-    tm_text bytes = {0};
+    gmsh_file file;
     tm_stream stream;
     gmsh_done done;
     filter_start(&f, argc, argv);
     gmsh_input format = read_options();
-    filter_read_bytes(&f, &bytes);
-    format = find_format(format, &bytes);
+    const int fd = open_input();
+    if (gmsh_file_look(&file, fd, filter_input_name(&f), &error) != TM_OK)
+        filter_fail(&f, &error);
+    format = find_format(format, &file);
     filter_stage(&f, "reading by Gmsh");
     tm_stream_init(&stream);
-    read_mesh(&stream, format, &bytes, &done);
-    tm_text_free(&bytes);
+    read_mesh(&stream, format, &file, &done);
+    gmsh_file_free(&file);
+    close(fd);
     write_json(&done);
     filter_write(&f, &stream, "%zu nodes, %zu cells, %zu faces, %zu edges", done.nodes,
                  done.cells, done.faces, done.edges);

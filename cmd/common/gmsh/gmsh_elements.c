@@ -271,40 +271,50 @@ static tm_status sort_elements(gmsh_elements *elements, tm_error *error)
     return TM_OK;
 }
 
-/* The nodes of element e in ascending order; false where one is there twice. */
-static bool sorted_nodes(const gmsh_elements *elements, size_t e,
-                         uint32_t node[GMSH_CORNERS])
+/* Whether an element names a corner twice. */
+static bool is_degenerate(const uint32_t *node, size_t count)
 {
-    const size_t count = elements->count[e];
-    const uint32_t *given = elements->node + e * elements->width;
-    for (size_t i = 0; i < count; i++) {
-        size_t at = i;
-        for (; at > 0 && node[at - 1] > given[i]; at--)
-            node[at] = node[at - 1];
-        node[at] = given[i];
-    }
     for (size_t i = 1; i < count; i++)
-        if (node[i - 1] == node[i])
+        for (size_t k = 0; k < i; k++)
+            if (node[i] == node[k])
+                return true;
+    return false;
+}
+
+/* Whether two elements have the same nodes, in any order; none is degenerate. */
+static bool are_same(const uint32_t *a, const uint32_t *b, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        size_t k = 0;
+        while (k < count && b[k] != a[i])
+            k++;
+        if (k == count)
             return false;
+    }
     return true;
 }
 
-/* Where an element with these nodes, of `kept` ones, is, or could be put. */
-static uint32_t *find_element(const tm_hash_table *table, const gmsh_elements *elements,
-                              const uint32_t node[GMSH_CORNERS], size_t count)
+/* The same for any order of the nodes. */
+static uint64_t hash_of(const gmsh_elements *elements, size_t e)
 {
-    uint32_t other[GMSH_CORNERS];
-    uint64_t h = 0;
-    for (size_t i = 0; i < count; i++)
-        h = tm_hash(h, node[i]);
-    uint32_t *slot = tm_hash_slot(table, h);
-    for (; *slot != TM_HASH_FREE; slot = tm_hash_next(table, slot)) {
-        if (elements->count[*slot] != count)
-            continue;
-        sorted_nodes(elements, *slot, other);
-        if (memcmp(other, node, count * sizeof *node) == 0)
+    const uint32_t *node = elements->node + e * elements->width;
+    uint64_t sum = 0;
+    for (size_t i = 0; i < elements->count[e]; i++)
+        sum += tm_hash(0, node[i]);
+    return tm_hash(0, sum);
+}
+
+/* Where an element with the nodes of element e is, or could be put. */
+static uint32_t *find_element(const tm_hash_table *table, const gmsh_elements *elements,
+                              size_t e)
+{
+    const size_t count = elements->count[e];
+    const uint32_t *node = elements->node + e * elements->width;
+    uint32_t *slot = tm_hash_slot(table, hash_of(elements, e));
+    for (; *slot != TM_HASH_FREE; slot = tm_hash_next(table, slot))
+        if (elements->count[*slot] == count &&
+            are_same(elements->node + *slot * elements->width, node, count))
             break;
-    }
     return slot;
 }
 
@@ -313,18 +323,21 @@ static uint32_t *find_element(const tm_hash_table *table, const gmsh_elements *e
 static tm_status keep_each_once(gmsh_mesh *mesh, gmsh_elements *elements, gmsh_sets *sets,
                                 tm_error *error)
 {
+    enum { AHEAD = 16 }; /* memory is asked for so many elements before it is needed */
     tm_hash_table table = {0};
     if (!tm_hash_make(&table, elements->elements))
         return tm_fail_memory(error);
     tm_status status = TM_OK;
     size_t kept = 0;
     for (size_t e = 0; e < elements->elements && status == TM_OK; e++) {
-        uint32_t node[GMSH_CORNERS];
-        if (!sorted_nodes(elements, e, node)) {
+        const uint32_t *node = elements->node + e * elements->width;
+        if (e + AHEAD < elements->elements)
+            __builtin_prefetch(tm_hash_slot(&table, hash_of(elements, e + AHEAD)));
+        if (is_degenerate(node, elements->count[e])) {
             mesh->degenerate++;
             continue;
         }
-        uint32_t *slot = find_element(&table, elements, node, elements->count[e]);
+        uint32_t *slot = find_element(&table, elements, e);
         if (*slot != TM_HASH_FREE) {
             mesh->repeated++;
             status = gmsh_sets_join(sets, elements->set[*slot], elements->set[e],

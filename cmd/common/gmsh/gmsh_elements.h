@@ -9,8 +9,6 @@
 
 #include <stdint.h>
 
-enum { GMSH_CORNERS = 8 };
-
 /* Element e has count[e] corners, node[width e …], and its groups are set[e]. */
 typedef struct gmsh_elements {
     size_t elements;

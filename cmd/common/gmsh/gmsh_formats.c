@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gmsh_formats.h"
 
-#include "../../../lib/stream/sniff.h"
 #include "../../../lib/text/input.h"
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 const char *const gmsh_input_name[GMSH_INPUTS] = {"msh", "mesh", "unv",  "vtk",
                                                   "med", "bdf",  "cgns", "stl",
@@ -70,8 +72,9 @@ static const char *first_word(const char *at, const char *end)
     return at;
 }
 
-static gmsh_input by_content(const tm_text *bytes)
+static gmsh_input by_content(const gmsh_file *file)
 {
+    const tm_text *bytes = &file->head;
     const char *end = bytes->byte + bytes->size;
     for (size_t i = 0; bytes->size > 0 && i < HEADS; i++)
         if (begins(heads[i].format == GMSH_MSH ? bytes->byte
@@ -81,103 +84,149 @@ static gmsh_input by_content(const tm_text *bytes)
     return GMSH_INPUTS;
 }
 
-gmsh_input gmsh_input_of(const char *name, const tm_text *bytes)
+gmsh_input gmsh_input_of(const char *name, const gmsh_file *file)
 {
     const gmsh_input format = name ? by_suffix(name) : GMSH_INPUTS;
-    return format == GMSH_INPUTS ? by_content(bytes) : format;
+    return format == GMSH_INPUTS ? by_content(file) : format;
 }
 
 /* The last line that is not blank: where it begins; *size without its line feed. */
-static const char *last_line(const tm_text *bytes, size_t *size)
+static const char *last_line(const tm_text *tail, size_t *size)
 {
-    size_t end = bytes->size;
-    while (end > 0 && strchr(" \t\r\n", bytes->byte[end - 1]))
+    size_t end = tail->size;
+    while (end > 0 && strchr(" \t\r\n", tail->byte[end - 1]))
         end--;
-    const char *feed = end > 0 ? memrchr(bytes->byte, '\n', end) : NULL;
-    const char *line = feed ? feed + 1 : bytes->byte;
-    *size = (size_t)(bytes->byte + end - line);
+    const char *feed = end > 0 ? memrchr(tail->byte, '\n', end) : NULL;
+    const char *line = feed ? feed + 1 : tail->byte;
+    *size = end > 0 ? (size_t)(tail->byte + end - line) : 0;
     return line;
 }
 
-/* Whether there is a line of these words before `end`. */
-static bool has_line(const tm_text *bytes, const char *end, const char *words,
-                     size_t size)
+/* Whether a word is the end of a section, and not of one of Gmsh's own that is cut. */
+static bool is_end(const char *word, size_t size)
 {
-    for (const char *at = bytes->byte; at < end; at++) {
-        at = memmem(at, (size_t)(end - at), words, size);
-        if (!at)
-            return false;
-        if ((at == bytes->byte || at[-1] == '\n') && strchr(" \r\n", at[size]))
+    static const char *const ends[] = {"$EndMeshFormat",
+                                       "$EndPhysicalNames",
+                                       "$EndEntities",
+                                       "$EndPartitionedEntities",
+                                       "$EndNodes",
+                                       "$EndElements",
+                                       "$EndPeriodic",
+                                       "$EndGhostElements",
+                                       "$EndParametrizations",
+                                       "$EndNodeData",
+                                       "$EndElementData",
+                                       "$EndElementNodeData",
+                                       "$EndInterpolationScheme",
+                                       "$EndComments",
+                                       "$ENDNOD",
+                                       "$ENDELM"};
+    enum { MARK = 4 };
+    bool is_cut = size <= MARK;
+    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
+        const size_t length = strlen(ends[i]);
+        if (size == length && memcmp(word, ends[i], size) == 0)
             return true;
+        is_cut |= size < length && memcmp(word, ends[i], size) == 0;
     }
-    return false;
+    return !is_cut && strncasecmp(word, "$End", MARK) == 0;
 }
 
-/* Whether the file ends with the end of a section that is in it. */
-static bool has_end(const tm_text *bytes)
+static tm_status check_msh(const gmsh_file *file, const char *name, tm_error *error)
 {
-    static const char *const marks[] = {"$End", "$END"};
     size_t size;
-    const char *line = last_line(bytes, &size);
-    for (size_t i = 0; i < sizeof marks / sizeof *marks; i++) {
-        const size_t length = strlen(marks[i]);
-        if (size <= length || memcmp(line, marks[i], length) != 0)
-            continue;
-        tm_text begin = {0};
-        tm_text_string(&begin, "$");
-        tm_text_append(&begin, line + length, size - length);
-        const bool is_there =
-            begin.failed || has_line(bytes, line, begin.byte, begin.size);
-        tm_text_free(&begin);
-        return is_there;
-    }
-    return false;
-}
-
-static tm_status check_msh(const tm_text *bytes, const char *name, tm_error *error)
-{
-    if (by_content(bytes) != GMSH_MSH)
+    if (by_content(file) != GMSH_MSH)
         return tm_fail_at(error, TM_ERROR_INPUT, name, 0, NULL,
                           "does not begin as a .msh file ($MeshFormat, or $NOD of "
                           "version 1, would be right)");
-    if (!has_end(bytes))
+    const char *line = last_line(&file->tail, &size);
+    if (!is_end(line, size))
         return tm_fail_at(error, TM_ERROR_INPUT, name, 0, NULL,
-                          "is cut short: it does not end with the end of a section, "
-                          "$End… ($EndElements, in most files)");
+                          "is cut short: it does not end with the end of a section "
+                          "($EndElements in most files)");
     return TM_OK;
 }
 
-static tm_status check_medit(const tm_text *bytes, const char *name, tm_error *error)
+static tm_status check_medit(const gmsh_file *file, const char *name, tm_error *error)
 {
-    if (bytes->size > 0 && (bytes->byte[0] == '\0' || bytes->byte[0] == '\1'))
+    static const char end[] = "end";
+    size_t size;
+    if (file->size > 0 && (file->head.byte[0] == '\0' || file->head.byte[0] == '\1'))
         return tm_fail_at(error, TM_ERROR_INPUT, name, 0, NULL,
                           "is a binary file of Medit (.meshb), which Gmsh does not read "
                           "(text, .mesh, would be right)");
-    if (by_content(bytes) != GMSH_MEDIT)
+    if (by_content(file) != GMSH_MEDIT)
         return tm_fail_at(error, TM_ERROR_INPUT, name, 0, NULL,
                           "does not begin as a .mesh file of Medit "
                           "(MeshVersionFormatted would be right)");
+    const char *line = last_line(&file->tail, &size);
+    while (size > 0 && strchr(" \t", *line)) {
+        line++;
+        size--;
+    }
+    if (size != sizeof end - 1 || strncasecmp(line, end, size) != 0)
+        return tm_fail_at(error, TM_ERROR_INPUT, name, 0, NULL,
+                          "is cut short: it does not end with End");
     return TM_OK;
 }
 
-tm_status gmsh_input_check(gmsh_input format, const tm_text *bytes, const char *name,
+tm_status gmsh_input_check(gmsh_input format, const gmsh_file *file, const char *name,
                            tm_error *error)
 {
     switch (format) {
     case GMSH_MSH:
-        return check_msh(bytes, name, error);
+        return check_msh(file, name, error);
     case GMSH_MEDIT:
-        return check_medit(bytes, name, error);
+        return check_medit(file, name, error);
     default:
-        if (bytes->size > 0)
+        if (file->size > 0)
             return TM_OK;
         return tm_fail_at(error, TM_ERROR_INPUT, name, 0, NULL, "is empty");
     }
 }
 
-bool gmsh_input_is_old(const tm_text *bytes)
+bool gmsh_input_is_old(const gmsh_file *file)
 {
     static const char word[] = "$MeshFormat";
-    const char *at = memmem(bytes->byte, bytes->size, word, sizeof word - 1);
+    const char *at = file->size > 0
+                         ? memmem(file->head.byte, file->head.size, word, sizeof word - 1)
+                         : NULL;
     return !at || strtod(at + sizeof word - 1, NULL) < 4;
+}
+
+/* The file ------------------------------------------------------------------------- */
+
+/* Some bytes from `at` on, which are there. */
+static tm_status peek(tm_text *text, int fd, size_t at, size_t size, const char *name,
+                      tm_error *error)
+{
+    if (!tm_text_room(text, size + 1))
+        return tm_fail_memory(error);
+    const ptrdiff_t got = pread(fd, text->byte, size, (off_t)at);
+    if (got != (ptrdiff_t)size)
+        return tm_fail_at(error, TM_ERROR_SYSTEM, name, 0, NULL, "cannot read: %s",
+                          got < 0 ? strerror(errno) : "it became shorter");
+    text->size = size;
+    text->byte[size] = '\0';
+    return TM_OK;
+}
+
+tm_status gmsh_file_look(gmsh_file *file, int fd, const char *name, tm_error *error)
+{
+    struct stat is;
+    *file = (gmsh_file){.fd = fd};
+    if (fstat(fd, &is) != 0)
+        return tm_fail_at(error, TM_ERROR_SYSTEM, name, 0, NULL, "cannot read: %s",
+                          strerror(errno));
+    file->size = (size_t)is.st_size;
+    const size_t size = file->size < GMSH_PEEK ? file->size : GMSH_PEEK;
+    const tm_status status = peek(&file->head, fd, 0, size, name, error);
+    return status == TM_OK ? peek(&file->tail, fd, file->size - size, size, name, error)
+                           : status;
+}
+
+void gmsh_file_free(gmsh_file *file)
+{
+    tm_text_free(&file->head);
+    tm_text_free(&file->tail);
 }

@@ -26,17 +26,29 @@ typedef enum gmsh_input {
 } gmsh_input;
 extern const char *const gmsh_input_name[GMSH_INPUTS];
 
+/* A file that is open, and what it begins and ends with. */
+typedef struct gmsh_file {
+    int fd;
+    size_t size;
+    tm_text head, tail; /* up to GMSH_PEEK bytes */
+} gmsh_file;
+enum { GMSH_PEEK = 4096 };
+
+/* Looks at a regular file, or one in memory. TM_ERROR_SYSTEM where it cannot be read. */
+tm_status gmsh_file_look(gmsh_file *file, int fd, const char *name, tm_error *error);
+void gmsh_file_free(gmsh_file *file);
+
 /* The format of a file by its suffix, of NAME.gz that of NAME, or else by its first
  * bytes; GMSH_INPUTS where neither tells. `name` may be NULL. */
-gmsh_input gmsh_input_of(const char *name, const tm_text *bytes);
+gmsh_input gmsh_input_of(const char *name, const gmsh_file *file);
 
-/* Whether the bytes can be of that format: what Gmsh does not know for a mesh it may run
+/* Whether the file can be of that format: what Gmsh does not know for a mesh it may run
  * as a script, and part of a file it may take for the whole. TM_ERROR_INPUT says what is
- * wrong. O(1) but for .msh files that end with a section of another program's. */
-tm_status gmsh_input_check(gmsh_input format, const tm_text *bytes, const char *name,
+ * wrong. */
+tm_status gmsh_input_check(gmsh_input format, const gmsh_file *file, const char *name,
                            tm_error *error);
 
 /* Whether a .msh file is of a version before 4. */
-bool gmsh_input_is_old(const tm_text *bytes);
+bool gmsh_input_is_old(const gmsh_file *file);
 
 #endif
