@@ -17,4 +17,7 @@
  * beside them the part surface and the first attribute of nodes. */
 void mesh_leave_out(const filter *f, const tm_stream *stream);
 
+/* The same where it depends on options what the format has: its row of the table. */
+void mesh_leave_out_of(const filter *f, const tm_stream *stream, const char *format);
+
 #endif
