@@ -111,6 +111,11 @@ static tm_status check_size(const writer *w, tm_error *error)
     return TM_OK;
 }
 
+static bool is_same(const float a[COORDINATES], const float b[COORDINATES])
+{
+    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
 static void put_triangle(writer *w, const uint32_t *corner)
 {
     char bytes[TRIANGLE] = {0}, *at = bytes;
@@ -124,11 +129,8 @@ static void put_triangle(writer *w, const uint32_t *corner)
             point[i][c] = (float)w->list->xyz[corner[i]][c];
             tm_binary_put_float(at, point[i][c], false);
         }
-    for (int i = 0; i < CORNERS; i++)
-        if (memcmp(point[i], point[(i + 1) % CORNERS], sizeof *point) == 0) {
-            w->written.flat++;
-            break;
-        }
+    w->written.flat += is_same(point[0], point[1]) || is_same(point[1], point[2]) ||
+                       is_same(point[2], point[0]);
     tm_text_append(w->text, bytes, sizeof bytes);
 }
 
