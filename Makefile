@@ -98,6 +98,7 @@ in_library = $(foreach file,$(wildcard lib/*/*$(1) lib/*/*/*$(1)),\
 filter_sources := $(wildcard cmd/*.c cmd/import/*.c cmd/export/*.c)
 filters := $(filter-out $(left_out),$(basename $(notdir $(filter_sources))))
 bin := $(filters:%=$(BUILD)/bin/%)
+scripts := $(BUILD)/bin/mesh-convert
 completions := $(filters:%=$(BUILD)/completion/bash/%)
 library := $(BUILD)/libtermesh.a
 shared := $(BUILD)/libtermesh.so.$(VERSION)
@@ -127,7 +128,7 @@ sources := $(wildcard lib/*.h lib/*/*.[ch] lib/*/*/*.[ch] lib/*/*/*/*.[ch] \
 .PHONY: all tests check benchers bench fuzz lint warnings format install uninstall clean
 .SECONDARY:
 
-all: $(bin) $(completions) $(library) $(shared)
+all: $(bin) $(scripts) $(completions) $(library) $(shared)
 ifndef has_p4est
 	@echo "There is no p4est, or no mpicc: octree-mesh and octree-repair are left out." >&2
 endif
@@ -190,6 +191,11 @@ $(filter %-export,$(bin)): $(BUILD)/bin/%: $(BUILD)/cmd/export/%.o $(common) $(l
 	$(link)
 $(filter-out %-import %-export,$(bin)): $(BUILD)/bin/%: $(BUILD)/cmd/%.o $(common) $(library)
 	$(link)
+
+$(scripts): $(BUILD)/bin/%: cmd/%.sh
+	@mkdir -p $(@D)
+	cp $< $@
+	chmod 755 $@
 
 # A filter prints its options; the file for zsh is made with that for bash.
 $(completions): $(BUILD)/completion/bash/%: $(BUILD)/bin/% cmd/completion.sh
@@ -267,7 +273,7 @@ format:
 
 install: all
 	install -d $(DESTDIR)$(BINDIR) $(DESTDIR)$(LIBDIR)/pkgconfig
-	install -m 755 $(bin) $(DESTDIR)$(BINDIR)
+	install -m 755 $(bin) $(scripts) $(DESTDIR)$(BINDIR)
 	install -d $(DESTDIR)$(BASHCOMPLETIONDIR) $(DESTDIR)$(ZSHCOMPLETIONDIR)
 	install -m 644 $(completions) $(DESTDIR)$(BASHCOMPLETIONDIR)
 	install -m 644 $(filters:%=$(BUILD)/completion/zsh/_%) $(DESTDIR)$(ZSHCOMPLETIONDIR)
@@ -288,7 +294,8 @@ install: all
 		>$(DESTDIR)$(LIBDIR)/pkgconfig/termesh.pc
 
 uninstall:
-	rm -f $(filters:%=$(DESTDIR)$(BINDIR)/%) $(DESTDIR)$(LIBDIR)/libtermesh.* \
+	rm -f $(filters:%=$(DESTDIR)$(BINDIR)/%) $(scripts:$(BUILD)/bin/%=$(DESTDIR)$(BINDIR)/%) \
+		$(DESTDIR)$(LIBDIR)/libtermesh.* \
 		$(DESTDIR)$(LIBDIR)/pkgconfig/termesh.pc \
 		$(filters:%=$(DESTDIR)$(BASHCOMPLETIONDIR)/%) \
 		$(filters:%=$(DESTDIR)$(ZSHCOMPLETIONDIR)/_%)

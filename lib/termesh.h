@@ -70,6 +70,7 @@
 #include "format/mesh_format.h"
 #include "format/oct.h"
 #include "format/surface/surface_format.h"
+#include "format/surface/surface_write.h"
 #include "format/tetgen.h"
 #include "format/visf.h"
 #include "format/vtk/vtk.h"

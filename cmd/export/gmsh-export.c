@@ -104,7 +104,7 @@ static void leave_out(const tm_stream *stream, const gmsh_plan *plan)
 {
     char row[64];
     snprintf(row, sizeof row, "%s %s", f.name, gmsh_output_formats[format].name);
-    mesh_leave_out_as(&f, row, stream);
+    mesh_leave_out_of(&f, stream, row);
     if (plan->unused > 0)
         filter_leave_out(&f, "%zu nodes that nothing has which is written (.node)",
                          plan->unused);

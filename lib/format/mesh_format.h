@@ -14,15 +14,6 @@
 
 TM_EXTERN_C_BEGIN
 
-/* OFF ------------------------------------------------------------------------------ */
-
-/* Appends the boundary of a stream's main mesh to *text, in OFF of Geomview, as polygons
- * that turn outward, or all its facets, each once: outward for the first of its two
- * cells. A surface is all boundary. Only nodes that these polygons have are written, in
- * their order. TM_ERROR_INPUT as tm_cell_faces_find(), or where there are no cells and no
- * surface. Expected O(n). */
-tm_status tm_off_write(tm_text *text, const tm_stream *stream, bool all, tm_error *error);
-
 /* GetFEM --------------------------------------------------------------------------- */
 
 /* The mesh file of the finite element library GetFEM (mesh::write_to_file() of version

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SURFACE  "use tetgen-mesh or octree-mesh"
+#define SURFACE  "use tetgen-mesh, octree-mesh or surface-import"
 #define NONE     "no filter reads it"
 #define NONE_YET "no filter reads it yet"
 #define GMSH     "use gmsh-import"
@@ -145,7 +145,7 @@ static tm_look look_at_sections(const char *at, const char *end)
 {
     if (holds(at, end, "ARRAY1<POINT3D>]"))
         return (tm_look){"an .mdl surface",
-                         "use mdl-import, or tetgen-mesh or octree-mesh"};
+                         "use mdl-import, tetgen-mesh, octree-mesh or surface-import"};
     if (holds(at, end, "[Nodes,") || holds(at, end, "[Elements,"))
         return (tm_look){"an .m3d mesh", "use m3d-import"};
     return (tm_look){"text", NULL};
@@ -215,7 +215,8 @@ static tm_look look_at_numbers(const char *at, const char *end)
         return (tm_look){"text", NULL};
     if (count > 1 && number[1] == 3)
         return (tm_look){"a TetGen .node, .poly or .smesh file",
-                         "use tetgen-mesh or octree-mesh, or tetgen-import of a .node "
+                         "use tetgen-mesh, octree-mesh or surface-import, or "
+                         "tetgen-import of a .node "
                          "file with its .ele"};
     if (count > 1 && (number[1] == CORNERS || number[1] == NODES))
         return (tm_look){"a TetGen .ele file", "use tetgen-import with its .node"};

@@ -12,7 +12,7 @@ TM_EXTERN_C_BEGIN
 
 typedef struct tm_look {
     const char *what;   /* "an OFF surface"; never NULL */
-    const char *advice; /* "use tetgen-mesh or octree-mesh", "no filter reads it yet";
+    const char *advice; /* "use visf-import", "no filter reads it yet";
                          * NULL where it could be anything */
 } tm_look;
 

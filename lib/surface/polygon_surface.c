@@ -2,6 +2,7 @@
 #include "polygon_surface.h"
 
 #include "../base/array.h"
+#include "../geom/ears.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -200,8 +201,6 @@ tm_status tm_polygon_surface_add_faces(tm_polygon_surface *surface, const tm_blo
     return status;
 }
 
-enum { TRIANGLE = 3 };
-
 static tm_block *add_block(tm_stream *stream, const char *part, const char *suffix)
 {
     char name[TM_BLOCK_NAME];
@@ -234,32 +233,36 @@ static size_t corners_of(const tm_polygon_surface *surface, size_t p)
     return surface->start[p + 1] - surface->start[p];
 }
 
-/* The triangles of polygon p, which are put in from row t on. Returns the next row. */
-static size_t put_fan(const tm_polygon_surface *surface, size_t p, int32_t marker,
-                      tm_block *face, size_t t)
+/* Puts the triangles of all polygons into .face, whose rows are then those; aside: room
+ * for the corners of one. */
+static void put_triangles(const tm_polygon_surface *surface, tm_block *face,
+                          uint32_t *aside)
 {
-    const uint32_t *corner = surface->item + surface->start[p];
-    for (size_t i = 2; i < corners_of(surface, p); i++, t++) {
-        uint32_t *node = face->integer + TRIANGLE * t;
-        node[0] = corner[0];
-        node[1] = corner[i - 1];
-        node[2] = corner[i];
-        if (face->marker)
-            face->marker[t] = marker;
-    }
-    return t;
+    face->count = 0;
+    for (size_t f = 0; f < surface->facets; f++)
+        for (size_t p = surface->facet_start[f]; p < surface->facet_start[f + 1]; p++) {
+            const size_t t = face->count;
+            face->count += tm_cut_ears(
+                (const double(*)[3])surface->xyz, surface->item + surface->start[p],
+                corners_of(surface, p), aside, (uint32_t(*)[3])face->integer + t);
+            for (size_t i = t; i < face->count && face->marker; i++)
+                face->marker[i] = surface->facet_marker[f];
+        }
 }
 
 tm_status tm_polygon_surface_to_stream(const tm_polygon_surface *surface,
                                        tm_stream *stream, const char *part,
                                        tm_error *error)
 {
-    size_t triangles = 0, t = 0;
+    size_t triangles = 0, most = 0;
     tm_status status = nodes_to_stream(surface, stream, part, error);
     if (status != TM_OK)
         return status;
-    for (size_t p = 0; p < surface->polygons; p++)
-        triangles += corners_of(surface, p) > 2 ? corners_of(surface, p) - 2 : 0;
+    for (size_t p = 0; p < surface->polygons; p++) {
+        const size_t k = corners_of(surface, p);
+        triangles += k > 2 ? k - 2 : 0;
+        most = k > most ? k : most;
+    }
     if (triangles >= UINT32_MAX)
         return tm_fail(error, TM_ERROR_SYSTEM, "more triangles than 32 bits can number");
     tm_block *face = add_block(stream, part, ".face");
@@ -267,9 +270,12 @@ tm_status tm_polygon_surface_to_stream(const tm_polygon_surface *surface,
         return tm_fail_memory(error);
     face->markers = surface->has_facet_markers;
     status = tm_block_allocate(face, triangles, 0, error);
-    for (size_t f = 0; f < surface->facets && status == TM_OK; f++)
-        for (size_t p = surface->facet_start[f]; p < surface->facet_start[f + 1]; p++)
-            t = put_fan(surface, p, surface->facet_marker[f], face, t);
+    uint32_t *aside = tm_new(most, sizeof *aside);
+    if (status == TM_OK && !aside)
+        status = tm_fail_memory(error);
+    if (status == TM_OK)
+        put_triangles(surface, face, aside);
+    free(aside);
     char name[TM_BLOCK_NAME];
     snprintf(name, sizeof name, "%s.group", part);
     if (status == TM_OK)

@@ -96,9 +96,9 @@ tm_status tm_polygon_surface_add_faces(tm_polygon_surface *surface, const tm_blo
 
 /* Adds the blocks `part`.node and `part`.face, which must not be there yet, and where
  * there are names `part`.group: all nodes of the surface and its polygons, those with
- * more than three corners as fans of triangles from the first, those with fewer left out.
+ * more than three corners as tm_cut_ears() cuts them, those with fewer left out.
  * Attributes and markers come with them. TM_ERROR_SYSTEM where memory or 32-bit ids are
- * out. O(n). */
+ * out. O(n) where polygons are small. */
 tm_status tm_polygon_surface_to_stream(const tm_polygon_surface *surface,
                                        tm_stream *stream, const char *part,
                                        tm_error *error);

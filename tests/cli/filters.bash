@@ -15,8 +15,9 @@ needs_p4est() {
 
 setup_file() {
     root=$(cd "$BATS_TEST_DIRNAME/../.." && pwd)
-    filters=$(cd "$root/cmd" && for file in *.c; do
-        is_left_out "${file%.c}" || echo "${file%.c}"
+    filters=$(for file in "$root"/cmd/*.c "$root"/cmd/import/*.c "$root"/cmd/export/*.c; do
+        filter=$(basename "$file" .c)
+        is_left_out "$filter" || echo "$filter"
     done)
     export root filters
 }
@@ -95,7 +96,7 @@ input() {
     case $1 in
     poly-stats) echo cell.tm ;;
     tetgen-import) echo corner.node ;;
-    tetgen-mesh | octree-mesh) echo surface.tm ;;
+    tetgen-mesh | octree-mesh | surface-import) echo surface.tm ;;
     visf-import) echo corner.visf ;;
     mdl-import) echo corner.mdl ;;
     m3d-import) echo corner.mvm ;;

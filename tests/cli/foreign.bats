@@ -118,7 +118,7 @@ write_others() {
 # What a filter must say of a sample: says SAMPLE.
 says() {
     case $1 in
-    *.surface) echo 'use tetgen-mesh or octree-mesh' ;;
+    *.surface) echo 'use tetgen-mesh, octree-mesh or surface-import' ;;
     *.none) echo "looks like ${1%.none}*no filter reads it" ;;
     *.stream) echo 'looks like a termesh stream: it needs no import' ;;
     *-import) echo "use ${1##*.}" ;;
@@ -144,6 +144,7 @@ is_refused() {
             case $sample:$filter in
             *."$filter":* | node.surface:tetgen-import) continue ;;
             poly.surface:tetgen-import | smesh.surface:tetgen-import) continue ;;
+            *.surface:surface-import | *.mdl-import:surface-import | *.stream:surface-import) continue ;;
             *:tetgen-import)
                 cp "$sample" wrong.node
                 is_refused "$sample" tetgen-import wrong.node
@@ -324,7 +325,7 @@ sys.stdout.buffer.write(data)' "$n" >wrong.gz
         marked "$sample" | "${sample##*.}" --no-history | cmp - plain.out
     done
     run -3 --separate-stderr tet-stats <(marked off.surface)
-    [[ "$stderr" == *'looks like an OFF surface: use tetgen-mesh or octree-mesh' ]]
+    [[ "$stderr" == *'looks like an OFF surface: use tetgen-mesh, octree-mesh or surface-import' ]]
 }
 
 @test "a stream that begins with one is refused by name" {

@@ -125,7 +125,7 @@ load filters
         tetgen-import) command="tetgen-import many.node" ;;
         tetgen-mesh) command="tetgen-mesh --quiet many.node" ;;
         octree-mesh) command="octree-mesh -q surface.tm" ;;
-        off-export) command="off-export faces.tm" ;;
+        off-export | stl-export | ply-export | obj-export) command="$1 faces.tm" ;;
         visf-export) command="visf-export many-nodes.tm" ;;
         visf-import) command="visf-import many.visf" ;;
         m3d-import) command="m3d-import many.mvm" ;;

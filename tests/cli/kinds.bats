@@ -33,7 +33,7 @@ mesh() {
 filters() {
     for file in "$TM_BUILD"/bin/*; do
         case ${file##*/} in
-        *-import) ;;
+        *-import | mesh-convert) ;;
         *) echo "${file##*/}" ;;
         esac
     done
@@ -61,14 +61,17 @@ m3d-export      3 3 3 3 0 3 0 0 3
 mesh-check      3 3 3 3 0 0 0 0 0
 mesh-view       3 3 0 0 0 0 0 0 0
 mvm-export      3 3 3 3 0 3 0 0 3
+obj-export      3 3 3 0 0 3 0 0 0
 oct-export      3 3 3 3 3 3 3 3 3
 octree-mesh     3 0 3 0 3 3 3 3 3
 octree-repair   3 3 3 3 3 3 0 0 3
 off-export      3 3 3 0 0 3 0 0 0
 openfoam-export 3 3 3 3 0 3 0 0 0
+ply-export      3 3 3 0 0 3 0 0 0
 poly-dual       3 3 3 3 0 0 3 3 3
 poly-stats      3 3 3 3 3 3 3 3 0
 polylla3d       3 3 3 3 0 0 3 3 0
+stl-export      3 3 3 0 0 3 0 0 0
 tet-stats       3 3 3 3 0 0 3 3 3
 tetgen-export   3 0 0 0 0 0 3 3 3
 tetgen-mesh     3 0 0 0 3 3 3 3 3

@@ -307,6 +307,12 @@ with Browser() as browser:
     assert browser.run('[...document.querySelectorAll("#labels span")].map(s => s.textContent)') == ['a.tm', '<b>&.tm']
     assert browser.run('document.querySelectorAll("main b").length') == 0
     assert browser.run('meshView.state.show') == 'both'
+    # what the second mesh has not is said
+    LACKING = '(e => e.hidden ? "" : e.textContent)(document.getElementById("lacking"))'
+    browser.run('meshView.setField("dihedral")')
+    assert browser.run(LACKING) == '<b>&.tm has no smallest dihedral angle: it has the colours of outside and inside.'
+    browser.run('meshView.setField("plain")')
+    assert browser.run(LACKING) == ''
     browser.run('meshView.setCut("whole"), meshView.setNormal([0, 0, 1]), meshView.setOffset(-0.5), meshView.update()')
     assert len(browser.run('meshView.shown(0)')) == 54 and len(browser.run('meshView.shown(1)')) == 9
     left, right = (browser.run(f'meshView.pixelsOf({i}, 0)') for i in range(2))

@@ -21,7 +21,8 @@ setup() {
 # Runs a command with a terminal of its own as standard error and the most of FILE on standard input,
 # until WAIT is on the terminal or, where WAIT is a number, for so many seconds; then does
 # THEN: "rest", the rest of FILE follows; "end", it does not; "INT" or another signal, the
-# command gets that; else it is a shell command. Prints what was on the terminal, with
+# command gets that and ends; "end INT", it does not end by that, but with its input; else
+# it is a shell command. Prints what was on the terminal, with
 # \r and \e as letters, and returns the status: watch FILE WAIT THEN COMMAND…
 # COLUMNS is how wide the terminal is.
 watch() {
@@ -66,6 +67,9 @@ if then == 'rest':
     child.stdin.write(data[len(most):])
 elif then.isupper():
     child.send_signal(getattr(signal, 'SIG' + then))
+    child.wait(60) # its input goes on
+elif then.startswith('end '):
+    child.send_signal(getattr(signal, 'SIG' + then[4:]))
 elif then != 'end':
     subprocess.run(then, shell=True, check=True)
 child.stdin.close()
@@ -101,7 +105,7 @@ END
 }
 
 @test "an ignored signal stays ignored" {
-    run -3 watch sphere.tm ', 0 s' HUP sh -c 'trap "" HUP; exec off-export'
+    run -3 watch sphere.tm ', 0 s' 'end HUP' sh -c 'trap "" HUP; exec off-export'
     [[ "$output" == *'\r\e[Koff-export: <stdin>:'*truncated* ]]
 }
 

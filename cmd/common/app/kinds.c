@@ -25,6 +25,7 @@ static const struct {
     unsigned kinds;
 } table[] = {
     {"tetgen-mesh", POINTS | SURFACE | PART},
+    {"surface-import", POINTS | SURFACE | PART},
     {"octree-mesh", SURFACE | PART},
     {"lepp-improve", TETRAHEDRA},
     {"poly-dual", TETRAHEDRA},
@@ -39,9 +40,12 @@ static const struct {
     {"gmsh-export", POINTS | SURFACE | TETRAHEDRA | MIXED},
     {"m3d-export", TETRAHEDRA | MIXED},
     {"mvm-export", TETRAHEDRA | MIXED},
+    {"obj-export", SURFACE | CELLS},
     {"oct-export", MIXED},
     {"off-export", SURFACE | CELLS},
     {"openfoam-export", CELLS},
+    {"ply-export", SURFACE | CELLS},
+    {"stl-export", SURFACE | CELLS},
     {"tetgen-export", POINTS | SURFACE | TETRAHEDRA | PART},
     {"visf-export", ALL},
     {"vtk-export", ALL},

@@ -26,15 +26,17 @@ enum {
     FACE_NAMES = 1 << 11,
     REGION_NAMES = 1 << 12,
     NAMES = NODE_NAMES | EDGE_NAMES | FACE_NAMES | REGION_NAMES,
-    PARTS = 1 << 13,     /* of .node, .ele, .face, .edge and .group */
-    TETRAHEDRA = 1 << 14 /* .ele whatever else there is, and nothing else */
+    PARTS = 1 << 13,      /* of .node, .ele, .face, .edge and .group */
+    TETRAHEDRA = 1 << 14, /* .ele whatever else there is, and nothing else */
+    OF_CELLS = ALL_REGIONS | ATTRIBUTES | REGION_NAMES,
+    GROUPS_OF_FACES = FACES | FACES_BELOW_0 | FACE_NAMES | OF_CELLS
 };
 
 /* One row for each exporter, of one of several formats for each of them; of one that has
- * none all is left out. OFF is of faces alone,
- * and .oct of octants: what nodes and cells have is not asked for there. */
+ * none all is left out. OFF, STL, PLY and OBJ are of faces alone, and .oct of octants:
+ * what nodes and cells have is not asked for there, but for the regions of --regions. */
 static const struct {
-    const char *filter;
+    const char *format;
     unsigned keeps;
 } formats[] = {
     {"getfem-export", FACES | REGIONS | FACE_NAMES | REGION_NAMES},
@@ -54,10 +56,19 @@ static const struct {
     {"mesh-view", NODE_ATTRIBUTES | NODE_MARKERS | FACES | FACES_BELOW_0 | ALL_REGIONS |
                       ATTRIBUTES | NODE_NAMES | FACE_NAMES | REGION_NAMES},
     {"mvm-export", 0},
+    {"obj-export", GROUPS_OF_FACES},
+    {"obj-export --regions", OF_CELLS},
     {"oct-export", NODE_ATTRIBUTES | NODE_MARKERS | EDGES | ALL_REGIONS | ATTRIBUTES},
-    {"off-export", ALL_REGIONS | ATTRIBUTES | REGION_NAMES},
+    {"off-export", OF_CELLS},
+    {"off-export --regions", ATTRIBUTES},
     {"openfoam-export",
      FACES | FACES_BELOW_0 | REGIONS | REGIONS_BELOW_0 | FACE_NAMES | REGION_NAMES},
+    {"ply-export", GROUPS_OF_FACES},
+    {"ply-export --regions", OF_CELLS},
+    {"stl-export", GROUPS_OF_FACES},
+    {"stl-export --regions", OF_CELLS},
+    {"stl-export --binary", OF_CELLS},
+    {"stl-export --binary --regions", ATTRIBUTES},
     {"tetgen-export", NODE_ATTRIBUTES | NODE_MARKERS | EDGES | FACES | FACES_BELOW_0 |
                           ALL_REGIONS | ATTRIBUTES | NAMES | PARTS | TETRAHEDRA},
     {"visf-export", 0},
@@ -72,10 +83,10 @@ typedef struct finder {
     tm_text text; /* what was found, with ", " between */
 } finder;
 
-static unsigned kept_by(const char *name)
+static unsigned kept_by(const char *format)
 {
     for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
-        if (strcmp(formats[i].filter, name) == 0)
+        if (strcmp(formats[i].format, format) == 0)
             return formats[i].keeps;
     return 0;
 }
@@ -311,10 +322,10 @@ static void add_blocks(finder *find)
 
 void mesh_leave_out(const filter *f, const tm_stream *stream)
 {
-    mesh_leave_out_as(f, f->name, stream);
+    mesh_leave_out_of(f, stream, f->name);
 }
 
-void mesh_leave_out_as(const filter *f, const char *format, const tm_stream *stream)
+void mesh_leave_out_of(const filter *f, const tm_stream *stream, const char *format)
 {
     finder find = {
         .stream = stream, .content = tm_content_of(stream), .keeps = kept_by(format)};

@@ -17,8 +17,8 @@
  * beside them the part surface and the first attribute of nodes. */
 void mesh_leave_out(const filter *f, const tm_stream *stream);
 
-/* The same of an exporter of several formats: "gmsh-export mesh". */
-void mesh_leave_out_as(const filter *f, const char *format, const tm_stream *stream);
+/* The same where it depends on options what the format has: its row of the table. */
+void mesh_leave_out_of(const filter *f, const tm_stream *stream, const char *format);
 
 /* Whether the markers of .node only say which nodes are on the boundary. O(n). */
 bool mesh_marks_boundary_nodes(const tm_stream *stream);

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "../mesh_format.h"
 #include "surface_format.h"
 
-#include "../../base/array.h"
-#include "../../mesh/cell_faces.h"
 #include "../scan.h"
 
 #include <stdlib.h>
@@ -111,92 +108,5 @@ tm_status tm_off_read(tm_polygon_surface *surface, const char *bytes, size_t siz
         status = tm_scan_no_more(&scan, "the last face", error);
     if (status != TM_OK)
         tm_polygon_surface_free(surface);
-    return status;
-}
-
-/* Writing -------------------------------------------------------------------------- */
-
-typedef struct {
-    const tm_cell_faces *faces;
-    bool all;
-    uint32_t *number; /* [nodes]: in the file; TM_NONE for those that are left out */
-} selection;
-
-static bool is_selected(const selection *s, size_t f)
-{
-    return s->all || s->faces->side[f][1] == TM_NONE;
-}
-
-/* Numbers the nodes of the polygons; returns how many there are. */
-static size_t number_nodes(const selection *s, size_t nodes)
-{
-    const tm_cell_faces *faces = s->faces;
-    size_t count = 0;
-    memset(s->number, UINT8_MAX, nodes * sizeof *s->number);
-    for (size_t f = 0; f < faces->facets; f++)
-        for (size_t i = faces->start[f]; i < faces->start[f + 1] && is_selected(s, f);
-             i++)
-            s->number[faces->node[i]] = 0;
-    for (size_t v = 0; v < nodes; v++)
-        if (s->number[v] != TM_NONE)
-            s->number[v] = (uint32_t)count++;
-    return count;
-}
-
-static void write_vertices(tm_text *text, const selection *s, const tm_block *node)
-{
-    for (size_t v = 0; v < node->count; v++) {
-        if (s->number[v] == TM_NONE)
-            continue;
-        for (size_t i = 0; i < COORDINATES; i++) {
-            tm_text_double(text, node->real[COORDINATES * v + i]);
-            tm_text_append(text, i + 1 < COORDINATES ? " " : "\n", 1);
-        }
-    }
-}
-
-static void write_faces(tm_text *text, const selection *s)
-{
-    const tm_cell_faces *faces = s->faces;
-    for (size_t f = 0; f < faces->facets; f++) {
-        if (!is_selected(s, f))
-            continue;
-        tm_text_integer(text, (int64_t)(faces->start[f + 1] - faces->start[f]));
-        for (size_t i = faces->start[f]; i < faces->start[f + 1]; i++) {
-            tm_text_append(text, " ", 1);
-            tm_text_integer(text, s->number[faces->node[i]]);
-        }
-        tm_text_append(text, "\n", 1);
-    }
-}
-
-static tm_status write_selection(tm_text *text, selection *s, const tm_block *node,
-                                 tm_error *error)
-{
-    size_t polygons = 0;
-    s->number = tm_new(node->count, sizeof *s->number);
-    if (!s->number)
-        return tm_fail_memory(error);
-    for (size_t f = 0; f < s->faces->facets; f++)
-        polygons += is_selected(s, f);
-    size_t vertices = number_nodes(s, node->count);
-    tm_text_format(text, "OFF\n%zu %zu 0\n", vertices, polygons);
-    write_vertices(text, s, node);
-    write_faces(text, s);
-    free(s->number);
-    return text->failed ? tm_fail_memory(error) : TM_OK;
-}
-
-tm_status tm_off_write(tm_text *text, const tm_stream *stream, bool all, tm_error *error)
-{
-    tm_cell_faces faces;
-    tm_status status = tm_cell_faces_find(&faces, stream, error);
-    selection s = {&faces, all, NULL};
-    if (status == TM_OK && faces.facets == 0)
-        status =
-            tm_fail(error, TM_ERROR_INPUT, "has no faces (.cell, .mix, .ele or .face)");
-    if (status == TM_OK)
-        status = write_selection(text, &s, tm_stream_find(stream, ".node"), error);
-    tm_cell_faces_free(&faces);
     return status;
 }

@@ -2,6 +2,7 @@
 #include "surface_format.h"
 
 #include "../../base/array.h"
+#include "../../number/number.h"
 #include "../binary.h"
 #include "../scan.h"
 
@@ -29,7 +30,7 @@ static const type types[] = {
 };
 
 /* What a property is to us. */
-typedef enum { SKIPPED, X, Y, Z, CORNERS } meaning;
+typedef enum { SKIPPED, X, Y, Z, CORNERS, MARKER } meaning;
 
 typedef struct {
     meaning meaning;
@@ -79,6 +80,8 @@ static meaning meaning_of(element_kind kind, tm_word name, bool is_list)
     if (kind == FACE && is_list &&
         (tm_word_is(name, "vertex_indices") || tm_word_is(name, "vertex_index")))
         return CORNERS;
+    if (kind == FACE && !is_list && tm_word_is(name, "marker"))
+        return MARKER;
     return SKIPPED;
 }
 
@@ -143,9 +146,10 @@ static tm_status read_property(reader *r)
     if (status != TM_OK)
         return status;
     new.meaning = meaning_of(owner->kind, tm_scan_word(&r->scan), new.length != NULL);
-    if (new.meaning == CORNERS &&new.type->is_real)
-        return tm_scan_fail(&r->scan, r->error,
-                            "vertex_indices are real numbers (int or uint)");
+    if (new.meaning >= CORNERS &&new.type->is_real)
+        return tm_scan_fail(&r->scan, r->error, "%s are real numbers (int or uint)",
+                            new.meaning == CORNERS ? "vertex_indices" : "markers");
+    r->surface->has_facet_markers |= new.meaning == MARKER;
     for (size_t p = 0; p < owner->properties; p++)
         if (new.meaning != SKIPPED && owner->property[p].meaning == new.meaning)
             return tm_scan_fail(&r->scan, r->error, "the property is there twice");
@@ -158,6 +162,37 @@ static tm_status read_property(reader *r)
     return TM_OK;
 }
 
+static bool has_name(const tm_block *group, int32_t value, const char *name)
+{
+    for (size_t g = 0; g < group->count; g++)
+        if (tm_group_value(group, g) == value ||
+            strcmp(tm_group_name(group, g), name) == 0)
+            return true;
+    return false;
+}
+
+/* "marker N NAME" is the name of a marker, where neither has one yet; all else is not for
+ * us. */
+static tm_status read_comment(reader *r)
+{
+    int64_t value = 0;
+    if (!tm_word_is(tm_scan_word(&r->scan), "marker"))
+        return TM_OK;
+    const tm_word number = tm_scan_word(&r->scan), rest = tm_scan_rest(&r->scan);
+    const char *end = number.begin + number.size;
+    if (tm_read_int64(number.begin, end, &value) != end || value != (int32_t)value)
+        return TM_OK;
+    tm_text name = {0};
+    tm_group_clean(&name, rest.begin, rest.size);
+    tm_status status = name.failed ? tm_fail_memory(r->error) : TM_OK;
+    if (status == TM_OK && name.size > 0 &&
+        !has_name(&r->surface->group, (int32_t)value, name.byte))
+        status = tm_group_add(&r->surface->group, TM_GROUP_FACES, (int32_t)value,
+                              name.byte, r->error);
+    tm_text_free(&name);
+    return status;
+}
+
 static tm_status read_header_line(reader *r, tm_word word)
 {
     if (tm_word_is(word, "format"))
@@ -166,7 +201,9 @@ static tm_status read_header_line(reader *r, tm_word word)
         return read_element(r);
     if (tm_word_is(word, "property"))
         return read_property(r);
-    if (tm_word_is(word, "comment") || tm_word_is(word, "obj_info"))
+    if (tm_word_is(word, "comment"))
+        return read_comment(r);
+    if (tm_word_is(word, "obj_info"))
         return TM_OK;
     return tm_scan_fail(&r->scan, r->error,
                         "'%.*s' is no keyword of a PLY header (element, property, "
@@ -313,7 +350,18 @@ static tm_status read_corners(reader *r, const property *p, int64_t length)
     return status;
 }
 
-static tm_status read_value(reader *r, const property *p, double xyz[3])
+static tm_status read_marker(reader *r, const property *p, int32_t *marker)
+{
+    int64_t value = 0;
+    const tm_status status = read_integer(r, p->type, &value);
+    if (status == TM_OK && value != (int32_t)value)
+        return fail_face(r, "the marker is", value, "a number of 32 bits");
+    *marker = (int32_t)value;
+    return status;
+}
+
+/* One property of a vertex, into xyz, or of a face, which is added, or into *marker. */
+static tm_status read_value(reader *r, const property *p, double xyz[3], int32_t *marker)
 {
     int64_t length = 1;
     tm_status status = TM_OK;
@@ -325,6 +373,8 @@ static tm_status read_value(reader *r, const property *p, double xyz[3])
         return fail_face(r, "the length of a list is", length, "0 or more");
     if (p->meaning == CORNERS)
         return read_corners(r, p, length);
+    if (p->meaning == MARKER)
+        return read_marker(r, p, marker);
     if (p->meaning != SKIPPED)
         return read_real(r, p->type, &xyz[p->meaning - X]);
     for (int64_t i = 0; i < length && status == TM_OK; i++)
@@ -339,10 +389,13 @@ static tm_status read_elements(reader *r, const element *e)
     int64_t count = e->properties > 0 ? e->count : 0;
     for (int64_t i = 0; i < count && status == TM_OK; i++) {
         double xyz[3] = {0};
+        int32_t marker = 0;
         for (size_t p = 0; p < e->properties && status == TM_OK; p++)
-            status = read_value(r, &e->property[p], xyz);
+            status = read_value(r, &e->property[p], xyz, &marker);
         if (status == TM_OK && e->kind == VERTEX)
             status = tm_polygon_surface_add_node(r->surface, xyz, r->error);
+        if (status == TM_OK && e->kind == FACE)
+            r->surface->facet_marker[r->surface->facets - 1] = marker;
     }
     return status;
 }

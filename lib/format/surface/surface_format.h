@@ -55,7 +55,9 @@ tm_status tm_obj_read(tm_polygon_surface *surface, const char *bytes, size_t siz
 
 /* PLY (G. Turk, 1994), ascii, binary_little_endian and binary_big_endian: x y z of the
  * element `vertex` and the list vertex_indices (or vertex_index) of `face`, of any types
- * and in any order; all other elements and properties are skipped. */
+ * and in any order. An integer property `marker` of faces is their marker, and comments
+ * "marker N NAME" are its names, as tm_ply_write() puts them. All other elements and
+ * properties are skipped. */
 tm_status tm_ply_read(tm_polygon_surface *surface, const char *bytes, size_t size,
                       const char *name, tm_error *error);
 

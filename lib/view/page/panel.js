@@ -200,8 +200,17 @@ function showState() {
     byId('edges').checked = state.edges;
     byId('ghost').checked = state.ghost;
     byId('unhide').hidden = !view.meshes.some(m => m.hides);
+    showLacking(field);
     showCategories(field);
     drawHistogram();
+}
+
+/* Of two meshes one may have no such field. */
+function showLacking(field) {
+    const lacking = view.meshes.filter(m => !m.fields.some(f => f.key === field.key));
+    byId('lacking').hidden = lacking.length === 0;
+    byId('lacking').textContent = lacking.map(
+        m => `${m.name} has no ${field.label}: it has the colours of outside and inside.`).join(' ');
 }
 
 /* The legend of a category; its values can be switched off. */
