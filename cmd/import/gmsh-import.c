@@ -29,7 +29,7 @@ static filter f = {
         "faces and cells, with their physical groups.",
     .help =
         "      --format FORMAT  not by suffix or content, but msh, mesh, unv, vtk, med,\n"
-        "                       bdf, cgns, stl, ply, ply2, wrl or diff\n",
+        "                       bdf, cgns, stl, ply, ply2 or wrl\n",
     .options = long_options,
     .letters = FILTER_LETTERS,
     .words = words,
@@ -146,7 +146,6 @@ static void leave_out(const gmsh_model *model, const gmsh_done *done)
         const char *what;
     } lost[] = {{done->high_order, "elements' nodes between their corners"},
                 {done->loose, "faces that no cell has"},
-                {done->between, "elements between partitions"},
                 {done->degenerate, "elements that have a corner twice"}};
     tm_text text = {0};
     for (size_t i = 0; i < sizeof lost / sizeof *lost; i++)
@@ -185,6 +184,9 @@ static void say_what_was_done(const gmsh_done *done)
                     "%s: %zu entities without a physical group have the number of one "
                     "and got another",
                     name, done->renumbered);
+    if (done->between > 0)
+        filter_verbose(&f, "%s: %zu elements between partitions are passed over", name,
+                       done->between);
     if (done->repeated > 0)
         filter_verbose(&f, "%s: %zu elements were there before", name, done->repeated);
 }

@@ -177,17 +177,19 @@ static void free_own_groups(own_groups *own)
     free(own->run);
 }
 
-/* The set of an element of that number, which may stay as it is. */
-static tm_status own_set(const own_groups *own, gmsh_sets *sets, int dimension,
-                         size_t tag, uint32_t *set, tm_error *error)
+/* The set of element i of a run, which it has now as those of its entity. */
+static tm_status own_set(const own_groups *own, gmsh_sets *sets, const gmsh_run *run,
+                         size_t i, uint32_t *set, tm_error *error)
 {
     const node_index find = {.nodes = own->elements, .order = own->order};
-    const uint32_t at = find_node(&find, tag);
-    if (at == TM_NONE)
+    const uint32_t at = find_node(&find, run->tag[i]);
+    if (at == TM_NONE || sets->set[*set].groups == 0)
         return TM_OK;
-    const gmsh_run *run = own->run[own->order[at].index];
-    const int group = sets->swapped->entity[run->entity].tag;
-    return group == 0 ? TM_OK : gmsh_sets_single(sets, dimension, group, set, error);
+    const gmsh_run *swapped = own->run[own->order[at].index];
+    const int group = gmsh_entity_whole(&sets->swapped->entity[swapped->entity]);
+    return group == 0
+               ? gmsh_sets_ungrouped(sets, &sets->model->entity[run->entity], set, error)
+               : gmsh_sets_single(sets, run->dimension, group, set, error);
 }
 
 /* The elements of one dimension, in the order in which they come. */
@@ -214,7 +216,7 @@ static tm_status take_elements(gmsh_mesh *mesh, const gmsh_model *model, int dim
             *set = sets->of_entity[run->entity];
             status = take_element(elements, run, i, find, use, error);
             if (status == TM_OK && sets->swapped)
-                status = own_set(&own, sets, dimension, run->tag[i], set, error);
+                status = own_set(&own, sets, run, i, set, error);
         }
     }
     free_own_groups(&own);

@@ -27,7 +27,7 @@ typedef struct gmsh_mesh {
     size_t repeated;   /* elements that were there before */
     size_t degenerate; /* that name a corner twice: left out */
     size_t high_order; /* elements of which only the corners are taken */
-    size_t between;    /* between partitions: left out */
+    size_t between;    /* that Gmsh makes between partitions: passed over */
 } gmsh_mesh;
 
 /* Takes them out of a model; `sets` has the groups of its entities, and takes in those

@@ -10,9 +10,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-const char *const gmsh_input_name[GMSH_INPUTS] = {"msh", "mesh", "unv",  "vtk",
-                                                  "med", "bdf",  "cgns", "stl",
-                                                  "ply", "ply2", "wrl",  "diff"};
+const char *const gmsh_input_name[GMSH_INPUTS] = {
+    "msh", "mesh", "unv", "vtk", "med", "bdf", "cgns", "stl", "ply", "ply2", "wrl"};
 
 /* Beside those names. */
 static const struct {

@@ -21,7 +21,6 @@ typedef enum gmsh_input {
     GMSH_PLY,
     GMSH_PLY2,
     GMSH_WRL,
-    GMSH_DIFF,
     GMSH_INPUTS
 } gmsh_input;
 extern const char *const gmsh_input_name[GMSH_INPUTS];

@@ -63,6 +63,14 @@ static tm_status add_groups(gmsh_sets *sets, gmsh_set set, const int *first,
     return add_set(sets, set, is_new, which, error);
 }
 
+/* An entity without groups; of a part of one that is the whole. */
+static gmsh_set set_of(const gmsh_entity *entity)
+{
+    return (gmsh_set){.dimension = entity->dimension,
+                      .entity = gmsh_entity_whole(entity),
+                      .is_part = gmsh_entity_is_part(entity)};
+}
+
 tm_status gmsh_sets_of_entities(gmsh_sets *sets, const gmsh_model *model,
                                 const gmsh_model *swapped, tm_error *error)
 {
@@ -71,12 +79,7 @@ tm_status gmsh_sets_of_entities(gmsh_sets *sets, const gmsh_model *model,
     tm_status status = sets->of_entity ? TM_OK : tm_fail_memory(error);
     for (size_t i = 0; i < model->entities && status == TM_OK; i++) {
         const gmsh_entity *entity = &model->entity[i];
-        gmsh_set set = {.dimension = entity->dimension, .entity = entity->tag};
-        if (entity->parent >= 0 && entity->parent_dimension == entity->dimension) {
-            set.is_part = true;
-            set.entity = entity->parent;
-        }
-        status = add_groups(sets, set, entity->group, entity->groups, NULL, 0,
+        status = add_groups(sets, set_of(entity), entity->group, entity->groups, NULL, 0,
                             &sets->of_entity[i], error);
     }
     return status;
@@ -108,6 +111,12 @@ tm_status gmsh_sets_single(gmsh_sets *sets, int dimension, int group, uint32_t *
 {
     return add_groups(sets, (gmsh_set){.dimension = dimension}, &group, 1, NULL, 0, set,
                       error);
+}
+
+tm_status gmsh_sets_ungrouped(gmsh_sets *sets, const gmsh_entity *entity, uint32_t *set,
+                              tm_error *error)
+{
+    return add_set(sets, set_of(entity), false, set, error);
 }
 
 /* Values --------------------------------------------------------------------------- */

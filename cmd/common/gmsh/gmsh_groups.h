@@ -47,6 +47,10 @@ tm_status gmsh_sets_join(gmsh_sets *sets, uint32_t a, uint32_t b, uint32_t *both
 tm_status gmsh_sets_single(gmsh_sets *sets, int dimension, int group, uint32_t *set,
                            tm_error *error);
 
+/* The set of an entity without a group, whatever groups it has. */
+tm_status gmsh_sets_ungrouped(gmsh_sets *sets, const gmsh_entity *entity, uint32_t *set,
+                              tm_error *error);
+
 /* Gives the sets that are used their values: that of one group the number of that, that
  * of an entity its number, unless a group has it; those of several, and such entities,
  * numbers above all of these. Appends names to *group, which is empty, also those of

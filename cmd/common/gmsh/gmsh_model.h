@@ -30,6 +30,17 @@ typedef struct gmsh_entity {
     const int *group; /* its physical groups; below 0: turned about */
 } gmsh_entity;
 
+static inline bool gmsh_entity_is_part(const gmsh_entity *entity)
+{
+    return entity->parent >= 0 && entity->parent_dimension == entity->dimension;
+}
+
+/* The number of an entity, of a part that of the whole. */
+static inline int gmsh_entity_whole(const gmsh_entity *entity)
+{
+    return gmsh_entity_is_part(entity) ? entity->parent : entity->tag;
+}
+
 /* Of a physical group, or of an entity. */
 typedef struct gmsh_name {
     int dimension, tag;
