@@ -163,7 +163,7 @@ END
     gmsh-export -q --format msh2 --binary d.msh t.tm
     gmsh-export -q e.mesh t.tm
     gmsh-export -q f.inp t.tm
-    "$vtk_python" - ?.msh e.mesh f.inp <<'END'
+    "$vtk_python" - a.msh b.msh c.msh d.msh e.mesh f.inp <<'END'
 import sys, meshio, numpy
 def volume(m):
     total = {}

@@ -93,7 +93,7 @@ names() {
 # gmsh_sees FILE EXPRESSION: prints it of what Gmsh itself reads: groups, {(dimension,
 # name): [elements, size]}, where size is the length, area or volume.
 gmsh_sees() {
-    "$vtk_python" - "$@" <<'END'
+    /usr/bin/python3 - "$@" <<'END'
 import sys, gmsh
 import numpy as np
 gmsh.initialize()
