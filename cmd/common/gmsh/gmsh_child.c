@@ -75,9 +75,13 @@ size_t gmsh_link_hide(const gmsh_link *link, char *bytes, size_t size)
 
 /* The child ------------------------------------------------------------------------ */
 
-/* All that is mapped so far, in bytes. */
-static size_t address_space(void)
+/* Limits what is mapped to that much more than there is, in bytes. The sanitizers map
+ * more than any limit. */
+static void limit_memory(size_t more)
 {
+#ifdef __SANITIZE_ADDRESS__
+    (void)more;
+#else
     size_t pages = 0;
     FILE *file = fopen("/proc/self/statm", "re");
     if (file) {
@@ -85,18 +89,15 @@ static size_t address_space(void)
             pages = 0;
         fclose(file);
     }
-    return pages * (size_t)sysconf(_SC_PAGESIZE);
+    const rlim_t most = (rlim_t)(pages * (size_t)sysconf(_SC_PAGESIZE) + more);
+    setrlimit(RLIMIT_AS, &(struct rlimit){most, most});
+#endif
 }
 
-/* The sanitizers map more than there is. */
 static void limit(const gmsh_limits *limits)
 {
-#ifndef __SANITIZE_ADDRESS__
-    if (limits->memory > 0) {
-        const rlim_t most = (rlim_t)(address_space() + limits->memory);
-        setrlimit(RLIMIT_AS, &(struct rlimit){most, most});
-    }
-#endif
+    if (limits->memory > 0)
+        limit_memory(limits->memory);
     if (limits->seconds > 0)
         setrlimit(RLIMIT_CPU, &(struct rlimit){limits->seconds, limits->seconds + 1});
     setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
