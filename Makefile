@@ -105,7 +105,7 @@ solver := $(BUILD)/solve/poisson
 benchers := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/*.c))
 shapes := $(BUILD)/bench/shapes
 page := lib/view/page/page.html lib/view/page/page.css $(addprefix lib/view/page/,\
-	data.js facets.js colour.js cut.js section.js draw.js controls.js pick.js \
+	data.js facets.js colour.js cut.js section.js lines.js draw.js controls.js pick.js \
 	histogram.js state.js panel.js keys.js main.js)
 generated := $(BUILD)/generated/powers.h $(BUILD)/generated/transitions.h \
 	$(if $(wildcard $(THREE)),$(BUILD)/generated/view_page.h)
