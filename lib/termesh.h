@@ -53,6 +53,7 @@
 #include "surface/polygon_surface.h"
 #include "surface/surface.h"
 #include "surface/surface_defects.h"
+#include "surface/mend/mend.h"
 #include "surface/measure/surface_curvature.h"
 #include "surface/measure/surface_distance.h"
 

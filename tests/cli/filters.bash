@@ -96,7 +96,7 @@ input() {
     case $1 in
     poly-stats) echo cell.tm ;;
     tetgen-import) echo corner.node ;;
-    tetgen-mesh | octree-mesh | surface-import) echo surface.tm ;;
+    tetgen-mesh | octree-mesh | surface-import | surface-mend) echo surface.tm ;;
     visf-import) echo corner.visf ;;
     mdl-import) echo corner.mdl ;;
     m3d-import) echo corner.mvm ;;
