@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ROUNDS = 18 };
+enum { ROUNDS = 36 };
 
 /* The least barycentric coordinate that a point may have. */
 static const double least_coordinate = 0.03;

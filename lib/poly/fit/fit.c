@@ -2,6 +2,7 @@
 #include "fit_parts.h"
 
 #include "../../base/array.h"
+#include "../../base/hash.h"
 #include "../../geom/vector.h"
 
 #include <math.h>
@@ -161,9 +162,32 @@ static double coordinate(const double *const *corner, int corners, int i,
     return tm_dot(normal, to) / tm_dot(normal, height);
 }
 
-/* Tries a step towards each corner and away from it, or along the axes. */
-static bool move_node(fitter *w, uint32_t v, double step)
+/* Three directions normal to each other: the axes, or these turned by a quaternion that
+ * depends on the node and the round, so that none is tried in vain for ever. */
+static void find_axes(uint32_t v, int round, double axis[3][3])
 {
+    double q[4] = {1, 0, 0, 0}, sum = 0;
+    uint64_t state = tm_hash(tm_hash(0, v), (uint64_t)round);
+    for (int i = 0; i < 4 && round >= STEPS; i++, state = tm_hash(state, 1))
+        q[i] = (double)(state >> 40) / 0x1p23 - 1;
+    for (int i = 0; i < 4; i++)
+        sum += q[i] * q[i];
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++) {
+            const int other = 3 - i - k;
+            const double sign = (k + 3 - i) % 3 == 1 ? 1 : -1;
+            axis[i][k] =
+                i == k ? (2 * (q[0] * q[0] + q[i + 1] * q[i + 1]) - sum) / sum
+                       : 2 * (q[i + 1] * q[k + 1] + sign * q[0] * q[other + 1]) / sum;
+        }
+}
+
+/* Tries a step towards each corner and away from it, or along the axes. */
+static bool move_node(fitter *w, uint32_t v, int round)
+{
+    const double step = steps[round % STEPS];
+    double axis[3][3];
+    find_axes(v, round, axis);
     const double *corner[DIRECTIONS];
     const int corners = find_corners(w, v, corner), directions = corners ? corners : 3;
     const double side = corners ? 0 : shortest_side(w, v);
@@ -175,8 +199,8 @@ static bool move_node(fitter *w, uint32_t v, double step)
         for (int x = 0; x < 3; x++)
             if (corners)
                 to[x] += (k % 2 ? -step : step) * (corner[k / 2][x] - to[x]);
-            else if (x == k / 2)
-                to[x] += (k % 2 ? -step : step) * side;
+            else
+                to[x] += (k % 2 ? -step : step) * side * axis[k / 2][x];
         for (int i = 0; i < corners && inside; i++)
             inside = coordinate(corner, corners, i, to) >= w->o->least;
         const bool gains = inside && tm_fit_around_move(&w->a, v, to);
@@ -186,23 +210,24 @@ static bool move_node(fitter *w, uint32_t v, double step)
     return moved;
 }
 
-/* Rounds over the nodes at what is bad, then over those around them, too, until all steps
- * have been tried and a round mends nothing. */
+/* Rounds over the nodes at what is bad, then over those around them, too, until as many
+ * as there are steps have mended nothing. */
 static bool fit(fitter *w, tm_fit_report *r)
 {
-    size_t before = SIZE_MAX;
+    size_t least = SIZE_MAX;
     bool done = true;
-    for (int i = 0; i < w->o->rounds && done; i++) {
+    for (int i = 0, idle = 0; i < w->o->rounds && idle < STEPS && done; i++) {
         const size_t bad = find_bad(w, i >= 2);
-        if (bad == 0 || (i > STEPS && bad >= before))
+        idle = bad < least ? 0 : idle + 1;
+        least = bad < least ? bad : least;
+        if (bad == 0)
             break;
-        before = bad;
         done = i < STEPS || widen(w);
         for (uint32_t v = 0; v < w->a.m.mesh->nodes && done; v++) {
             if (!w->tried[v] || w->missed[v] >= STEPS)
                 continue;
             done = tm_fit_around_find(&w->a, v);
-            const bool moved = done && move_node(w, v, steps[i % STEPS]);
+            const bool moved = done && move_node(w, v, i);
             w->missed[v]++;
             r->moved += moved;
             if (moved)
