@@ -62,6 +62,16 @@ ifeq ($(wildcard $(THREE)),)
 left_out += mesh-view $(wildcard lib/view/*.c)
 endif
 
+# The C library of Gmsh (Debian: libgmsh-dev), which reads and writes the formats of
+# gmsh-import and gmsh-export; no other program is linked with it. Where it is not
+# installed, both are left out.
+has_gmsh := $(shell $(CC) $(CPPFLAGS) -E -x c -include gmshc.h /dev/null >/dev/null 2>&1 && \
+	echo yes)
+gmsh_filters := gmsh-import gmsh-export
+ifndef has_gmsh
+left_out += $(gmsh_filters)
+endif
+
 FUZZ_CASES = 20000
 BUILD = build
 
@@ -94,7 +104,9 @@ library := $(BUILD)/libtermesh.a
 shared := $(BUILD)/libtermesh.so.$(VERSION)
 library_objects := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(left_out),$(call in_library,.c)))
 common := $(BUILD)/libcommon.a
-common_objects := $(patsubst %.c,$(BUILD)/%.o,$(wildcard cmd/common/*.c cmd/common/*/*.c))
+common_objects := $(patsubst %.c,$(BUILD)/%.o,$(filter-out cmd/common/gmsh/%,\
+	$(wildcard cmd/common/*.c cmd/common/*/*.c)))
+gmsh_objects := $(patsubst %.c,$(BUILD)/%.o,$(wildcard cmd/common/gmsh/*.c))
 headers := $(call in_library,.h)
 public_headers := lib/termesh.h $(shell sed -n 's|^.include "\(.*\)"|lib/\1|p' lib/termesh.h)
 unit_tests := $(addprefix $(BUILD)/tests/,$(filter-out $(left_out),\
@@ -122,6 +134,9 @@ ifndef has_p4est
 endif
 ifeq ($(wildcard $(THREE)),)
 	@echo "There is no $(THREE): mesh-view is left out." >&2
+endif
+ifndef has_gmsh
+	@echo "There is no gmshc.h: gmsh-import and gmsh-export are left out." >&2
 endif
 
 # Programs of the tree that write tables of the library.
@@ -166,8 +181,10 @@ $(shared): $(library_objects) lib/termesh.map
 
 define link
 	@mkdir -p $(@D)
-	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) $(LDLIBS)
+	$(CC) $(TM_CFLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(LDFLAGS) $(LDLIBS)
 endef
+$(gmsh_filters:%=$(BUILD)/bin/%): $(gmsh_objects)
+$(gmsh_filters:%=$(BUILD)/bin/%): private LDLIBS += -lgmsh
 $(filter %-import,$(bin)): $(BUILD)/bin/%: $(BUILD)/cmd/import/%.o $(common) $(library)
 	$(link)
 $(filter %-export,$(bin)): $(BUILD)/bin/%: $(BUILD)/cmd/export/%.o $(common) $(library)

@@ -5,10 +5,10 @@
 
 # shellcheck disable=SC2034 # used by those who source this
 {
-    build_packages="gcc libc6-dev libexpat1-dev libgmp-dev libopenmpi-dev libjs-three libp4est-dev
+    build_packages="gcc libc6-dev libexpat1-dev libgmp-dev libgmsh-dev libopenmpi-dev libjs-three libp4est-dev
         make zlib1g-dev"
     run_packages="gnuplot-nox tetgen"
-    test_packages="bats bsdutils chromium g++ gmsh libcmocka-dev libgmsh-dev
+    test_packages="bats bsdutils chromium g++ gmsh libcmocka-dev
         libsuitesparse-dev locales mandoc pkg-config python3 python3-gmsh
         python3-meshio python3-vtk9 valgrind"
     lint_packages="clang-format clang-tidy cppcheck mandoc shellcheck"

@@ -9,6 +9,7 @@
 #define SURFACE  "use tetgen-mesh, octree-mesh or surface-import"
 #define NONE     "no filter reads it"
 #define NONE_YET "no filter reads it yet"
+#define GMSH     "use gmsh-import"
 
 typedef struct row {
     const char *begins;
@@ -38,7 +39,9 @@ static const row magic[] = {
     {"\x7F"
      "ELF",
      {"a program", NONE}},
-    {"\x89HDF", {"an HDF5 file (CGNS, MED, Exodus)", NONE_YET}},
+    {"\x89HDF",
+     {"an HDF5 file (CGNS, MED, Exodus)",
+      GMSH " of a file named .cgns or .med, where Gmsh reads these"}},
     {"CDF\x01", {"a netCDF file (Exodus)", NONE_YET}},
     {"CDF\x02", {"a netCDF file (Exodus)", NONE_YET}},
 };
@@ -62,19 +65,20 @@ static const row words[] = {
     {"usemtl ", {"an OBJ surface", SURFACE}},
     {"n_regions", {"a file of boxes", "use octree-mesh -b"}},
     {"MIXED", {"an .mvm mesh", "use m3d-import"}},
-    {"MeshVersionFormatted", {"a Medit mesh", NONE_YET}},
-    {"$MeshFormat", {"a Gmsh mesh", NONE_YET}},
-    {"$NOD", {"a Gmsh mesh of version 1", NONE_YET}},
+    {"MeshVersionFormatted", {"a Medit mesh", GMSH}},
+    {"$MeshFormat", {"a Gmsh mesh", GMSH}},
+    {"$Comments", {"a Gmsh mesh", GMSH}},
+    {"$NOD", {"a Gmsh mesh of version 1", GMSH}},
     {"ISO-10303-21", {"a STEP file", NONE_YET}},
     {"DBRep_Drawable", {"a BRep file of Open CASCADE", NONE_YET}},
     {"mesh3d", {"a Netgen mesh", NONE_YET}},
     {"BEGIN POINTS LIST", {"a GetFEM mesh", NONE_YET}},
     {"*KEYWORD", {"an LS-DYNA input file", NONE_YET}},
     {"*", {"an Abaqus or CalculiX input file", NONE_YET}},
-    {"SOL ", {"a Nastran input file", NONE_YET}},
-    {"CEND", {"a Nastran input file", NONE_YET}},
-    {"BEGIN BULK", {"a Nastran input file", NONE_YET}},
-    {"GRID", {"a Nastran input file", NONE_YET}},
+    {"SOL ", {"a Nastran input file", GMSH " of a file named .bdf"}},
+    {"CEND", {"a Nastran input file", GMSH " of a file named .bdf"}},
+    {"BEGIN BULK", {"a Nastran input file", GMSH " of a file named .bdf"}},
+    {"GRID", {"a Nastran input file", GMSH " of a file named .bdf"}},
     {"/*--", {"an OpenFOAM file", NONE_YET}},
     {"FoamFile", {"an OpenFOAM file", NONE_YET}},
     {"{\"", {"JSON", NONE}},

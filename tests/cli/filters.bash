@@ -3,14 +3,19 @@
 # shellcheck shell=bash
 # shellcheck disable=SC2154 # run sets stderr
 
-# Whether a filter is not built: there is no p4est, or no three.js.
+# Whether a filter is not built: there is no p4est, no three.js, or no libgmsh.
 is_left_out() {
-    { needs_p4est "$1" || [ "$1" = mesh-view ]; } && ! [ -x "$TM_BUILD/bin/$1" ]
+    { needs_p4est "$1" || needs_gmsh "$1" || [ "$1" = mesh-view ]; } &&
+        ! [ -x "$TM_BUILD/bin/$1" ]
 }
 
 # Only these may.
 needs_p4est() {
     [ "$1" = octree-mesh ] || [ "$1" = octree-repair ]
+}
+
+needs_gmsh() {
+    [ "$1" = gmsh-import ] || [ "$1" = gmsh-export ]
 }
 
 setup_file() {
@@ -72,6 +77,9 @@ END
     printf '%s\n' '8 0 1' '0 0 0' '0 0 1' '1 0 1' '1 0 0' '0 1 0' '0 1 1' '1 1 1' '1 1 0' \
         '8 0 1 2 3 4 5 6 7 0' 0 'Geometric Transform' '0 0 0' '0 0 0' \
         1 >cube.oct
+    printf '%s\n' '$MeshFormat' '2.2 0 8' '$EndMeshFormat' '$Nodes' 4 '1 0 0 0' '2 1 0 0' \
+        '3 0 1 0' '4 0 0 1' '$EndNodes' '$Elements' 1 '1 4 2 7 1 1 2 3 4' '$EndElements' \
+        >corner.msh
     { sed '$d' corner.tm; printf '%s\n' .mix '1 0' '1 4 1 2 3 4' .octant '1 0' \
         '1 0 0 0 0 1 2' .root '1 0' '1 0 0 0 1 0' surface.node '3 3 0 0' '1 0 0 0' \
         '2 1 0 0' '3 0 1 0' surface.face '1 0' '1 1 2 3' .end; } >octant.tm
@@ -82,13 +90,14 @@ END
 operands() {
     case $1 in
     tetgen-export | openfoam-export) echo "out $2" ;;
+    gmsh-export) echo "out.msh $2" ;;
     *) echo "$2" ;;
     esac
 }
 
 # Whether a filter's output is files that an operand names.
 writes_files() {
-    [ "$1" = tetgen-export ] || [ "$1" = openfoam-export ]
+    [ "$1" = tetgen-export ] || [ "$1" = openfoam-export ] || [ "$1" = gmsh-export ]
 }
 
 # A good input for a filter.
@@ -101,6 +110,7 @@ input() {
     mdl-import) echo corner.mdl ;;
     m3d-import) echo corner.mvm ;;
     oct-import) echo cube.oct ;;
+    gmsh-import) echo corner.msh ;;
     oct-export) echo octant.tm ;;
     octree-repair) echo element.tm ;;
     *) echo corner.tm ;;

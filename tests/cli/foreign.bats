@@ -65,6 +65,11 @@ write_samples() {
     vtu-export mixed.tm >'an XML file of VTK.none'
     vtk-export mixed.tm >'a legacy VTK file.none'
     getfem-export mixed.tm >'a GetFEM mesh.none'
+    if [ -x "$TM_BUILD/bin/gmsh-export" ]; then
+        for format in msh4 msh2 msh1; do
+            gmsh-export -q --format "$format" -o "$format.gmsh-import" cube.stream
+        done
+    fi
     rm -f mixed.tm cubes.tm cube.*[!mt]
     write_others
 }
@@ -89,23 +94,20 @@ cube_tm() {
 .end'
 }
 
-# What no filter reads, by the words that say what it is.
+# What no filter reads, or with a name that says so, by the words that say what it is.
 write_others() {
-    # shellcheck disable=SC2016 # their dollar signs
-    printf '$MeshFormat\n4.1 0 8\n$EndMeshFormat\n' >'a Gmsh mesh.none'
-    printf 'MeshVersionFormatted 2\nDimension 3\n' >'a Medit mesh.none'
     printf '# made by hand\nmesh3d\n' >'a Netgen mesh.none'
     printf 'ISO-10303-21;\nHEADER;\n' >'a STEP file.none'
     printf '%72sS%7d\n%72sG%7d\n' '' 1 '' 1 >'an IGES file.none'
     printf '*HEADING\n*NODE\n1, 0, 0, 0\n' >'an Abaqus.none'
     printf '** made by hand\n*Node\n1, 0, 0, 0\n' >'an Abaqus or CalculiX.none'
     printf '*KEYWORD\n*NODE\n' >'an LS-DYNA.none'
-    printf '$ made by hand\nSOL 101\nCEND\nBEGIN BULK\n' >'a Nastran.none'
-    printf 'GRID,1,,0.,0.,0.\n' >'a Nastran input file.none'
+    printf '$ made by hand\nSOL 101\nCEND\nBEGIN BULK\n' >'a Nastran.use gmsh-import of a file'
+    printf 'GRID,1,,0.,0.,0.\n' >'a Nastran input file.use gmsh-import of a file'
     printf '/*------------*- C++ -*-----*/\nFoamFile\n{\n}\n' >'an OpenFOAM file.none'
     printf '%%PDF-1.4\n%%\342\343\317\323\n' >'a PDF document.none'
     printf '\211PNG\r\n\032\n' >'a PNG image.none'
-    printf '\211HDF\r\n\032\n' >'an HDF5 file.none'
+    printf '\211HDF\r\n\032\n' >'an HDF5 file.use gmsh-import of a file'
     printf '<!DOCTYPE html>\n<html><body>404</body></html>\n' >'an HTML page.none'
     printf 'PK\003\004\024\000' >'a zip archive.unpack'
     printf 'BZh91AY&SY' >'bzip2 data.unpack'
@@ -144,6 +146,7 @@ is_refused() {
             case $sample:$filter in
             *."$filter":* | node.surface:tetgen-import) continue ;;
             poly.surface:tetgen-import | smesh.surface:tetgen-import) continue ;;
+            *'use gmsh-import of a file':gmsh-import) continue ;;
             *.surface:surface-import | *.mdl-import:surface-import | *.stream:surface-import) continue ;;
             *:tetgen-import)
                 cp "$sample" wrong.node

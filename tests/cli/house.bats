@@ -198,11 +198,38 @@ examples() {
         run -0 ldd "$TM_BUILD/bin/$1"
         if needs_p4est "$1"; then
             [[ "$output" == *libp4est* ]]
-        else
+        elif ! needs_gmsh "$1"; then
             run -1 grep -vE 'lib(gmp|z|m|c|asan|ubsan|pthread|gcc_s)\.so|linux-vdso|ld-linux' <<<"$output"
         fi
     }
     for_each_filter loads
+}
+
+@test "only gmsh-import and gmsh-export load libgmsh, or what it brings" {
+    command -v ldd >/dev/null || skip "there is no ldd"
+    for file in "$TM_BUILD"/bin/* "$TM_BUILD"/libtermesh.so.*; do
+        case ${file##*/} in mesh-convert) continue ;; esac
+        run -0 ldd "$file"
+        if needs_gmsh "${file##*/}"; then
+            [[ "$output" == *libgmsh.so* ]]
+        else
+            [[ "$output" != *libgmsh.so* ]]
+        fi
+    done
+}
+
+@test "without libgmsh all else is built, and what is left out is said once" {
+    case ${TM_BUILD:?} in */san) skip "the same as without the sanitizers" ;; esac
+    [ -x "$TM_BUILD/bin/gmsh-import" ] || skip "there is no libgmsh"
+    mkdir build
+    cp -pR "$TM_BUILD/cmd" "$TM_BUILD/lib" "$TM_BUILD/generate" "$TM_BUILD/generated" build
+    rm -r build/cmd/common/gmsh
+    run -0 --separate-stderr make -s -C "$root" BUILD="$PWD/build" has_gmsh= all
+    [ "$output" = "" ]
+    [[ "$stderr" == *"There is no gmshc.h: gmsh-import and gmsh-export are left out." ]]
+    [ ! -e build/bin/gmsh-import ] && [ ! -e build/bin/gmsh-export ]
+    [ ! -e build/cmd/common/gmsh ]
+    [ -x build/bin/vtu-export ]
 }
 
 @test "without p4est all else is built, and what is left out is said once" {

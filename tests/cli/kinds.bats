@@ -43,6 +43,7 @@ filters() {
 status_of() {
     rm -rf folder
     case $1 in
+    gmsh-export) set -- "$1" --format msh4 - "$2" ;;
     openfoam-export | tetgen-export) set -- "$1" folder "$2" ;;
     esac
     local status=0
@@ -55,6 +56,7 @@ expected() {
     cat <<'END'
                 nothing part points surface tetrahedra no-tetrahedra mixed mixed-facets polyhedra
 getfem-export   3 3 3 0 0 3 0 0 3
+gmsh-export     3 3 0 0 0 0 0 0 3
 jens-stats      3 3 3 3 0 0 0 0 3
 lepp-improve    3 3 3 3 0 0 3 3 3
 m3d-export      3 3 3 3 0 3 0 0 3

@@ -132,6 +132,58 @@ unknown block         x x x x x x x x x
 END
 }
 
+# The formats that differ of those of Gmsh; msh4 and msh2 carry the same.
+@test "gmsh-export and what its formats cannot carry" {
+    [ -x "$TM_BUILD/bin/gmsh-export" ] || skip "there is no libgmsh"
+    while read -r thing; do
+        mesh_with "$thing" >with.tm
+        printf '%-21s' "$thing"
+        for format in msh4 msh2 msh1 mesh inp unv su2; do
+            if gmsh-export --strict --format "$format" -o file with.tm 2>note; then
+                printf ' .'
+            else
+                grep -q "^gmsh-export: with.tm: [1-9].*: the output cannot carry it$" note
+                printf ' x'
+            fi
+        done
+        echo
+    done >table <<'END'
+nothing
+node attribute
+node marker
+face marker
+negative face marker
+edge marker
+region
+odd region
+other attribute
+node name
+edge name
+face name
+region name
+part
+unknown block
+END
+    # msh4 msh2 msh1 mesh inp unv su2
+    diff - table <<'END'
+nothing               . . . . . . .
+node attribute        x x x x x x x
+node marker           . . . x x x x
+face marker           . . . . . . .
+negative face marker  x x x x x x x
+edge marker           . . . . . . x
+region                . . . . . . x
+odd region            x x x x x x x
+other attribute       x x x x x x x
+node name             . . x x x x x
+edge name             . . x x . . x
+face name             . . x x . . .
+region name           . . x x . . x
+part                  x x x x x x x
+unknown block         x x x x x x x
+END
+}
+
 @test "several things are one note, with their counts" {
     mesh_with 'face marker' | sed 's/^\.end/.notes\nx\nmore.text\ny\n.end/' >with.tm
     run -0 --separate-stderr m3d-export with.tm

@@ -38,6 +38,7 @@ static const struct {
     {"mesh-check", CELLS},
     {"mesh-view", ALL},
     {"getfem-export", SURFACE | TETRAHEDRA | MIXED},
+    {"gmsh-export", POINTS | SURFACE | TETRAHEDRA | MIXED},
     {"m3d-export", TETRAHEDRA | MIXED},
     {"mvm-export", TETRAHEDRA | MIXED},
     {"obj-export", SURFACE | CELLS},

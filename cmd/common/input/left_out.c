@@ -32,14 +32,26 @@ enum {
     GROUPS_OF_FACES = FACES | FACES_BELOW_0 | FACE_NAMES | OF_CELLS
 };
 
-/* One row for each exporter; of one that has none all is left out. OFF, STL, PLY and OBJ
- * are of faces alone, and .oct of octants: what nodes and cells have is not asked for
- * there, but for the regions of --regions. */
+/* One row for each exporter, of one of several formats for each of them; of one that has
+ * none all is left out. OFF, STL, PLY and OBJ are of faces alone, and .oct of octants:
+ * what nodes and cells have is not asked for there, but for the regions of --regions. */
 static const struct {
     const char *format;
     unsigned keeps;
 } formats[] = {
     {"getfem-export", FACES | REGIONS | FACE_NAMES | REGION_NAMES},
+    {"gmsh-export bdf", EDGES | FACES | REGIONS},
+    {"gmsh-export cgns", NODE_MARKERS | EDGES | FACES | REGIONS | NAMES},
+    {"gmsh-export inp", EDGES | FACES | REGIONS | EDGE_NAMES | FACE_NAMES | REGION_NAMES},
+    {"gmsh-export key", EDGES | FACES | REGIONS | EDGE_NAMES | FACE_NAMES | REGION_NAMES},
+    {"gmsh-export med", NODE_MARKERS | EDGES | FACES | REGIONS | NAMES},
+    {"gmsh-export mesh", EDGES | FACES | REGIONS},
+    {"gmsh-export msh1", NODE_MARKERS | EDGES | FACES | REGIONS},
+    {"gmsh-export msh2", NODE_MARKERS | EDGES | FACES | REGIONS | NAMES},
+    {"gmsh-export msh4", NODE_MARKERS | EDGES | FACES | REGIONS | NAMES},
+    {"gmsh-export msh40", NODE_MARKERS | EDGES | FACES | REGIONS | NAMES},
+    {"gmsh-export su2", FACES | FACE_NAMES},
+    {"gmsh-export unv", EDGES | FACES | REGIONS | EDGE_NAMES | FACE_NAMES | REGION_NAMES},
     {"m3d-export", 0},
     {"mesh-view", ~0u & ~(unsigned)(PARTS | TETRAHEDRA)},
     {"mvm-export", 0},
@@ -186,6 +198,17 @@ static bool marks_nodes_of(const tm_block *node, const tm_block *block)
     return same;
 }
 
+bool mesh_marks_boundary_nodes(const tm_stream *stream)
+{
+    const tm_block *node = tm_stream_find(stream, ".node");
+    const tm_content content = tm_content_of(stream);
+    const tm_block *face =
+        tm_stream_find(stream, content == TM_CONTENT_POLYHEDRA ? ".facet" : ".face");
+    const bool has_faces = face && face->count > 0;
+    return node && node->marker && only_marker(node) != 0 &&
+           content != TM_CONTENT_POINTS && (!has_faces || marks_nodes_of(node, face));
+}
+
 static void add_nodes(finder *find)
 {
     const tm_block *node = tm_stream_find(find->stream, ".node");
@@ -197,11 +220,7 @@ static void add_nodes(finder *find)
             node->name);
     if (!node->marker || is_kept(find, NODE_MARKERS))
         return;
-    const tm_block *face = tm_stream_find(
-        find->stream, find->content == TM_CONTENT_POLYHEDRA ? ".facet" : ".face");
-    const bool has_faces = face && face->count > 0;
-    if (only_marker(node) != 0 && find->content != TM_CONTENT_POINTS &&
-        (!has_faces || marks_nodes_of(node, face)))
+    if (mesh_marks_boundary_nodes(find->stream))
         return;
     add(find, NODE_MARKERS, count_markers(node, false) + count_markers(node, true),
         "markers of nodes", node->name);

@@ -20,4 +20,7 @@ void mesh_leave_out(const filter *f, const tm_stream *stream);
 /* The same where it depends on options what the format has: its row of the table. */
 void mesh_leave_out_of(const filter *f, const tm_stream *stream, const char *format);
 
+/* Whether the markers of .node only say which nodes are on the boundary. O(n). */
+bool mesh_marks_boundary_nodes(const tm_stream *stream);
+
 #endif
