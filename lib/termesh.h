@@ -48,6 +48,7 @@
 #include "mesh/mesh_view.h"
 #include "mesh/mixed_mesh.h"
 #include "mesh/poly_arrays.h"
+#include "mesh/polyhedra.h"
 
 /* surface: triangulated surfaces */
 #include "surface/polygon_surface.h"
@@ -73,6 +74,7 @@
 #include "format/tetgen.h"
 #include "format/visf.h"
 #include "format/vtk/vtk.h"
+#include "format/vtk/vtk_read.h"
 
 /* optimise: node positions */
 #include "optimise/optimise.h"

@@ -150,7 +150,7 @@ static tm_look look_at_sections(const char *at, const char *end)
 static tm_look look_at_markup(const char *at, const char *end)
 {
     if (holds(at, end, "<VTKFile"))
-        return (tm_look){"an XML file of VTK (.vtu)", NONE_YET};
+        return (tm_look){"an XML file of VTK (.vtu)", "use vtu-import"};
     if (holds(at, end, "<html") || holds(at, end, "<HTML"))
         return (tm_look){"an HTML page, perhaps of a server that had no file", NONE};
     return (tm_look){"XML", NONE};

@@ -15,7 +15,8 @@ needs_p4est() {
 
 setup_file() {
     root=$(cd "$BATS_TEST_DIRNAME/../.." && pwd)
-    filters=$(cd "$root/cmd" && for file in *.c; do
+    filters=$(cd "$root/cmd" && for file in *.c import/*.c export/*.c; do
+        file=${file##*/}
         is_left_out "${file%.c}" || echo "${file%.c}"
     done)
     export root filters
@@ -71,6 +72,10 @@ END
     printf '%s\n' '8 0 1' '0 0 0' '0 0 1' '1 0 1' '1 0 0' '0 1 0' '0 1 1' '1 1 1' '1 1 0' \
         '8 0 1 2 3 4 5 6 7 0' 0 'Geometric Transform' '0 0 0' '0 0 0' \
         1 >cube.oct
+    printf '%s\n' '<VTKFile type="UnstructuredGrid"><UnstructuredGrid>' \
+        '<Piece NumberOfPoints="1" NumberOfCells="0"><Points>' \
+        '<DataArray type="Float32" NumberOfComponents="3">1 2 3</DataArray></Points></Piece>' \
+        '</UnstructuredGrid></VTKFile>' >point.vtu
     { sed '$d' corner.tm; printf '%s\n' .mix '1 0' '1 4 1 2 3 4' .octant '1 0' \
         '1 0 0 0 0 1 2' .root '1 0' '1 0 0 0 1 0' surface.node '3 3 0 0' '1 0 0 0' \
         '2 1 0 0' '3 0 1 0' surface.face '1 0' '1 1 2 3' .end; } >octant.tm
@@ -97,6 +102,7 @@ input() {
     tetgen-import) echo corner.node ;;
     tetgen-mesh | octree-mesh) echo surface.tm ;;
     visf-import) echo corner.visf ;;
+    vtu-import) echo point.vtu ;;
     mdl-import) echo corner.mdl ;;
     m3d-import) echo corner.mvm ;;
     oct-import) echo cube.oct ;;

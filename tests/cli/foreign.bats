@@ -62,7 +62,7 @@ write_samples() {
         visf-export $options cubes.tm >"a${options##* }.visf-import"
     done
     write_oct >a.oct-import
-    vtu-export mixed.tm >'an XML file of VTK.none'
+    vtu-export mixed.tm >a.vtu-import
     vtk-export mixed.tm >'a legacy VTK file.none'
     getfem-export mixed.tm >'a GetFEM mesh.none'
     rm -f mixed.tm cubes.tm cube.*[!mt]
