@@ -70,6 +70,7 @@
 /* format: files of other programs */
 #include "format/mesh_format.h"
 #include "format/oct.h"
+#include "format/openfoam/openfoam.h"
 #include "format/surface/surface_format.h"
 #include "format/tetgen.h"
 #include "format/visf.h"

@@ -75,8 +75,8 @@ static const row words[] = {
     {"CEND", {"a Nastran input file", NONE_YET}},
     {"BEGIN BULK", {"a Nastran input file", NONE_YET}},
     {"GRID", {"a Nastran input file", NONE_YET}},
-    {"/*--", {"an OpenFOAM file", NONE_YET}},
-    {"FoamFile", {"an OpenFOAM file", NONE_YET}},
+    {"/*--", {"an OpenFOAM file", "use openfoam-import with its folder"}},
+    {"FoamFile", {"an OpenFOAM file", "use openfoam-import with its folder"}},
     {"{\"", {"JSON", NONE}},
 };
 

@@ -72,6 +72,12 @@ END
     printf '%s\n' '8 0 1' '0 0 0' '0 0 1' '1 0 1' '1 0 0' '0 1 0' '0 1 1' '1 1 1' '1 1 0' \
         '8 0 1 2 3 4 5 6 7 0' 0 'Geometric Transform' '0 0 0' '0 0 0' \
         1 >cube.oct
+    mkdir polyMesh
+    echo '4((0 0 0) (1 0 0) (0 1 0) (0 0 1))' >polyMesh/points
+    echo '4(3(0 2 1) 3(0 1 3) 3(1 2 3) 3(2 0 3))' >polyMesh/faces
+    echo '4{0}' >polyMesh/owner
+    echo '0()' >polyMesh/neighbour
+    echo '1(wall {type wall; nFaces 4; startFace 0;})' >polyMesh/boundary
     printf '%s\n' '<VTKFile type="UnstructuredGrid"><UnstructuredGrid>' \
         '<Piece NumberOfPoints="1" NumberOfCells="0"><Points>' \
         '<DataArray type="Float32" NumberOfComponents="3">1 2 3</DataArray></Points></Piece>' \
@@ -103,6 +109,7 @@ input() {
     tetgen-mesh | octree-mesh) echo surface.tm ;;
     visf-import) echo corner.visf ;;
     vtu-import) echo point.vtu ;;
+    openfoam-import) echo polyMesh ;;
     mdl-import) echo corner.mdl ;;
     m3d-import) echo corner.mvm ;;
     oct-import) echo cube.oct ;;

@@ -102,7 +102,7 @@ write_others() {
     printf '*KEYWORD\n*NODE\n' >'an LS-DYNA.none'
     printf '$ made by hand\nSOL 101\nCEND\nBEGIN BULK\n' >'a Nastran.none'
     printf 'GRID,1,,0.,0.,0.\n' >'a Nastran input file.none'
-    printf '/*------------*- C++ -*-----*/\nFoamFile\n{\n}\n' >'an OpenFOAM file.none'
+    printf '/*------------*- C++ -*-----*/\nFoamFile\n{\n}\n' >'an OpenFOAM file.with its folder'
     printf '%%PDF-1.4\n%%\342\343\317\323\n' >'a PDF document.none'
     printf '\211PNG\r\n\032\n' >'a PNG image.none'
     printf '\211HDF\r\n\032\n' >'an HDF5 file.none'
@@ -144,6 +144,7 @@ is_refused() {
             case $sample:$filter in
             *."$filter":* | node.surface:tetgen-import) continue ;;
             poly.surface:tetgen-import | smesh.surface:tetgen-import) continue ;;
+            *'its folder':openfoam-import) continue ;;
             *:tetgen-import)
                 cp "$sample" wrong.node
                 is_refused "$sample" tetgen-import wrong.node

@@ -68,6 +68,8 @@ static const command commands[] = {
     {"off-export", {INPUT}, false},
     {"off-export", {"--all", INPUT}, false},
     {"openfoam-export", {MESH, INPUT}, false},
+    {"openfoam-import", {MESH}, true},
+    {"openfoam-import", {"--elements", MESH}, true},
     {"visf-export", {"--neighbours", "-o", "out.visf", INPUT}, false},
     {"visf-import", {"out.visf"}, true},
     {"visf-import", {INPUT}, false},

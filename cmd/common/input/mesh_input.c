@@ -131,6 +131,14 @@ static void write_imported(filter *f, tm_stream *stream)
         filter_write(f, stream, "%zu nodes", nodes);
 }
 
+int mesh_write_stream(filter *f, tm_stream *stream)
+{
+    mesh_input_report(f, stream);
+    write_imported(f, stream);
+    tm_stream_free(stream);
+    return filter_finish(f, 0);
+}
+
 int mesh_read(filter *f, mesh_reader *read)
 {
     tm_stream stream;
@@ -141,10 +149,7 @@ int mesh_read(filter *f, mesh_reader *read)
     if (read(f, &stream, &bytes, &error) != TM_OK)
         filter_fail_file(f, &error, &bytes, f->name);
     tm_text_free(&bytes);
-    mesh_input_report(f, &stream);
-    write_imported(f, &stream);
-    tm_stream_free(&stream);
-    return filter_finish(f, 0);
+    return mesh_write_stream(f, &stream);
 }
 
 int mesh_import(int argc, char **argv, const char *name, const char *purpose,

@@ -205,11 +205,13 @@ static tm_status read_cells(reader *r)
     tm_status status = read_cell_arrays(r, &a);
     if (status == TM_OK)
         status = add_cells(r, &a);
-    tm_numbers *const all[] = {
-        &a.types,        &a.connectivity, &a.offsets,           &a.faces,
-        &a.face_offsets, &a.polyhedra,    &a.polyhedron_offsets};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-        tm_numbers_free(all[i]);
+    tm_numbers_free(&a.types);
+    tm_numbers_free(&a.connectivity);
+    tm_numbers_free(&a.offsets);
+    tm_numbers_free(&a.faces);
+    tm_numbers_free(&a.face_offsets);
+    tm_numbers_free(&a.polyhedra);
+    tm_numbers_free(&a.polyhedron_offsets);
     return status;
 }
 
