@@ -35,7 +35,7 @@ CFLAGS = -O2 -g
 CXXFLAGS = -O2 -g
 werror = $(if $(filter-out 0,$(WERROR)),-Werror)
 WARNINGS = -Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes $(werror)
-LDLIBS = -lgmp -lz -lm -lpthread
+LDLIBS = -lgmp -lz -lm -lpthread -Wl,--as-needed -lexpat -Wl,--no-as-needed
 
 # p4est, and MPI, which it needs; for another one than Open MPI set both of its flags. A
 # program that does not use p4est is not linked with it. Where it is not installed, what

@@ -48,6 +48,7 @@
 #include "mesh/mesh_view.h"
 #include "mesh/mixed_mesh.h"
 #include "mesh/poly_arrays.h"
+#include "mesh/polyhedra.h"
 
 /* surface: triangulated surfaces */
 #include "surface/polygon_surface.h"
@@ -70,11 +71,13 @@
 /* format: files of other programs */
 #include "format/mesh_format.h"
 #include "format/oct.h"
+#include "format/openfoam/openfoam.h"
 #include "format/surface/surface_format.h"
 #include "format/surface/surface_write.h"
 #include "format/tetgen.h"
 #include "format/visf.h"
 #include "format/vtk/vtk.h"
+#include "format/vtk/vtk_read.h"
 
 /* optimise: node positions */
 #include "optimise/optimise.h"

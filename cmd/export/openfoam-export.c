@@ -4,7 +4,7 @@
 #include "../common/input/mesh_input.h"
 #include "../common/app/output_files.h"
 
-#include "../../lib/format/mesh_format.h"
+#include "../../lib/format/openfoam/openfoam.h"
 #include "../../lib/stream/coordinates.h"
 
 #include <dirent.h>

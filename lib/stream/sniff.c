@@ -79,8 +79,8 @@ static const row words[] = {
     {"CEND", {"a Nastran input file", GMSH " of a file named .bdf"}},
     {"BEGIN BULK", {"a Nastran input file", GMSH " of a file named .bdf"}},
     {"GRID", {"a Nastran input file", GMSH " of a file named .bdf"}},
-    {"/*--", {"an OpenFOAM file", NONE_YET}},
-    {"FoamFile", {"an OpenFOAM file", NONE_YET}},
+    {"/*--", {"an OpenFOAM file", "use openfoam-import with its folder"}},
+    {"FoamFile", {"an OpenFOAM file", "use openfoam-import with its folder"}},
     {"{\"", {"JSON", NONE}},
 };
 
@@ -154,7 +154,7 @@ static tm_look look_at_sections(const char *at, const char *end)
 static tm_look look_at_markup(const char *at, const char *end)
 {
     if (holds(at, end, "<VTKFile"))
-        return (tm_look){"an XML file of VTK (.vtu)", NONE_YET};
+        return (tm_look){"an XML file of VTK (.vtu)", "use vtu-import"};
     if (holds(at, end, "<html") || holds(at, end, "<HTML"))
         return (tm_look){"an HTML page, perhaps of a server that had no file", NONE};
     return (tm_look){"XML", NONE};

@@ -80,6 +80,16 @@ END
     printf '%s\n' '$MeshFormat' '2.2 0 8' '$EndMeshFormat' '$Nodes' 4 '1 0 0 0' '2 1 0 0' \
         '3 0 1 0' '4 0 0 1' '$EndNodes' '$Elements' 1 '1 4 2 7 1 1 2 3 4' '$EndElements' \
         >corner.msh
+    mkdir polyMesh
+    echo '4((0 0 0) (1 0 0) (0 1 0) (0 0 1))' >polyMesh/points
+    echo '4(3(0 2 1) 3(0 1 3) 3(1 2 3) 3(2 0 3))' >polyMesh/faces
+    echo '4{0}' >polyMesh/owner
+    echo '0()' >polyMesh/neighbour
+    echo '1(wall {type wall; nFaces 4; startFace 0;})' >polyMesh/boundary
+    printf '%s\n' '<VTKFile type="UnstructuredGrid"><UnstructuredGrid>' \
+        '<Piece NumberOfPoints="1" NumberOfCells="0"><Points>' \
+        '<DataArray type="Float32" NumberOfComponents="3">1 2 3</DataArray></Points></Piece>' \
+        '</UnstructuredGrid></VTKFile>' >point.vtu
     { sed '$d' corner.tm; printf '%s\n' .mix '1 0' '1 4 1 2 3 4' .octant '1 0' \
         '1 0 0 0 0 1 2' .root '1 0' '1 0 0 0 1 0' surface.node '3 3 0 0' '1 0 0 0' \
         '2 1 0 0' '3 0 1 0' surface.face '1 0' '1 1 2 3' .end; } >octant.tm
@@ -107,6 +117,8 @@ input() {
     tetgen-import) echo corner.node ;;
     tetgen-mesh | octree-mesh | surface-import | surface-mend) echo surface.tm ;;
     visf-import) echo corner.visf ;;
+    vtu-import) echo point.vtu ;;
+    openfoam-import) echo polyMesh ;;
     mdl-import) echo corner.mdl ;;
     m3d-import) echo corner.mvm ;;
     oct-import) echo cube.oct ;;
