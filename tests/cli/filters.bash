@@ -72,6 +72,8 @@ END
     printf '%s\n' '8 0 1' '0 0 0' '0 0 1' '1 0 1' '1 0 0' '0 1 0' '0 1 1' '1 1 1' '1 1 0' \
         '8 0 1 2 3 4 5 6 7 0' 0 'Geometric Transform' '0 0 0' '0 0 0' \
         1 >cube.oct
+    printf '%s\n' '# vtk DataFile Version 2.0' point ASCII 'DATASET POLYDATA' 'POINTS 1 float' \
+        '1 2 3' 'VERTICES 1 2' '1 0' >point.vtk
     mkdir polyMesh
     echo '4((0 0 0) (1 0 0) (0 1 0) (0 0 1))' >polyMesh/points
     echo '4(3(0 2 1) 3(0 1 3) 3(1 2 3) 3(2 0 3))' >polyMesh/faces
@@ -109,6 +111,7 @@ input() {
     tetgen-mesh | octree-mesh) echo surface.tm ;;
     visf-import) echo corner.visf ;;
     vtu-import) echo point.vtu ;;
+    vtk-import) echo point.vtk ;;
     openfoam-import) echo polyMesh ;;
     mdl-import) echo corner.mdl ;;
     m3d-import) echo corner.mvm ;;

@@ -63,7 +63,7 @@ write_samples() {
     done
     write_oct >a.oct-import
     vtu-export mixed.tm >a.vtu-import
-    vtk-export mixed.tm >'a legacy VTK file.none'
+    vtk-export --no-quality mixed.tm >a.vtk-import
     getfem-export mixed.tm >'a GetFEM mesh.none'
     rm -f mixed.tm cubes.tm cube.*[!mt]
     write_others
