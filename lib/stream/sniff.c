@@ -18,7 +18,7 @@ typedef struct row {
 
 /* Of these the very first bytes. */
 static const row magic[] = {
-    {"# vtk DataFile", {"a legacy VTK file", NONE_YET}},
+    {"# vtk DataFile", {"a legacy VTK file", "use vtk-import"}},
     {"\xFF\xFE", {"UTF-16 text", "save it as UTF-8 or ASCII"}},
     {"\xFE\xFF", {"UTF-16 text", "save it as UTF-8 or ASCII"}},
     {"\x1F\x8B", {"gzip data within gzip data", "unpack it with zcat"}},

@@ -80,6 +80,8 @@ END
     printf '%s\n' '$MeshFormat' '2.2 0 8' '$EndMeshFormat' '$Nodes' 4 '1 0 0 0' '2 1 0 0' \
         '3 0 1 0' '4 0 0 1' '$EndNodes' '$Elements' 1 '1 4 2 7 1 1 2 3 4' '$EndElements' \
         >corner.msh
+    printf '%s\n' '# vtk DataFile Version 2.0' point ASCII 'DATASET POLYDATA' 'POINTS 1 float' \
+        '1 2 3' 'VERTICES 1 2' '1 0' >point.vtk
     mkdir polyMesh
     echo '4((0 0 0) (1 0 0) (0 1 0) (0 0 1))' >polyMesh/points
     echo '4(3(0 2 1) 3(0 1 3) 3(1 2 3) 3(2 0 3))' >polyMesh/faces
@@ -118,6 +120,7 @@ input() {
     tetgen-mesh | octree-mesh | surface-import | surface-mend) echo surface.tm ;;
     visf-import) echo corner.visf ;;
     vtu-import) echo point.vtu ;;
+    vtk-import) echo point.vtk ;;
     openfoam-import) echo polyMesh ;;
     mdl-import) echo corner.mdl ;;
     m3d-import) echo corner.mvm ;;

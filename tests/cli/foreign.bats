@@ -63,7 +63,7 @@ write_samples() {
     done
     write_oct >a.oct-import
     vtu-export mixed.tm >a.vtu-import
-    vtk-export mixed.tm >'a legacy VTK file.none'
+    vtk-export --no-quality mixed.tm >a.vtk-import
     getfem-export mixed.tm >'a GetFEM mesh.none'
     if [ -x "$TM_BUILD/bin/gmsh-export" ]; then
         for format in msh4 msh2 msh1; do

@@ -108,7 +108,8 @@ END
 # same_mesh A B: whether two streams are the same mesh, however facets are numbered: the same
 # nodes, elements, regions, markers, attributes and names, bit for bit and in the same
 # order. Rows of .face, .facet and .edge without a marker are not looked at, nor is what is
-# an option: --no-names, --no-attributes, --no-markers.
+# an option: --no-names, --no-attributes, --no-markers. With --rounded reals are compared to
+# eleven digits.
 same_mesh() {
     python3 - "$@" <<'END'
 import sys
@@ -183,6 +184,8 @@ def mesh(path):
     return m
 
 skip = set(sys.argv[3:])
+if '--rounded' in skip:
+    exact, float = float, lambda text: exact('%.11g' % exact(text))
 a, b = mesh(sys.argv[1]), mesh(sys.argv[2])
 for key in sorted(set(a) | set(b)):
     if a.get(key) != b.get(key):
@@ -220,9 +223,9 @@ for mode in ('Ascii', 'Binary', 'Appended', 'AppendedBase64'):
 END
 }
 
-# damage FILTER FILE [CHANGES]: cuts a file at 200 places and changes bytes of it in CHANGES
-# (200) copies. What is cut must be refused, exit 3, with one line and no output; what is
-# changed refused or read; never a signal, more than 20 seconds, or more memory than 20
+# damage FILTER FILE [CHANGES [WHOLE]]: cuts a file at 200 places and changes bytes of it in
+# CHANGES (200) copies. What is cut must be refused, exit 3, with one line and no output, or
+# may be read if it is cut behind the word WHOLE; what is changed refused or read; never a signal, more than 20 seconds, or more memory than 20
 # times the file and what the filter takes at all.
 damage() {
     python3 - "$@" <<'END'
@@ -248,8 +251,9 @@ def run(bytes, allowed, what):
         sys.exit('%s: exit %d, %r' % (what, p.returncode, p.stderr))
 
 end = len(data.rstrip()) - 1
+whole = data.index(sys.argv[4].encode()) if len(sys.argv) > 4 else end
 for at in sorted(random.sample(range(end), min(200, end))):
-    run(data[:at], [3], 'cut at %d' % at)
+    run(data[:at], [3] if at < whole else [0, 3], 'cut at %d' % at)
 for i in range(changes):
     changed = bytearray(data)
     for _ in range(random.randint(1, 4)):

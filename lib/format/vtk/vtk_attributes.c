@@ -191,7 +191,7 @@ static bool is_other(const tm_vtk_maker *m, size_t i)
     const tm_vtk_data *data = &m->cells->cell_data.array[i];
     return i != m->roles.region && i != m->roles.marker &&
            !(i == m->roles.tetrahedra && m->content == TM_CONTENT_POLYHEDRA) &&
-           !tm_vtk_is_internal(name_of(m, data)) && !tm_vtk_is_measure(m->cells, i);
+           !tm_vtk_is_internal(name_of(m, data)) && !data->measure;
 }
 
 static tm_status make_cell_attributes(tm_vtk_maker *m, column_list *columns)
@@ -232,7 +232,7 @@ static void list_measures(tm_vtk_maker *m)
 {
     const tm_vtk_data_list *list = &m->cells->cell_data;
     for (size_t i = 0; i < list->arrays; i++)
-        if (tm_vtk_is_measure(m->cells, i))
+        if (list->array[i].measure)
             list_name(m, &m->report->measures, &list->array[i], NULL);
 }
 

@@ -24,6 +24,7 @@ typedef struct tm_vtk_data {
     size_t components;
     bool whole;    /* its numbers are whole */
     bool lacks;    /* a piece has it not, or otherwise */
+    bool measure;  /* vtu-export's: its values are not needed */
     double *value; /* [count][components] */
     size_t room;
 } tm_vtk_data;
@@ -123,8 +124,9 @@ tm_status tm_vtk_find_roles(const tm_vtk_cells *cells, const bool *keep,
 /* Whether an array is one that VTK keeps for itself, as vtkGhostType. */
 bool tm_vtk_is_internal(const char *name);
 
-/* Whether an array of cell data is what vtu-export measures. */
-bool tm_vtk_is_measure(const tm_vtk_cells *cells, size_t array);
+/* Says which arrays of cell data are what vtu-export measures, but for those that an
+ * option names. O(arrays). */
+void tm_vtk_find_measures(tm_vtk_cells *cells, const tm_vtk_read_options *options);
 
 /* vtk_stream.c: makes the grid a stream, which is empty; after an error it is again. */
 tm_status tm_vtk_cells_to_stream(tm_vtk_cells *cells, tm_stream *stream,

@@ -41,7 +41,8 @@ static size_t find(const chooser *c, const char *name,
                    int (*compare)(const char *, const char *))
 {
     for (size_t i = 0; i < c->list->arrays; i++)
-        if (compare(name_of(c, i), name) == 0 && !c->list->array[i].lacks)
+        if (compare(name_of(c, i), name) == 0 && !c->list->array[i].lacks &&
+            !c->list->array[i].measure)
             return i;
     return TM_VTK_NO_ARRAY;
 }
@@ -180,7 +181,7 @@ bool tm_vtk_is_internal(const char *name)
            strcmp(name, "vtkValidPointMask") == 0;
 }
 
-bool tm_vtk_is_measure(const tm_vtk_cells *cells, size_t array)
+void tm_vtk_find_measures(tm_vtk_cells *cells, const tm_vtk_read_options *options)
 {
     /* names that others may use, too, are vtu-export's beside one that is its own */
     static const char *const measure[][2] = {{"dihedral_quality", "dihedral_quality"},
@@ -188,10 +189,13 @@ bool tm_vtk_is_measure(const tm_vtk_cells *cells, size_t array)
                                              {"kernel_radius", "kernel_radius"},
                                              {"level", "jens"},
                                              {"volume", "kernel_radius"}};
-    const chooser c = {cells, NULL, &cells->cell_data, cells->cells, 3};
-    for (size_t m = 0; m < sizeof measure / sizeof *measure; m++)
-        if (strcmp(name_of(&c, array), measure[m][0]) == 0 &&
-            find(&c, measure[m][1], strcmp) != TM_VTK_NO_ARRAY)
-            return true;
-    return false;
+    tm_vtk_data_list *list = &cells->cell_data;
+    for (size_t m = 0; m < sizeof measure / sizeof *measure; m++) {
+        const char *name = measure[m][0];
+        tm_vtk_data *data = tm_vtk_data_named(cells, list, name, false);
+        const bool named = (options->region && strcmp(options->region, name) == 0) ||
+                           (options->marker && strcmp(options->marker, name) == 0);
+        if (data && tm_vtk_data_named(cells, list, measure[m][1], false))
+            data->measure = !named;
+    }
 }

@@ -188,6 +188,7 @@ static void note_roles(tm_vtk_maker *m)
 static tm_status make_all(tm_vtk_maker *m, const tm_vtk_read_options *options)
 {
     tm_status status = find_nodes(m);
+    tm_vtk_find_measures(m->cells, options);
     if (status == TM_OK)
         status = tm_vtk_find_roles(m->cells, m->keep, options, &m->roles, m->error);
     if (status != TM_OK)

@@ -11,7 +11,7 @@ enum { COORDINATES = 3, ARRAYS_MAX = 1000 /* of data: as attributes of a row */ 
 typedef struct reader {
     tm_vtu_file file;
     tm_vtk_cells cells;
-    unsigned threads;
+    const tm_vtk_read_options *options;
     tm_error *error;
     size_t piece;
     size_t points, cells_of_piece; /* of the piece, as it says */
@@ -30,7 +30,7 @@ typedef struct cell_arrays {
 static tm_status read_numbers(reader *r, const tm_vtu_entry *entry, size_t count,
                               tm_numbers *numbers)
 {
-    return tm_vtu_numbers(&r->file, entry, count, r->threads, numbers, r->error);
+    return tm_vtu_numbers(&r->file, entry, count, r->options->threads, numbers, r->error);
 }
 
 /* The array of Cells of that name; `count` SIZE_MAX: as many as the last one of `ends`
@@ -265,6 +265,7 @@ static tm_status read_data(reader *r, tm_vtu_section section, tm_vtk_data_list *
                            size_t done, size_t count)
 {
     tm_status status = done == 0 ? add_names(r, section, list) : TM_OK;
+    tm_vtk_find_measures(&r->cells, r->options);
     for (size_t i = 0; i < list->arrays && status == TM_OK && count > 0; i++) {
         tm_vtk_data *data = &list->array[i];
         tm_numbers numbers = {0};
@@ -272,7 +273,7 @@ static tm_status read_data(reader *r, tm_vtu_section section, tm_vtk_data_list *
             tm_vtu_find(&r->file, r->piece, section, r->cells.names.byte + data->name);
         data->lacks |= !entry || entry->strings ||
                        entry->components != data->components || data->components == 0;
-        if (data->lacks)
+        if (data->lacks || data->measure)
             continue;
         if (data->components > SIZE_MAX / 8 / count)
             return tm_vtu_fail(&r->file, entry, r->error,
@@ -351,7 +352,7 @@ tm_status tm_vtu_read(tm_stream *stream, const char *bytes, size_t size, const c
                       const tm_vtk_read_options *options, tm_vtk_read_report *report,
                       tm_error *error)
 {
-    reader r = {.threads = options->threads, .error = error};
+    reader r = {.options = options, .error = error};
     *report = (tm_vtk_read_report){0};
     tm_status status = tm_vtk_cells_new(&r.cells, name, error);
     if (status == TM_OK)
