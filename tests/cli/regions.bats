@@ -195,6 +195,46 @@ corner 0.0106666666667
 END
 }
 
+# touching WHICH: two solids of STL side by side whose common faces have different
+# diagonals, or one a node more, or are of different height.
+touching() {
+    python3 - "$1" <<'END'
+import sys
+sides = [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6)]
+
+def solid(low, high=1, turned=False, split=False):
+    xyz = [(low + (i & 1), i >> 1 & 1, high * (i >> 2)) for i in range(8)]
+    xyz.append((low, .5, high / 2))
+    for i, q in enumerate(sides):
+        if i == 0 and turned:
+            q = q[1:] + q[:1]
+        cut = [(q[0], q[1], q[2]), (q[0], q[2], q[3])]
+        if i == 0 and split:
+            cut = [(a, b, 8) for a, b in zip(q, q[1:] + q[:1])]
+        for t in cut:
+            print('facet normal 0 0 0\nouter loop')
+            for v in t:
+                print('vertex', *xyz[v])
+            print('endloop\nendfacet')
+
+print('solid s')
+solid(0)
+solid(1, **{'diagonals': dict(turned=True), 'node': dict(split=True),
+            'height': dict(high=.5)}[sys.argv[1]])
+print('endsolid s')
+END
+}
+
+@test "solids whose common faces do not have the same triangles: what is said helps" {
+    for which in diagonals node height; do
+        touching "$which" >surface.stl
+        run -3 --separate-stderr octree-mesh -s 3 surface.stl
+        [ "$output" = "" ]
+        [[ "$stderr" == *"overlap"*"where solids touch, both need the same triangles on all of their common face"* ||
+            "$stderr" == *"meet near (1, "*"in one plane: where solids touch, both need the same triangles"* ]]
+    done
+}
+
 @test "walls are refused with --lenient and --cavities, and what is said gives the outer surface" {
     command -v tetgen >/dev/null || skip "there is no tetgen"
     for boxes in "off" "off each" "poly" "stl each"; do
