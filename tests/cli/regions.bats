@@ -195,6 +195,21 @@ corner 0.0106666666667
 END
 }
 
+@test "reports where regions touch: of the outer boundary, and walls are no surface that is missed" {
+    sharp wedges >surface.off
+    octree-mesh -q -s 4 --json mesh.json -o mesh.tm surface.off
+    run -0 octree-repair -q --json repair.json -o repaired.tm mesh.tm
+    python3 - <<'END'
+import json
+mesh, repair = json.load(open("mesh.json")), json.load(open("repair.json"))
+assert (mesh["components"], mesh["euler"], mesh["regions"]) == (1, 2, 4)
+for state in (repair["before"], repair["after"]):
+    assert (state["components"], state["euler"]) == (1, 2)
+    for key in ("to_surface", "from_surface", "to_sharp", "from_sharp"):
+        assert 0 <= state[key] < 1e-9, (key, state[key])
+END
+}
+
 # touching WHICH: two solids of STL side by side whose common faces have different
 # diagonals, or one a node more, or are of different height.
 touching() {
