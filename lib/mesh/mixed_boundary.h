@@ -8,9 +8,22 @@
 
 enum { TM_FACE_SHIFT = 3 };
 
+/* The regions of elements: of element e, which is a part of row origin[e], it is
+ * value[stride * origin[e]]. With value NULL all are in one. */
+typedef struct tm_mixed_regions {
+    const double *value;
+    size_t stride;
+    const uint32_t *origin;
+} tm_mixed_regions;
+
 /* *face = element << TM_FACE_SHIFT | its face (shape.h), ascending; malloc'ed.
  * TM_ERROR_SYSTEM: memory, or 2^28 elements. O(elements). */
 tm_status tm_mixed_boundary_faces(const tm_mixed_mesh *mesh, uint32_t **face,
                                   size_t *faces, tm_error *error);
+
+/* The same, and of the faces between elements of two regions one side. */
+tm_status tm_mixed_region_faces(const tm_mixed_mesh *mesh,
+                                const tm_mixed_regions *regions, uint32_t **face,
+                                size_t *faces, tm_error *error);
 
 #endif

@@ -3,6 +3,7 @@
 
 #include "../../base/array.h"
 #include "../forest/octree_build.h"
+#include "../interior/wall_refinement.h"
 #include "octree_mesh_parts.h"
 
 #include <stdlib.h>
@@ -134,8 +135,12 @@ tm_status tm_octree_mesh_refine_lost(tm_octree_mesh *mesh, tm_octree *octree,
     if (deepest > TM_OCTREE_LEVEL_MAX)
         deepest = TM_OCTREE_LEVEL_MAX;
     tm_status status =
-        levels > 0 ? make_without_loss(mesh, octree, surface, deepest, progress, error)
-                   : tm_octree_mesh_make(mesh, octree, surface, progress, error);
+        surface->walls ? tm_octree_refine_walls(octree, surface, error) : TM_OK;
+    if (status != TM_OK)
+        return status;
+    status = levels > 0
+                 ? make_without_loss(mesh, octree, surface, deepest, progress, error)
+                 : tm_octree_mesh_make(mesh, octree, surface, progress, error);
     for (bool better = levels > 0; status == TM_OK && better;) {
         const bool tries =
             mesh->report.off_surface > 0 && mesh->assembly.mesh.elements <= most_to_try;

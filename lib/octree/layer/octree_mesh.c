@@ -160,6 +160,38 @@ static tm_status measure_boundary(tm_octree_mesh *m, tm_error *error)
     return TM_OK;
 }
 
+/* The same of the faces beyond which there is nothing: each edge has two of them. */
+static tm_status measure_outside(tm_octree_mesh *m, tm_error *error)
+{
+    const tm_interior_boundary *boundary = &m->boundary;
+    const uint32_t *across = m->assembly.layer_across;
+    size_t half_edges = 0, faces = 0, nodes = 0;
+    uint32_t *parent = tm_new(boundary->nodes, sizeof *parent);
+    bool *met = calloc(boundary->nodes + 1, sizeof *met);
+    const bool ok = parent && met;
+    for (size_t s = 0; ok && s < boundary->nodes; s++)
+        parent[s] = (uint32_t)s;
+    for (size_t f = 0; ok && f < boundary->faces; f++) {
+        const unsigned k = tm_boundary_face_corners(boundary, f);
+        if (across && across[f] != TM_NONE)
+            continue;
+        half_edges += k;
+        faces++;
+        for (unsigned i = 0; i < k; i++) {
+            met[boundary->face[f][i]] = true;
+            tm_set_unite(parent, boundary->face[f][0], boundary->face[f][i]);
+        }
+    }
+    for (size_t s = 0; ok && s < boundary->nodes; s++) {
+        nodes += met[s];
+        m->report.outer_components += met[s] && tm_set_root(parent, (uint32_t)s) == s;
+    }
+    m->report.outer_euler = (int64_t)(nodes + faces) - (int64_t)(half_edges / 2);
+    free(parent);
+    free(met);
+    return ok ? TM_OK : tm_fail_memory(error);
+}
+
 static tm_status find_boundary_once(tm_octree_mesh *m, const tm_octree *octree,
                                     tm_surface *surface, tm_error *error)
 {
@@ -357,6 +389,8 @@ static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *su
     if (status == TM_OK)
         status =
             tm_assemble(&m->assembly, octree, m->part, m->parts, &m->boundary, error);
+    if (status == TM_OK)
+        status = measure_outside(m, error);
     tm_progress_stage(progress, "projecting the layer");
     if (status == TM_OK)
         status = tm_project_layer(&m->assembly, &m->boundary, &m->feature, surface, m->at,
