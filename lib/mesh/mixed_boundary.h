@@ -4,7 +4,10 @@
 #define TM_MESH_MIXED_BOUNDARY_H
 
 #include "../base/error.h"
+#include "../base/extern_c.h"
 #include "mixed_mesh.h"
+
+TM_EXTERN_C_BEGIN
 
 enum { TM_FACE_SHIFT = 3 };
 
@@ -25,5 +28,7 @@ tm_status tm_mixed_boundary_faces(const tm_mixed_mesh *mesh, uint32_t **face,
 tm_status tm_mixed_region_faces(const tm_mixed_mesh *mesh,
                                 const tm_mixed_regions *regions, uint32_t **face,
                                 size_t *faces, tm_error *error);
+
+TM_EXTERN_C_END
 
 #endif
