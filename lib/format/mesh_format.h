@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The formats of meshes that need no header of their own (see also oct.h, tetgen.h,
- * visf.h, openfoam/openfoam.h and vtk/vtk.h). A writer appends the file to *text; `threads` format or
- * compress, and the bytes are the same for any number of them. */
+ * visf.h, openfoam/openfoam.h and vtk/vtk.h). A writer appends the file to *text;
+ * `threads` format or compress, and the bytes are the same for any number of them. */
 #ifndef TM_FORMAT_MESH_FORMAT_H
 #define TM_FORMAT_MESH_FORMAT_H
 

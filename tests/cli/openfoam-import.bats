@@ -186,6 +186,28 @@ assert s["polyhedra"] == 24 and abs(s["volume"] / 2e-4 - 1) < 1e-12, s["volume"]
     grep -q 'Mesh OK' check.txt
 }
 
+@test "foamToVTK's files of polyhedra are the same cells for vtu-import and vtk-import" {
+    need_openfoam foamToVTK
+    dual >dual.tm
+    mesh-check -q --json right.json dual.tm
+    foam_case case
+    openfoam-export -q case/constant/polyMesh dual.tm
+    timeout 100 foamToVTK -case case -constant -poly -name xml >log 2>&1
+    timeout 100 foamToVTK -case case -constant -poly -name legacy -legacy >log 2>&1
+    vtu-import -q case/xml/case_0/internal.vtu >xml.tm
+    vtk-import -q case/legacy/case_0.vtk >legacy.tm
+    for mesh in xml legacy; do
+        mesh-check -q --json $mesh.json $mesh.tm
+        for key in nodes elements boundary_faces; do
+            [ "$(json $mesh.json $key)" = "$(json right.json $key)" ]
+        done
+        # points are 32-bit floats there
+        python3 -c 'import json, sys
+a, b = (json.load(open(f))["volume"] for f in sys.argv[1:])
+assert abs(a / b - 1) < 1e-6, (a, b)' $mesh.json right.json
+    done
+}
+
 # The files of a tetrahedron, by hand.
 write_tetrahedron() {
     mkdir -p mesh

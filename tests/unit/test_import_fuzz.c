@@ -226,7 +226,7 @@ static void test_openfoam(void **state)
             for (size_t cut = 0; cut <= file[f].size; cut++)
                 read_foam(file, f, file[f].byte, cut);
             for (int i = 0; i < changed_files / TM_OPENFOAM_FILES; i++) {
-                char *changed = malloc(file[f].size);
+                char *changed = malloc(file[f].size + 1);
                 assert_non_null(changed);
                 memcpy(changed, file[f].byte, file[f].size);
                 change(changed, file[f].size);

@@ -112,7 +112,7 @@ static void set_row(tm_block *block, size_t row, const column_list *columns, siz
 /* A cell of one point marks it, where points have no markers of their own. */
 static tm_status mark_vertices(tm_vtk_maker *m, tm_block *node)
 {
-    const tm_vtk_cells *cells = m->cells;
+    const tm_vtk_mesh *cells = m->cells;
     for (size_t c = 0; c < cells->cells; c++) {
         if (tm_vtk_kept(m, c) != 0)
             continue;
@@ -134,7 +134,7 @@ static tm_status mark_vertices(tm_vtk_maker *m, tm_block *node)
 
 static tm_status mark_nodes(tm_vtk_maker *m, tm_block *node)
 {
-    const tm_vtk_cells *cells = m->cells;
+    const tm_vtk_mesh *cells = m->cells;
     if (m->roles.node_marker == TM_VTK_NO_ARRAY)
         return mark_vertices(m, node);
     const double *value = cells->point_data.array[m->roles.node_marker].value;
@@ -150,7 +150,7 @@ static tm_status mark_nodes(tm_vtk_maker *m, tm_block *node)
 
 static tm_status make_node_attributes(tm_vtk_maker *m, column_list *columns)
 {
-    const tm_vtk_cells *cells = m->cells;
+    const tm_vtk_mesh *cells = m->cells;
     tm_block *node = tm_stream_find(m->stream, ".node");
     columns->count = 0;
     for (size_t i = 0; i < cells->point_data.arrays; i++)
@@ -196,7 +196,7 @@ static bool is_other(const tm_vtk_maker *m, size_t i)
 
 static tm_status make_cell_attributes(tm_vtk_maker *m, column_list *columns)
 {
-    const tm_vtk_cells *cells = m->cells;
+    const tm_vtk_mesh *cells = m->cells;
     tm_block *block = tm_content_block(m->stream, m->content);
     tm_text *names = &m->report->cell_attributes;
     size_t row = 0;

@@ -9,9 +9,9 @@
 
 enum { COORDINATES = 3 };
 
-tm_status tm_vtk_cells_new(tm_vtk_cells *cells, const char *name, tm_error *error)
+tm_status tm_vtk_mesh_new(tm_vtk_mesh *cells, const char *name, tm_error *error)
 {
-    *cells = (tm_vtk_cells){.name = name};
+    *cells = (tm_vtk_mesh){.name = name};
     cells->start = tm_grow(NULL, &cells->start_room, 1, sizeof *cells->start);
     cells->face_start =
         tm_grow(NULL, &cells->face_start_room, 1, sizeof *cells->face_start);
@@ -28,7 +28,7 @@ static void free_list(tm_vtk_data_list *list)
     free(list->array);
 }
 
-void tm_vtk_cells_free(tm_vtk_cells *cells)
+void tm_vtk_mesh_free(tm_vtk_mesh *cells)
 {
     free(cells->xyz);
     free(cells->piece_start);
@@ -41,7 +41,7 @@ void tm_vtk_cells_free(tm_vtk_cells *cells)
     free_list(&cells->cell_data);
     tm_text_free(&cells->names);
     tm_text_free(&cells->groups);
-    *cells = (tm_vtk_cells){0};
+    *cells = (tm_vtk_mesh){0};
 }
 
 void tm_vtk_read_report_free(tm_vtk_read_report *report)
@@ -55,7 +55,7 @@ void tm_vtk_read_report_free(tm_vtk_read_report *report)
 
 /* Points and cells ------------------------------------------------------------------ */
 
-tm_status tm_vtk_begin_piece(tm_vtk_cells *cells, tm_error *error)
+tm_status tm_vtk_begin_piece(tm_vtk_mesh *cells, tm_error *error)
 {
     void *room = tm_grow(cells->piece_start, &cells->piece_room, cells->pieces + 1,
                          sizeof *cells->piece_start);
@@ -66,7 +66,7 @@ tm_status tm_vtk_begin_piece(tm_vtk_cells *cells, tm_error *error)
     return TM_OK;
 }
 
-tm_status tm_vtk_add_points(tm_vtk_cells *cells, const tm_numbers *xyz, tm_error *error)
+tm_status tm_vtk_add_points(tm_vtk_mesh *cells, const tm_numbers *xyz, tm_error *error)
 {
     const size_t count = xyz->count / COORDINATES, past = cells->points + count;
     if (past >= UINT32_MAX)
@@ -89,8 +89,8 @@ tm_status tm_vtk_add_points(tm_vtk_cells *cells, const tm_numbers *xyz, tm_error
 }
 
 /* The point that number i stands for, from `first` on. */
-static tm_status take_point(const tm_vtk_cells *cells, const tm_numbers *numbers,
-                            size_t i, size_t first, uint32_t *point, tm_error *error)
+static tm_status take_point(const tm_vtk_mesh *cells, const tm_numbers *numbers, size_t i,
+                            size_t first, uint32_t *point, tm_error *error)
 {
     int64_t value = 0;
     const int64_t points = (int64_t)(cells->points - first);
@@ -102,7 +102,7 @@ static tm_status take_point(const tm_vtk_cells *cells, const tm_numbers *numbers
     return TM_OK;
 }
 
-tm_status tm_vtk_add_node(tm_vtk_cells *cells, const tm_numbers *numbers, size_t i,
+tm_status tm_vtk_add_node(tm_vtk_mesh *cells, const tm_numbers *numbers, size_t i,
                           size_t first, tm_error *error)
 {
     /* the nodes of the cell that is being made begin where the last one ends */
@@ -115,7 +115,7 @@ tm_status tm_vtk_add_node(tm_vtk_cells *cells, const tm_numbers *numbers, size_t
     return take_point(cells, numbers, i, first, &cells->node[at], error);
 }
 
-tm_status tm_vtk_end_cell(tm_vtk_cells *cells, uint8_t type, tm_error *error)
+tm_status tm_vtk_end_cell(tm_vtk_mesh *cells, uint8_t type, tm_error *error)
 {
     const size_t c = cells->cells;
     if (c + 1 >= UINT32_MAX)
@@ -138,7 +138,7 @@ tm_status tm_vtk_end_cell(tm_vtk_cells *cells, uint8_t type, tm_error *error)
     return TM_OK;
 }
 
-tm_status tm_vtk_add_face(tm_vtk_cells *cells, const tm_numbers *numbers, size_t i,
+tm_status tm_vtk_add_face(tm_vtk_mesh *cells, const tm_numbers *numbers, size_t i,
                           size_t nodes, size_t first, tm_error *error)
 {
     enum { TRIANGLE = 3 };
@@ -164,7 +164,7 @@ tm_status tm_vtk_add_face(tm_vtk_cells *cells, const tm_numbers *numbers, size_t
 
 /* Data ------------------------------------------------------------------------------ */
 
-tm_vtk_data *tm_vtk_data_named(tm_vtk_cells *cells, tm_vtk_data_list *list,
+tm_vtk_data *tm_vtk_data_named(tm_vtk_mesh *cells, tm_vtk_data_list *list,
                                const char *name, bool is_new)
 {
     for (size_t i = 0; i < list->arrays; i++)

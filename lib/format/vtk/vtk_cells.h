@@ -38,7 +38,7 @@ typedef struct tm_vtk_data_list {
 /* The nodes of cell c are node[start[c]] … node[start[c + 1] - 1]. The faces of a
  * polyhedron are face[face_start[c]] … face[face_start[c + 1] - 1]: how many nodes, and
  * the nodes, of one after the other; those of other cells are none. */
-typedef struct tm_vtk_cells {
+typedef struct tm_vtk_mesh {
     const char *name; /* of the file, for messages */
     size_t points;
     double (*xyz)[3];
@@ -56,31 +56,31 @@ typedef struct tm_vtk_cells {
     size_t open, open_faces; /* of node and face: of the cell that is being made */
     size_t point_room, piece_room, type_room, start_room, node_room, face_start_room,
         face_room;
-} tm_vtk_cells;
+} tm_vtk_mesh;
 
 /* An empty grid. TM_ERROR_SYSTEM where memory is out. */
-tm_status tm_vtk_cells_new(tm_vtk_cells *cells, const char *name, tm_error *error);
-void tm_vtk_cells_free(tm_vtk_cells *cells);
+tm_status tm_vtk_mesh_new(tm_vtk_mesh *cells, const char *name, tm_error *error);
+void tm_vtk_mesh_free(tm_vtk_mesh *cells);
 
 /* The points that are added from here on are another piece's. */
-tm_status tm_vtk_begin_piece(tm_vtk_cells *cells, tm_error *error);
+tm_status tm_vtk_begin_piece(tm_vtk_mesh *cells, tm_error *error);
 
 /* Appends points from numbers, three each. TM_ERROR_INPUT where one is not finite. */
-tm_status tm_vtk_add_points(tm_vtk_cells *cells, const tm_numbers *xyz, tm_error *error);
+tm_status tm_vtk_add_points(tm_vtk_mesh *cells, const tm_numbers *xyz, tm_error *error);
 
 /* Appends a node of the cell that is being made: number i of `numbers`, of points first …
  * cells->points - 1, counted from `first`. TM_ERROR_INPUT where it is out of range. Then
  * tm_vtk_end_cell() ends the cell. The same of its faces: a number of nodes, and nodes.
  */
-tm_status tm_vtk_add_node(tm_vtk_cells *cells, const tm_numbers *numbers, size_t i,
+tm_status tm_vtk_add_node(tm_vtk_mesh *cells, const tm_numbers *numbers, size_t i,
                           size_t first, tm_error *error);
-tm_status tm_vtk_end_cell(tm_vtk_cells *cells, uint8_t type, tm_error *error);
-tm_status tm_vtk_add_face(tm_vtk_cells *cells, const tm_numbers *numbers, size_t i,
+tm_status tm_vtk_end_cell(tm_vtk_mesh *cells, uint8_t type, tm_error *error);
+tm_status tm_vtk_add_face(tm_vtk_mesh *cells, const tm_numbers *numbers, size_t i,
                           size_t nodes, size_t first, tm_error *error);
 
 /* The array of that name, a new one where it is new and `is_new`, else NULL. NULL also
  * where memory is out. */
-tm_vtk_data *tm_vtk_data_named(tm_vtk_cells *cells, tm_vtk_data_list *list,
+tm_vtk_data *tm_vtk_data_named(tm_vtk_mesh *cells, tm_vtk_data_list *list,
                                const char *name, bool is_new);
 
 /* Puts the numbers behind the first `done` tuples. TM_ERROR_SYSTEM where memory is out.
@@ -100,7 +100,7 @@ int tm_vtk_dimension(uint8_t type);
  * in the order of shape.h, and counts them. middle[points], which is false before,
  * becomes true for points that are such other nodes and nothing else. TM_ERROR_INPUT
  * where a type of cell is unknown, or has another number of nodes. O(n). */
-tm_status tm_vtk_take_corners(tm_vtk_cells *cells, bool *middle, size_t *higher_order,
+tm_status tm_vtk_take_corners(tm_vtk_mesh *cells, bool *middle, size_t *higher_order,
                               tm_error *error);
 
 /* vtk_names.c ----------------------------------------------------------------------- */
@@ -117,7 +117,7 @@ typedef struct tm_vtk_roles {
 /* Chooses them, by the options or by names that are in use; keep[cells] says which cells
  * count. TM_ERROR_INPUT where an option's name is not there, which the error tells with
  * the names that are, or is there of markers that are no whole numbers. O(n). */
-tm_status tm_vtk_find_roles(const tm_vtk_cells *cells, const bool *keep,
+tm_status tm_vtk_find_roles(const tm_vtk_mesh *cells, const bool *keep,
                             const tm_vtk_read_options *options, tm_vtk_roles *roles,
                             tm_error *error);
 
@@ -126,11 +126,11 @@ bool tm_vtk_is_internal(const char *name);
 
 /* Says which arrays of cell data are what vtu-export measures, but for those that an
  * option names. O(arrays). */
-void tm_vtk_find_measures(tm_vtk_cells *cells, const tm_vtk_read_options *options);
+void tm_vtk_find_measures(tm_vtk_mesh *cells, const tm_vtk_read_options *options);
 
 /* vtk_stream.c: makes the grid a stream, which is empty; after an error it is again. */
-tm_status tm_vtk_cells_to_stream(tm_vtk_cells *cells, tm_stream *stream,
-                                 const tm_vtk_read_options *options,
-                                 tm_vtk_read_report *report, tm_error *error);
+tm_status tm_vtk_mesh_to_stream(tm_vtk_mesh *cells, tm_stream *stream,
+                                const tm_vtk_read_options *options,
+                                tm_vtk_read_report *report, tm_error *error);
 
 #endif

@@ -12,7 +12,7 @@
 /* Which of .cell, .mix and .ele. */
 static tm_content find_content(const tm_vtk_maker *m)
 {
-    const tm_vtk_cells *cells = m->cells;
+    const tm_vtk_mesh *cells = m->cells;
     tm_content content = TM_CONTENT_TETRAHEDRA;
     if (m->volumes == 0)
         return m->others > 0 ? TM_CONTENT_SURFACE : TM_CONTENT_POINTS;
@@ -58,7 +58,7 @@ static void turn(uint32_t *node, size_t k)
 
 static void copy_elements(const tm_vtk_maker *m, uint32_t *to, size_t *start)
 {
-    const tm_vtk_cells *cells = m->cells;
+    const tm_vtk_mesh *cells = m->cells;
     size_t at = 0, e = 0;
     for (size_t c = 0; c < cells->cells; c++) {
         if (tm_vtk_kept(m, c) != 3)
@@ -103,7 +103,7 @@ static void turn_elements(tm_vtk_maker *m, tm_block *mix)
 
 static tm_status make_mixed(tm_vtk_maker *m)
 {
-    const tm_vtk_cells *cells = m->cells;
+    const tm_vtk_mesh *cells = m->cells;
     size_t items = 0;
     for (size_t c = 0; c < cells->cells; c++)
         if (tm_vtk_kept(m, c) == 3)
@@ -165,7 +165,7 @@ static bool add_prism(polyhedra *p, const uint32_t *v, size_t nodes, size_t *k)
     return done;
 }
 
-static bool add_cell(polyhedra *p, const tm_vtk_cells *cells, size_t c)
+static bool add_cell(polyhedra *p, const tm_vtk_mesh *cells, size_t c)
 {
     const uint32_t *v = cells->node + cells->start[c];
     const size_t nodes = cells->start[c + 1] - cells->start[c];
@@ -184,7 +184,7 @@ static bool add_cell(polyhedra *p, const tm_vtk_cells *cells, size_t c)
 
 static tm_status check_polyhedron(const tm_vtk_maker *m, size_t c)
 {
-    const tm_vtk_cells *cells = m->cells;
+    const tm_vtk_mesh *cells = m->cells;
     if (cells->type[c] == TM_VTK_POLYHEDRON &&
         cells->face_start[c] == cells->face_start[c + 1])
         return tm_fail_at(m->error, TM_ERROR_INPUT, cells->name, 0, NULL,
@@ -194,7 +194,7 @@ static tm_status check_polyhedron(const tm_vtk_maker *m, size_t c)
 
 static tm_status make_polyhedra(tm_vtk_maker *m)
 {
-    const tm_vtk_cells *cells = m->cells;
+    const tm_vtk_mesh *cells = m->cells;
     polyhedra p = {0};
     tm_polyhedra_repairs repairs = {0};
     tm_status status = tm_lists_begin(&p.polygons) && tm_lists_begin(&p.cells)

@@ -87,12 +87,12 @@ typedef struct array {
     tm_vtk_data_list *list; /* NULL: it is passed over, but for group_names */
     tm_word name;
     size_t components, tuples;
-    tm_vtk_type type;
+    tm_vtk_number type;
 } array;
 
 static tm_status keep(tm_vtk_file *file, const array *a, const tm_numbers *numbers)
 {
-    tm_vtk_cells *cells = file->cells;
+    tm_vtk_mesh *cells = file->cells;
     tm_text name = {0};
     if (a->list->arrays == ARRAYS_MAX)
         return tm_scan_fail(&file->scan, file->error, "there are more than %d arrays",
@@ -162,8 +162,8 @@ static tm_status take_field(tm_vtk_file *file, tm_vtk_data_list *list, size_t co
 /* "LOOKUP_TABLE name n": four numbers of colour each, passed over. */
 static tm_status take_table(tm_vtk_file *file)
 {
-    static const tm_vtk_type bytes = {TM_VTK_NUMBERS, TM_UINT8};
-    static const tm_vtk_type reals = {TM_VTK_NUMBERS, TM_FLOAT32};
+    static const tm_vtk_number bytes = {TM_VTK_NUMBERS, TM_UINT8};
+    static const tm_vtk_number reals = {TM_VTK_NUMBERS, TM_FLOAT32};
     array a = {.components = 4};
     a.type = file->binary ? bytes : reals;
     a.name = tm_scan_word(&file->scan);
@@ -190,8 +190,8 @@ static tm_status take_scalars(tm_vtk_file *file, array *a)
 
 static tm_status take_colours(tm_vtk_file *file, array *a)
 {
-    static const tm_vtk_type bytes = {TM_VTK_NUMBERS, TM_UINT8};
-    static const tm_vtk_type reals = {TM_VTK_NUMBERS, TM_FLOAT32};
+    static const tm_vtk_number bytes = {TM_VTK_NUMBERS, TM_UINT8};
+    static const tm_vtk_number reals = {TM_VTK_NUMBERS, TM_FLOAT32};
     a->type = file->binary ? bytes : reals;
     const tm_status status =
         tm_vtk_take_count(file, "the number of components", &a->components);

@@ -15,7 +15,7 @@ typedef struct cell_lists {
 
 typedef struct reader {
     tm_vtk_file file;
-    tm_vtk_cells cells;
+    tm_vtk_mesh cells;
     bool grid;       /* else polygons */
     bool has_points; /* POINTS was met */
     bool has_more;   /* something was, behind that */
@@ -37,12 +37,12 @@ tm_status tm_vtk_take_count(tm_vtk_file *file, const char *what, size_t *count)
     return status;
 }
 
-tm_status tm_vtk_take_type(tm_vtk_file *file, tm_vtk_type *type)
+tm_status tm_vtk_take_type(tm_vtk_file *file, tm_vtk_number *type)
 {
     /* a vtkIdType is written as an int; a long has 64 bits, as on Unix */
     static const struct {
         const char *word;
-        tm_vtk_type type;
+        tm_vtk_number type;
     } types[] = {{"bit", {TM_VTK_BITS, TM_UINT8}},
                  {"char", {TM_VTK_NUMBERS, TM_INT8}},
                  {"signed_char", {TM_VTK_NUMBERS, TM_INT8}},
@@ -94,7 +94,7 @@ static tm_status take_bits(tm_vtk_file *file, size_t count, tm_numbers *numbers)
     return TM_OK;
 }
 
-tm_status tm_vtk_take_numbers(tm_vtk_file *file, const tm_vtk_type *type, size_t count,
+tm_status tm_vtk_take_numbers(tm_vtk_file *file, const tm_vtk_number *type, size_t count,
                               const char *what, tm_numbers *numbers)
 {
     tm_scan *scan = &file->scan;
@@ -124,7 +124,7 @@ static tm_status take_points(reader *r)
 {
     enum { COORDINATES = 3 };
     size_t count = 0;
-    tm_vtk_type type = {TM_VTK_NUMBERS, TM_FLOAT32};
+    tm_vtk_number type = {TM_VTK_NUMBERS, TM_FLOAT32};
     tm_numbers xyz = {0};
     if (r->has_points)
         return fail(r, "a second section POINTS");
@@ -154,7 +154,7 @@ static void lists_free(cell_lists *lists)
 static tm_status take_named(reader *r, const char *name, size_t count,
                             tm_numbers *numbers)
 {
-    tm_vtk_type type = {TM_VTK_NUMBERS, TM_INT64};
+    tm_vtk_number type = {TM_VTK_NUMBERS, TM_INT64};
     tm_scan *scan = &r->file.scan;
     tm_scan_seek(scan);
     if (!tm_word_is_like(tm_scan_word(scan), name))
@@ -170,7 +170,7 @@ static tm_status take_named(reader *r, const char *name, size_t count,
 /* "CELLS n size", and the numbers of either form. */
 static tm_status take_lists(reader *r, cell_lists *lists)
 {
-    static const tm_vtk_type integers = {TM_VTK_NUMBERS, TM_INT32};
+    static const tm_vtk_number integers = {TM_VTK_NUMBERS, TM_INT32};
     size_t size = 0;
     tm_scan ahead;
     tm_status status = tm_vtk_take_count(&r->file, "the number of cells", &lists->count);
@@ -193,7 +193,7 @@ static tm_status take_lists(reader *r, cell_lists *lists)
 
 static tm_status take_cell_types(reader *r)
 {
-    static const tm_vtk_type integers = {TM_VTK_NUMBERS, TM_INT32};
+    static const tm_vtk_number integers = {TM_VTK_NUMBERS, TM_INT32};
     size_t count = 0;
     if (r->has_types)
         return fail(r, "a second section CELL_TYPES");
@@ -432,13 +432,13 @@ tm_status tm_vtk_read(tm_stream *stream, const char *bytes, size_t size, const c
     *report = (tm_vtk_read_report){0};
     r.file.cells = &r.cells;
     tm_scan_begin(&r.file.scan, bytes, size, name, '\0');
-    tm_status status = tm_vtk_cells_new(&r.cells, name, error);
+    tm_status status = tm_vtk_mesh_new(&r.cells, name, error);
     if (status == TM_OK)
         status = read_all(&r);
     lists_free(&r.lists);
     tm_numbers_free(&r.types);
     if (status == TM_OK)
-        status = tm_vtk_cells_to_stream(&r.cells, stream, options, report, error);
-    tm_vtk_cells_free(&r.cells);
+        status = tm_vtk_mesh_to_stream(&r.cells, stream, options, report, error);
+    tm_vtk_mesh_free(&r.cells);
     return status;
 }

@@ -12,27 +12,27 @@ typedef enum tm_vtk_kind {
     TM_VTK_STRINGS /* a line each; in binary files with their length before each */
 } tm_vtk_kind;
 
-typedef struct tm_vtk_type {
+typedef struct tm_vtk_number {
     tm_vtk_kind kind;
     tm_number_type number;
-} tm_vtk_type;
+} tm_vtk_number;
 
 typedef struct tm_vtk_file {
     tm_scan scan;
     bool binary; /* big endian, behind the line that says what they are */
-    tm_vtk_cells *cells;
+    tm_vtk_mesh *cells;
     tm_error *error;
 } tm_vtk_file;
 
 /* The next word of the line as a type of VTK. */
-tm_status tm_vtk_take_type(tm_vtk_file *file, tm_vtk_type *type);
+tm_status tm_vtk_take_type(tm_vtk_file *file, tm_vtk_number *type);
 
 /* The next word of the line as a count. */
 tm_status tm_vtk_take_count(tm_vtk_file *file, const char *what, size_t *count);
 
 /* `count` numbers behind the line; bits are bytes then. *numbers must be {0}.
  * TM_ERROR_INPUT before memory is taken where the file is too short. */
-tm_status tm_vtk_take_numbers(tm_vtk_file *file, const tm_vtk_type *type, size_t count,
+tm_status tm_vtk_take_numbers(tm_vtk_file *file, const tm_vtk_number *type, size_t count,
                               const char *what, tm_numbers *numbers);
 
 /* Goes behind the lines that follow METADATA, up to an empty one. */

@@ -7,7 +7,7 @@
 #include "vtk_cells.h"
 
 typedef struct tm_vtk_maker {
-    tm_vtk_cells *cells;
+    tm_vtk_mesh *cells;
     tm_stream *stream;
     tm_vtk_read_report *report;
     tm_error *error;

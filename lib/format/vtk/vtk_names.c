@@ -25,7 +25,7 @@ static const char *const node_marker_names[] = {"marker", "markers", "medit:ref"
                                                 "point_tags", "nodetags"};
 
 typedef struct chooser {
-    const tm_vtk_cells *cells;
+    const tm_vtk_mesh *cells;
     const bool *keep;
     const tm_vtk_data_list *list;
     size_t count;  /* of points or cells */
@@ -145,7 +145,7 @@ static tm_status find_named(const chooser *c, const char *name, bool whole, size
 
 #define CHOOSE(chooser, names) choose(chooser, names, sizeof(names) / sizeof *(names))
 
-tm_status tm_vtk_find_roles(const tm_vtk_cells *cells, const bool *keep,
+tm_status tm_vtk_find_roles(const tm_vtk_mesh *cells, const bool *keep,
                             const tm_vtk_read_options *options, tm_vtk_roles *roles,
                             tm_error *error)
 {
@@ -181,7 +181,7 @@ bool tm_vtk_is_internal(const char *name)
            strcmp(name, "vtkValidPointMask") == 0;
 }
 
-void tm_vtk_find_measures(tm_vtk_cells *cells, const tm_vtk_read_options *options)
+void tm_vtk_find_measures(tm_vtk_mesh *cells, const tm_vtk_read_options *options)
 {
     /* names that others may use, too, are vtu-export's beside one that is its own */
     static const char *const measure[][2] = {{"dihedral_quality", "dihedral_quality"},

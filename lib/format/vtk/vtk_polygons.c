@@ -11,7 +11,7 @@
 
 enum { TRIANGLE = 3, LINE = 2 };
 
-static size_t nodes_of(const tm_vtk_cells *cells, size_t c)
+static size_t nodes_of(const tm_vtk_mesh *cells, size_t c)
 {
     return cells->start[c + 1] - cells->start[c];
 }
@@ -56,7 +56,7 @@ static void set_triangle(const tm_vtk_maker *m, tm_block *face, size_t row, size
 
 static tm_status make_triangles(tm_vtk_maker *m)
 {
-    const tm_vtk_cells *cells = m->cells;
+    const tm_vtk_mesh *cells = m->cells;
     tm_block *face;
     size_t rows = 0, row = 0;
     for (size_t c = 0; c < cells->cells; c++) {
@@ -78,7 +78,7 @@ static tm_status make_triangles(tm_vtk_maker *m)
 
 static tm_status copy_polygons(tm_vtk_maker *m)
 {
-    const tm_vtk_cells *cells = m->cells;
+    const tm_vtk_mesh *cells = m->cells;
     size_t items = 0, row = 0;
     tm_block *facet;
     for (size_t c = 0; c < cells->cells; c++)
@@ -178,7 +178,7 @@ static tm_status make_facets(tm_vtk_maker *m)
 
 static tm_status mark_facets(tm_vtk_maker *m)
 {
-    const tm_vtk_cells *cells = m->cells;
+    const tm_vtk_mesh *cells = m->cells;
     tm_block *facet = tm_stream_find(m->stream, ".facet");
     tm_polygon_table table = {0};
     uint32_t first;
@@ -218,7 +218,7 @@ tm_status tm_vtk_make_polygons(tm_vtk_maker *m)
 
 tm_status tm_vtk_make_lines(tm_vtk_maker *m)
 {
-    const tm_vtk_cells *cells = m->cells;
+    const tm_vtk_mesh *cells = m->cells;
     tm_block *edge;
     size_t rows = 0, row = 0;
     for (size_t c = 0; c < cells->cells; c++)

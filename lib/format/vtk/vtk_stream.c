@@ -14,7 +14,7 @@ enum { COORDINATES = 3, GHOST = 1 /* vtkDataSetAttributes::DUPLICATECELL */ };
 
 static void keep_cells(tm_vtk_maker *m)
 {
-    tm_vtk_cells *cells = m->cells;
+    tm_vtk_mesh *cells = m->cells;
     const tm_vtk_data *ghost =
         tm_vtk_data_named(cells, &cells->cell_data, "vtkGhostType", false);
     const bool has_ghosts = ghost && ghost->components == 1 && !ghost->lacks;
@@ -34,7 +34,7 @@ static void keep_cells(tm_vtk_maker *m)
 /* What is in one place in two pieces is the same point: number[v] is the first. */
 static tm_status weld_pieces(tm_vtk_maker *m)
 {
-    tm_vtk_cells *cells = m->cells;
+    tm_vtk_mesh *cells = m->cells;
     tm_point_table table = {0};
     bool done = true;
     for (size_t v = 0; v < cells->points; v++)
@@ -82,7 +82,7 @@ static void join_middles(const tm_vtk_maker *m, bool *middle)
 
 static tm_status find_nodes(tm_vtk_maker *m)
 {
-    tm_vtk_cells *cells = m->cells;
+    tm_vtk_mesh *cells = m->cells;
     bool *middle = calloc(cells->points + 1, sizeof *middle);
     m->number = tm_new(cells->points, sizeof *m->number);
     m->keep = tm_new(cells->cells, sizeof *m->keep);
@@ -103,7 +103,7 @@ static tm_status find_nodes(tm_vtk_maker *m)
 /* All lists name nodes. */
 static void renumber(tm_vtk_maker *m)
 {
-    tm_vtk_cells *cells = m->cells;
+    tm_vtk_mesh *cells = m->cells;
     for (size_t i = 0; i < cells->start[cells->cells]; i++)
         cells->node[i] = m->number[cells->node[i]];
     for (size_t i = 0; i < cells->face_start[cells->cells];)
@@ -113,7 +113,7 @@ static void renumber(tm_vtk_maker *m)
 
 static tm_status make_nodes(tm_vtk_maker *m)
 {
-    const tm_vtk_cells *cells = m->cells;
+    const tm_vtk_mesh *cells = m->cells;
     tm_block *node = tm_stream_add(m->stream, ".node");
     if (!node)
         return tm_fail_memory(m->error);
@@ -173,7 +173,7 @@ static tm_status make_groups(tm_vtk_maker *m)
 /* What the cells make; the names of arrays are kept for the report. */
 static void note_roles(tm_vtk_maker *m)
 {
-    const tm_vtk_cells *cells = m->cells;
+    const tm_vtk_mesh *cells = m->cells;
     tm_vtk_read_report *report = m->report;
     tm_text_append(&report->names, cells->names.byte ? cells->names.byte : "",
                    cells->names.size);
@@ -209,9 +209,9 @@ static tm_status make_all(tm_vtk_maker *m, const tm_vtk_read_options *options)
     return status;
 }
 
-tm_status tm_vtk_cells_to_stream(tm_vtk_cells *cells, tm_stream *stream,
-                                 const tm_vtk_read_options *options,
-                                 tm_vtk_read_report *report, tm_error *error)
+tm_status tm_vtk_mesh_to_stream(tm_vtk_mesh *cells, tm_stream *stream,
+                                const tm_vtk_read_options *options,
+                                tm_vtk_read_report *report, tm_error *error)
 {
     tm_vtk_maker m = {.cells = cells, .stream = stream, .report = report, .error = error};
     tm_status status = make_all(&m, options);

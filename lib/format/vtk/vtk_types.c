@@ -73,7 +73,7 @@ int tm_vtk_dimension(uint8_t type)
     return t ? t->dimension : -1;
 }
 
-static tm_status check(const tm_vtk_cells *cells, size_t c, tm_error *error)
+static tm_status check(const tm_vtk_mesh *cells, size_t c, tm_error *error)
 {
     static const uint8_t least_of_dimension[] = {1, 2, 3, 0};
     const cell_type *t = type_of(cells->type[c]);
@@ -111,7 +111,7 @@ static void reorder(uint8_t type, uint32_t *node)
 }
 
 /* Those that are the middle of a cell, but the corner of another one, are none. */
-static void take_back_corners(const tm_vtk_cells *cells, bool *middle)
+static void take_back_corners(const tm_vtk_mesh *cells, bool *middle)
 {
     for (size_t i = 0; i < cells->start[cells->cells]; i++)
         middle[cells->node[i]] = false;
@@ -124,7 +124,7 @@ static void take_back_corners(const tm_vtk_cells *cells, bool *middle)
         }
 }
 
-tm_status tm_vtk_take_corners(tm_vtk_cells *cells, bool *middle, size_t *higher_order,
+tm_status tm_vtk_take_corners(tm_vtk_mesh *cells, bool *middle, size_t *higher_order,
                               tm_error *error)
 {
     size_t to = 0, begin = 0;

@@ -10,7 +10,7 @@ enum { COORDINATES = 3, ARRAYS_MAX = 1000 /* of data: as attributes of a row */ 
 
 typedef struct reader {
     tm_vtu_file file;
-    tm_vtk_cells cells;
+    tm_vtk_mesh cells;
     const tm_vtk_read_options *options;
     tm_error *error;
     size_t piece;
@@ -315,7 +315,7 @@ static tm_status read_groups(reader *r)
 
 static tm_status read_piece(reader *r)
 {
-    tm_vtk_cells *cells = &r->cells;
+    tm_vtk_mesh *cells = &r->cells;
     r->points = r->file.count[r->piece][0];
     r->cells_of_piece = r->file.count[r->piece][1];
     r->first_point = cells->points;
@@ -354,14 +354,14 @@ tm_status tm_vtu_read(tm_stream *stream, const char *bytes, size_t size, const c
 {
     reader r = {.options = options, .error = error};
     *report = (tm_vtk_read_report){0};
-    tm_status status = tm_vtk_cells_new(&r.cells, name, error);
+    tm_status status = tm_vtk_mesh_new(&r.cells, name, error);
     if (status == TM_OK)
         status = tm_vtu_file_read(&r.file, bytes, size, name, error);
     if (status == TM_OK)
         status = read_all(&r);
     tm_vtu_file_free(&r.file);
     if (status == TM_OK)
-        status = tm_vtk_cells_to_stream(&r.cells, stream, options, report, error);
-    tm_vtk_cells_free(&r.cells);
+        status = tm_vtk_mesh_to_stream(&r.cells, stream, options, report, error);
+    tm_vtk_mesh_free(&r.cells);
     return status;
 }
