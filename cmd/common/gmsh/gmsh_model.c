@@ -68,7 +68,7 @@ static bool add_record(gmsh_model *model, const gmsh_record *record)
     case GMSH_NODES:
         model->nodes = record->count;
         model->node_tag = (const size_t *)(record + 1);
-        model->xyz = (const double *)(model->node_tag + record->count);
+        model->xyz = (const void *)(model->node_tag + record->count);
         return true;
     case GMSH_RUN:
         return add_run(model, record);

@@ -197,12 +197,12 @@ static bool find_group(const gmsh_plan *plan, int d, const char *name, size_t si
 static tm_status split_name(const gmsh_plan *plan, int d, const char *name,
                             gmsh_value *value, tm_error *error)
 {
-    static const char and[] = GMSH_AND;
-    const size_t length = sizeof and-1;
+    static const char joint[] = GMSH_AND;
+    const size_t length = sizeof joint - 1;
     size_t room = 0;
     for (const char *end; name; name = *end ? end + length : NULL) {
         int32_t group;
-        end = strstr(name, and);
+        end = strstr(name, joint);
         if (!end)
             end = name + strlen(name);
         int32_t *moved =

@@ -208,21 +208,20 @@ static tm_status make_triangles(maker *make)
 }
 
 /* The faces as the facets of a view of the cells. */
-static tm_status view_faces(const maker *make, tm_mesh_view *view, size_t *start,
-                            uint32_t *node)
+static tm_mesh_view view_faces(const maker *make, size_t *start, uint32_t *node)
 {
     const gmsh_elements *faces = &make->mesh.of[FACES];
-    *view = tm_mesh_view_of_mixed(make->stream);
+    tm_mesh_view view = tm_mesh_view_of_mixed(make->stream);
     start[0] = 0;
     for (size_t f = 0; f < faces->elements; f++) {
         start[f + 1] = start[f] + faces->count[f];
         memcpy(node + start[f], faces->node + f * faces->width,
                faces->count[f] * sizeof *node);
     }
-    view->facets = faces->elements;
-    view->facet_start = start;
-    view->facet_node = node;
-    return TM_OK;
+    view.facets = faces->elements;
+    view.facet_start = start;
+    view.facet_node = node;
+    return view;
 }
 
 /* The facet on half face `half`: outward for the lesser of the two elements. */
@@ -271,13 +270,13 @@ static tm_status make_facets_of(maker *make, const tm_mesh_view *view)
 static tm_status make_facets(maker *make)
 {
     const gmsh_elements *faces = &make->mesh.of[FACES];
-    tm_mesh_view view;
     size_t *start = tm_new(faces->elements + 1, sizeof *start);
     uint32_t *node = tm_new(faces->elements * faces->width, sizeof *node);
-    tm_status status = start && node ? view_faces(make, &view, start, node)
-                                     : tm_fail_memory(make->error);
-    if (status == TM_OK)
+    tm_status status = tm_fail_memory(make->error);
+    if (start && node) {
+        const tm_mesh_view view = view_faces(make, start, node);
         status = make_facets_of(make, &view);
+    }
     free(start);
     free(node);
     return status;
