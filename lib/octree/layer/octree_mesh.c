@@ -160,12 +160,13 @@ static tm_status measure_boundary(tm_octree_mesh *m, tm_error *error)
     return TM_OK;
 }
 
-/* The same of the faces beyond which there is nothing: each edge has two of them. */
+/* The same, where walls meet, of the faces beyond which there is nothing: each edge has
+ * two of them. */
 static tm_status measure_outside(tm_octree_mesh *m, tm_error *error)
 {
     const tm_interior_boundary *boundary = &m->boundary;
-    const uint32_t *across = m->assembly.layer_across;
     size_t half_edges = 0, faces = 0, nodes = 0;
+    m->report.outer_components = 0;
     uint32_t *parent = tm_new(boundary->nodes, sizeof *parent);
     bool *met = calloc(boundary->nodes + 1, sizeof *met);
     const bool ok = parent && met;
@@ -173,7 +174,7 @@ static tm_status measure_outside(tm_octree_mesh *m, tm_error *error)
         parent[s] = (uint32_t)s;
     for (size_t f = 0; ok && f < boundary->faces; f++) {
         const unsigned k = tm_boundary_face_corners(boundary, f);
-        if (across && across[f] != TM_NONE)
+        if (boundary->region[f][1] != 0)
             continue;
         half_edges += k;
         faces++;
@@ -205,6 +206,10 @@ static tm_status find_boundary_once(tm_octree_mesh *m, const tm_octree *octree,
         tm_interior_boundary_of_parts(&m->boundary, octree, m->part, m->parts, error);
     if (status == TM_OK)
         status = measure_boundary(m, error);
+    m->report.outer_components = m->report.components;
+    m->report.outer_euler = m->report.euler;
+    if (status == TM_OK && m->boundary.region)
+        status = measure_outside(m, error);
     if (status == TM_OK)
         status = find_closest(m, surface, error);
     return status;
@@ -389,8 +394,6 @@ static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *su
     if (status == TM_OK)
         status =
             tm_assemble(&m->assembly, octree, m->part, m->parts, &m->boundary, error);
-    if (status == TM_OK)
-        status = measure_outside(m, error);
     tm_progress_stage(progress, "projecting the layer");
     if (status == TM_OK)
         status = tm_project_layer(&m->assembly, &m->boundary, &m->feature, surface, m->at,

@@ -28,7 +28,7 @@ typedef struct tm_octree_mesh_report {
     size_t regions_lost; /* shells inside of others that have none, or around such */
     size_t components;   /* of the boundary, with what is between regions */
     int64_t euler;
-    size_t outer_components; /* of the boundary, without */
+    size_t outer_components; /* where regions touch, without that */
     int64_t outer_euler;
 } tm_octree_mesh_report;
 
