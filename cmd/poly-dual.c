@@ -100,8 +100,7 @@ int main(int argc, char **argv)
                         "                      the surface is smooth where it bends by "
                         "less: it may\n"
                         "                      change there; 0, the default, keeps it\n"
-                        "      --convex        move points until cells are convex: takes "
-                        "long\n",
+                        "      --convex        move points until cells are convex\n",
                 .options = options,
                 .letters = FILTER_LETTERS};
     tm_dual_options o = {0};

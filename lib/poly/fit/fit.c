@@ -211,15 +211,16 @@ static bool move_node(fitter *w, uint32_t v, int round)
 }
 
 /* Rounds over the nodes at what is bad, then over those around them, too, until as many
- * as there are steps have mended nothing. */
+ * as there are steps have mended little. */
 static bool fit(fitter *w, tm_fit_report *r)
 {
+    const size_t few = 20; /* less of what is bad by a part of so much is little */
     size_t least = SIZE_MAX;
     bool done = true;
     for (int i = 0, idle = 0; i < w->o->rounds && idle < STEPS && done; i++) {
         const size_t bad = find_bad(w, i >= 2);
-        idle = bad < least ? 0 : idle + 1;
-        least = bad < least ? bad : least;
+        idle = bad < least - least / few ? 0 : idle + 1;
+        least = idle == 0 ? bad : least;
         if (bad == 0)
             break;
         done = i < STEPS || widen(w);
