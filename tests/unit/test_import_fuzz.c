@@ -110,7 +110,7 @@ static tm_status read_grid(grid_reader *read, const char *bytes, size_t size)
 static void change(char *bytes, size_t size)
 {
     static const char likely[] = "0123456789-.eE \n<>\"/=(){};ACgx";
-    for (unsigned n = 1 + random_below(CHANGES_MAX); n > 0; n--)
+    for (unsigned n = 1 + random_below(CHANGES_MAX); n > 0 && size > 0; n--)
         bytes[random_below((unsigned)size)] =
             random_below(4) ? likely[random_below(sizeof likely - 1)]
                             : (char)random_below(256);

@@ -65,8 +65,9 @@ static void say(const filter *f, const tm_vtk_read_report *r)
     if (r->measures.size > 0)
         filter_verbose(f, "%s: measures of vtu-export, left out: %s",
                        filter_input_name(f), r->measures.byte);
-    filter_verbose(f, "%s: %zu polygons were there before and are joined",
-                   filter_input_name(f), r->polygons_joined);
+    if (r->polygons_joined > 0)
+        filter_verbose(f, "%s: %zu polygons were there before and are joined",
+                       filter_input_name(f), r->polygons_joined);
 }
 
 static tm_status read_grid(const filter *f, tm_stream *stream, const tm_text *bytes,
