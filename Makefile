@@ -35,7 +35,7 @@ CFLAGS = -O2 -g
 CXXFLAGS = -O2 -g
 werror = $(if $(filter-out 0,$(WERROR)),-Werror)
 WARNINGS = -Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes $(werror)
-LDLIBS = -lgmp -lz -lm -lpthread
+LDLIBS = -lgmp -lz -lm -lpthread -Wl,--as-needed -lexpat -Wl,--no-as-needed
 
 # p4est, and MPI, which it needs; for another one than Open MPI set both of its flags. A
 # program that does not use p4est is not linked with it. Where it is not installed, what
@@ -117,7 +117,7 @@ solver := $(BUILD)/solve/poisson
 benchers := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/*.c))
 shapes := $(BUILD)/bench/shapes
 page := lib/view/page/page.html lib/view/page/page.css $(addprefix lib/view/page/,\
-	data.js facets.js colour.js cut.js section.js draw.js controls.js pick.js \
+	data.js facets.js colour.js cut.js section.js lines.js draw.js controls.js pick.js \
 	histogram.js state.js panel.js keys.js main.js)
 generated := $(BUILD)/generated/powers.h $(BUILD)/generated/transitions.h \
 	$(if $(wildcard $(THREE)),$(BUILD)/generated/view_page.h)

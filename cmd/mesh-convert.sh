@@ -24,9 +24,9 @@ suffix tells, by an importer and an exporter of termesh.
   -V, --version  print the version
 
 in:  .tm; .off .stl .ply .obj .mdl .poly .smesh; .node .ele; .m3d .mvm; .oct; .visf;
-     .vtu; .vtk; .msh .mesh .inp .bdf .nas .unv .su2 .med .cgns .ply2; a folder polyMesh
+     .vtu; .vtk; .msh .mesh .bdf .nas .unv .med .cgns .ply2; a folder polyMesh
 out: .tm; .off; .stl; .ply; .obj; .node .ele; .m3d; .mvm; .oct; .visf; .vtu; .vtk;
-     .html; .msh .mesh .inp .bdf .nas .unv .su2 .med .cgns; a folder polyMesh
+     .html; .msh .mesh .inp .bdf .nas .unv .su2 .key .med .cgns; a folder polyMesh
 END
 }
 
@@ -50,8 +50,8 @@ importer_of() {
     visf) echo visf-import ;;
     vtu) echo vtu-import ;;
     vtk) echo vtk-import ;;
-    polymesh | foam) echo openfoam-import ;;
-    msh | mesh | meshb | inp | bdf | nas | unv | su2 | med | cgns | ply2) echo gmsh-import ;;
+    polymesh) echo openfoam-import ;;
+    msh | mesh | meshb | bdf | nas | unv | med | cgns | ply2) echo gmsh-import ;;
     esac
 }
 
@@ -62,7 +62,7 @@ exporter_of() {
     node | ele) echo tetgen-export ;;
     html) echo mesh-view ;;
     polymesh) echo openfoam-export ;;
-    msh | mesh | inp | bdf | nas | unv | su2 | med | cgns) echo gmsh-export ;;
+    msh | mesh | inp | bdf | nas | unv | su2 | key | med | cgns) echo gmsh-export ;;
     esac
 }
 

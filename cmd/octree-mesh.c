@@ -304,8 +304,8 @@ static void note_losses(const filter *f, const tm_surface *s,
     if (r->off_surface)
         filter_note(f,
                     "%zu boundary nodes are not on the surface yet: there they would "
-                    "invert an element (octree-repair takes them there)",
-                    r->off_surface);
+                    "invert an element (octree-repair takes %s there)",
+                    r->off_surface, s->walls ? "some of them" : "them");
     if (r->invalid)
         filter_note(f, "%zu elements are inverted", r->invalid);
 }
@@ -376,8 +376,8 @@ static void write_json(filter *f, const report *r)
                                          ROW("lost_edges", mesh.curves_lost),
                                          ROW("regions", mesh.regions),
                                          ROW("lost_regions", mesh.regions_lost),
-                                         ROW("components", mesh.components),
-                                         ROW("euler", mesh.euler),
+                                         ROW("components", mesh.outer_components),
+                                         ROW("euler", mesh.outer_euler),
                                          {0}};
     filter_write_json(f, rows, r);
 }

@@ -71,7 +71,7 @@ typedef struct {
     const char *trace;
     const char *octants; /* the file, and the rows that it lists */
     uint32_t *listed;
-    bool has_surface;
+    bool has_surface, has_regions; /* nodes between regions have places, too */
     tm_surface boundary;
 } program;
 
@@ -323,11 +323,22 @@ static void note_left(const program *p, const remainder_list *left,
         score->bad, score->invalid, score->worst, score->off_surface);
 }
 
+/* What regions elements are in, where nodes between these have places. */
+static tm_mixed_regions regions_of(const program *p, const tm_repair_state *state,
+                                   const tm_stream *stream)
+{
+    const tm_block *mix = tm_stream_find(stream, ".mix");
+    if (!p->has_regions || state->remade)
+        return (tm_mixed_regions){0};
+    return (tm_mixed_regions){mix->attribute, mix->attributes, state->origin};
+}
+
 static mesh_state state_of(const program *p, const tm_repair_state *state,
                            const tm_stream *stream, const tm_repair_score *score)
 {
     const size_t octants =
         state->remade ? state->octree.leaves : mesh_rows(stream, ".octant");
+    const tm_mixed_regions regions = regions_of(p, state, stream);
     mesh_state m = {
         .score = *score, .elements = state->mesh.elements, .octants = octants};
     tm_error error;
@@ -338,8 +349,8 @@ static mesh_state state_of(const program *p, const tm_repair_state *state,
         return m;
     filter_stage(&p->f, "measuring");
     if (tm_repair_shape_measure(&m.shape, state, &p->boundary, &error) != TM_OK ||
-        tm_repair_shape_compare(&m.apart, state, &p->boundary, p->surface.feature_angle,
-                                &error) != TM_OK)
+        tm_repair_shape_compare(&m.apart, state, &regions, &p->boundary,
+                                p->surface.feature_angle, &error) != TM_OK)
         filter_fail(&p->f, &error);
     for (int to = 0; to < 2; to++) /* there may be no sharp edge to measure from or to */
         if (!isfinite(m.apart.curve[to].most))
@@ -466,6 +477,7 @@ static bool run(program *p, tm_stream *stream)
     if (tm_repair_is_needed(&state, stream, p->repair.threshold) || p->trace ||
         p->octants || measured)
         prepare(p, stream, &state, &notes);
+    p->has_regions = notes.regions;
     repair(p, stream, &state, &report, &before, &after);
     remainder_list left = find_left(p, &state);
     const bool done = is_done(&after) && !early_end_by_signal();

@@ -4,7 +4,6 @@
 #include "common/input/tet_input.h"
 
 #include "../lib/poly/dual/dual.h"
-#include "../lib/poly/fit/fit.h"
 
 #include <stdlib.h>
 
@@ -60,39 +59,6 @@ static void convert(filter *f, tm_stream *stream, tm_dual_options *o, tm_dual_re
     put_blocks(f, stream, &made);
 }
 
-/* Whether a facet stays: on the boundary, between regions, or with a marker. */
-static bool stays(const tm_poly_arrays *mesh, const tm_block *facet, size_t f)
-{
-    const uint32_t *side = mesh->side[f];
-    const size_t k = mesh->attributes; /* the first one counts tetrahedra */
-    return side[1] == TM_NONE || (facet->marker && facet->marker[f] != 0) ||
-           (k > 1 &&
-            mesh->attribute[k * side[0] + 1] != mesh->attribute[k * side[1] + 1]);
-}
-
-/* Moves points inside until nothing is left that checkMesh minds, or little. */
-static void fit(filter *f, tm_stream *stream, tm_dual_report *r)
-{
-    tm_error error;
-    tm_fit_report report;
-    const tm_poly_arrays mesh = tm_poly_arrays_of(stream);
-    const tm_block *facet = tm_stream_find(stream, ".facet");
-    bool *fixed = calloc(mesh.nodes + 1, sizeof *fixed);
-    if (!fixed)
-        filter_fail_memory(f);
-    for (size_t i = 0; i < mesh.facets; i++)
-        for (size_t k = mesh.facet_start[i]; k < mesh.facet_start[i + 1]; k++)
-            fixed[mesh.facet_node[k]] |= stays(&mesh, facet, i);
-    filter_stage(f, "fitting");
-    double(*xyz)[3] = (double(*)[3])tm_stream_find(stream, ".node")->real;
-    if (tm_polyhedra_fit(&mesh, xyz, fixed, &report, &error) != TM_OK)
-        filter_fail(f, &error);
-    free(fixed);
-    r->wrong_pyramids = report.after[TM_FIT_PYRAMID];
-    r->concave = report.after[TM_FIT_CONCAVE];
-    r->bad_facets = tm_fit_faults_left(&report) - r->concave;
-}
-
 static void write_json(filter *f, const tm_dual_report *r)
 {
 #define ROW(key, member) TM_REPORT_ROW(key, NULL, NULL, tm_dual_report, member)
@@ -134,8 +100,7 @@ int main(int argc, char **argv)
                         "                      the surface is smooth where it bends by "
                         "less: it may\n"
                         "                      change there; 0, the default, keeps it\n"
-                        "      --convex        move points until cells are convex: takes "
-                        "long\n",
+                        "      --convex        move points until cells are convex\n",
                 .options = options,
                 .letters = FILTER_LETTERS};
     tm_dual_options o = {0};
@@ -154,8 +119,6 @@ int main(int argc, char **argv)
 
     tm_dual_report r;
     convert(&f, &stream, &o, &r);
-    if (o.convex)
-        fit(&f, &stream, &r);
     note(&f, &r);
     drop_unknown_blocks(&f, &stream, "the elements are polyhedra now");
     char summary[256];

@@ -48,18 +48,62 @@ static void number_switch(char *to, char letter, double value)
     *tm_write_double(to, value) = '\0';
 }
 
-/* Switches under which TetGen would not read or write what is handed to it and back. */
+/* The same without an exponent, which TetGen does not read in a ratio. */
+static void ratio_switch(char *to, double value)
+{
+    double read = 0;
+    for (int decimals = 0; decimals < DBL_DIG + 2 && read != value; decimals++) {
+        snprintf(to, TETGEN_SWITCH, "-q%.*f", decimals, value);
+        tm_read_double(to + 2, to + strlen(to), &read);
+    }
+}
+
+/* What TetGen 1.5 has switches for: those that change the mesh, each with what of a
+ * number it reads behind it; those that need files that it is not given, or that write
+ * others than are read; those that change nothing here. */
+static const struct {
+    char letter;
+    const char *number;
+} taken[] = {{'A', ""},
+             {'a', "0123456789.eE+-"},
+             {'c', ""},
+             {'C', ""},
+             {'D', "0123456789"},
+             {'e', ""},
+             {'f', ""},
+             {'J', ""},
+             {'M', "0123456789/"},
+             {'O', "0123456789/"},
+             {'q', "0123456789./"},
+             {'S', "0123456789"},
+             {'T', "0123456789.eE+-"},
+             {'V', ""},
+             {'Y', "0123456789/"}};
+static const char refused[] = "dhiImNEFloRrtw", idle[] = "BgGkKnpQvxXz";
+
+/* Behind the switch that a text begins with; exits where that is none that is taken. */
+static const char *skip_switch(const char *at)
+{
+    for (size_t i = 0; i < sizeof taken / sizeof *taken; i++)
+        if (*at == taken[i].letter)
+            return at + 1 + strspn(at + 1, taken[i].number);
+    if (strchr(refused, *at))
+        filter_usage_error(&f, "--switches: '%c' is not possible here (nor any of %s)",
+                           *at, refused);
+    if (strchr(idle, *at))
+        filter_usage_error(&f, "--switches: '%c' would do nothing here (nor any of %s)",
+                           *at, idle);
+    filter_usage_error(&f, "--switches: '%c' is no switch of TetGen here", *at);
+}
+
 static void take_switches(tetgen_request *r, tm_text *more, const char *switches)
 {
-    static const char refused[] = "hrINEFo";
     if (*switches == '-')
         switches++;
-    const char *wrong = strpbrk(switches, refused);
-    if (wrong)
-        filter_usage_error(&f, "--switches: '%c' is not possible here (nor any of %s)",
-                           *wrong, refused);
     if (!*switches)
         filter_usage_error(&f, "--switches: there are none");
+    for (const char *at = switches; *at;)
+        at = skip_switch(at);
     tm_text_string(more, "-");
     tm_text_string(more, switches);
     r->more = more->byte;
@@ -74,8 +118,8 @@ static void read_options(tetgen_request *r, tm_text *more)
         case 'q':
             strcpy(r->quality, "-q");
             if (optarg)
-                number_switch(r->quality, 'q',
-                              filter_number(&f, "-q", optarg, ratio_min, ratio_max));
+                ratio_switch(r->quality,
+                             filter_number(&f, "-q", optarg, ratio_min, ratio_max));
             break;
         case 'a':
             number_switch(r->volume, 'a',

@@ -4,7 +4,8 @@
 #ifndef TERMESH_H
 #define TERMESH_H
 
-/* base: errors, hashes, threads, progress */
+/* base: errors, arrays, hashes, threads, progress */
+#include "base/array.h"
 #include "base/error.h"
 #include "base/extern_c.h"
 #include "base/hash.h"
@@ -45,14 +46,18 @@
 /* mesh: views of flat arrays */
 #include "mesh/cell_faces.h"
 #include "mesh/edge_map.h"
+#include "mesh/face_table.h"
 #include "mesh/mesh_view.h"
+#include "mesh/mixed_boundary.h"
 #include "mesh/mixed_mesh.h"
 #include "mesh/poly_arrays.h"
+#include "mesh/polyhedra.h"
 
 /* surface: triangulated surfaces */
 #include "surface/polygon_surface.h"
 #include "surface/surface.h"
 #include "surface/surface_defects.h"
+#include "surface/mend/mend.h"
 #include "surface/measure/surface_curvature.h"
 #include "surface/measure/surface_distance.h"
 
@@ -60,6 +65,7 @@
 #include "examine/element_examine.h"
 #include "examine/examination.h"
 #include "examine/jens_statistics.h"
+#include "examine/mixed_volume.h"
 #include "examine/poly/poly_boundary.h"
 #include "examine/poly/poly_examine.h"
 #include "examine/poly/poly_finite_volume.h"
@@ -69,11 +75,13 @@
 /* format: files of other programs */
 #include "format/mesh_format.h"
 #include "format/oct.h"
+#include "format/openfoam/openfoam.h"
 #include "format/surface/surface_format.h"
 #include "format/surface/surface_write.h"
 #include "format/tetgen.h"
 #include "format/visf.h"
 #include "format/vtk/vtk.h"
+#include "format/vtk/vtk_read.h"
 
 /* optimise: node positions */
 #include "optimise/optimise.h"

@@ -4,7 +4,7 @@
 #include "../common/input/mesh_input.h"
 #include "../common/app/output_files.h"
 
-#include "../../lib/format/mesh_format.h"
+#include "../../lib/format/openfoam/openfoam.h"
 #include "../../lib/stream/coordinates.h"
 
 #include <dirent.h>
@@ -119,22 +119,48 @@ static bool say(const filter *f, const char *check, const finding *found, size_t
     return any;
 }
 
-static const char *help_for(tm_content content)
+/* Whether the last line of the history that is of a filter which makes polyhedra is of
+ * this one. */
+static bool is_made_by(const tm_stream *stream, const char *name)
+{
+    static const char *const makers[] = {"# polylla3d ", "# poly-dual ",
+                                         "# octree-mesh "};
+    const char *last = "";
+    const char *line = stream->history.byte ? stream->history.byte : "";
+    for (; *line; line += strcspn(line, "\n") + 1)
+        for (size_t i = 0; i < sizeof makers / sizeof *makers; i++)
+            if (strncmp(line, makers[i], strlen(makers[i])) == 0)
+                last = line;
+    return strncmp(last, name, strlen(name)) == 0;
+}
+
+/* What makes a better mesh of what this one was made of. */
+static const char *help_for(const tm_stream *stream, tm_content content)
 {
     switch (content) {
     case TM_CONTENT_TETRAHEDRA:
-        return "lepp-improve, or poly-dual, which makes polyhedra of them";
+        return "lepp-improve, or poly-dual --convex, which makes polyhedra of them";
     case TM_CONTENT_MIXED:
-        return "octree-mesh --polyhedra";
+        return tm_stream_find(stream, ".octant")
+                   ? "polylla3d, which makes a polyhedron of each octant"
+                   : "octree-mesh --polyhedra of its surface (off-export)";
     default:
-        return "of the tetrahedra polylla3d --star=centroid, or poly-dual";
+        break;
     }
+    if (is_made_by(stream, "# octree-mesh "))
+        return "octree-mesh --polyhedra with another -s";
+    if (is_made_by(stream, "# poly-dual "))
+        return "poly-dual --feature-angle 30 --convex, or lepp-improve before it";
+    if (is_made_by(stream, "# polylla3d "))
+        return "of what it was joined from polylla3d --star=centroid, or poly-dual "
+               "--convex";
+    return "octree-mesh --polyhedra of its surface (off-export)";
 }
 
 /* Whether checkMesh would take the mesh, and what may help; with -v also what it looks at
  * with -allGeometry only. */
 static void say_what_fails(const filter *f, const tm_poly_finite_volume *m,
-                           tm_content content)
+                           const char *help)
 {
     const finding always[] = {
         {m->wrong_pyramids, "pyramids of a face and a cell's centroid without volume",
@@ -163,7 +189,7 @@ static void say_what_fails(const filter *f, const tm_poly_finite_volume *m,
         fails |= m->concave + faces > 0;
     }
     if (fails)
-        filter_note(f, "what may help: %s", help_for(content));
+        filter_note(f, "what may help: %s", help);
 }
 
 /* Not where that is not asked for, or coordinates are too large or too small. */
@@ -205,7 +231,7 @@ int main(int argc, char **argv)
     mesh_leave_out(&f, &stream);
     write_folder(&f, folder, file, &counts);
     if (wanted)
-        say_what_fails(&f, &measures, content);
+        say_what_fails(&f, &measures, help_for(&stream, content));
     write_json(&f, &counts);
     for (int i = 0; i < TM_OPENFOAM_FILES; i++)
         tm_text_free(&file[i]);

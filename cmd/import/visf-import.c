@@ -7,7 +7,7 @@
 static tm_status read_visf(const filter *f, tm_stream *stream, const tm_text *bytes,
                            tm_error *error)
 {
-    tm_visf_repairs repairs;
+    tm_polyhedra_repairs repairs;
     const char *name = filter_input_name(f);
     const tm_status status =
         tm_visf_read(stream, bytes->byte, bytes->size, name, &repairs, error);

@@ -3,9 +3,13 @@
 #ifndef TM_BASE_ARRAY_H
 #define TM_BASE_ARRAY_H
 
+#include "extern_c.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 /* Makes room for `needed` items of `size` bytes in `array`, which has room for
  * *capacity. Returns the array, moved if it had to grow (by half at least, so that
@@ -33,5 +37,7 @@ int tm_compare_reals(const void *a, const void *b);
 
 /* malloc(count * size) with the product checked; never NULL for count 0. */
 void *tm_new(size_t count, size_t size);
+
+TM_EXTERN_C_END
 
 #endif

@@ -3,8 +3,12 @@
 #ifndef TM_EXAMINE_MIXED_VOLUME_H
 #define TM_EXAMINE_MIXED_VOLUME_H
 
+#include "../base/extern_c.h"
+
 #include <stddef.h>
 #include <stdint.h>
+
+TM_EXTERN_C_BEGIN
 
 /* The signed volume of an element of k nodes (4, 5, 6 or 8) whose quadrilaterals are
  * bilinear: the integral of the Jacobian of the trilinear hexahedron, and of what wedge
@@ -24,5 +28,7 @@ typedef struct tm_mixed_corners {
 
 tm_mixed_corners tm_mixed_corners_of(const double (*xyz)[3], const uint32_t *node,
                                      size_t k);
+
+TM_EXTERN_C_END
 
 #endif

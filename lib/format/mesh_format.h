@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The formats of meshes that need no header of their own (see also oct.h, tetgen.h,
- * visf.h and vtk/vtk.h). A writer appends the file to *text; `threads` format or
- * compress, and the bytes are the same for any number of them. */
+ * visf.h, openfoam/openfoam.h and vtk/vtk.h). A writer appends the file to *text;
+ * `threads` format or compress, and the bytes are the same for any number of them. */
 #ifndef TM_FORMAT_MESH_FORMAT_H
 #define TM_FORMAT_MESH_FORMAT_H
 
 #include "../base/extern_c.h"
-#include "../examine/poly/poly_finite_volume.h"
 #include "../text/text.h"
 #include "../stream/stream.h"
 
@@ -80,39 +79,6 @@ tm_status tm_m3d_write(tm_text *text, const tm_stream *stream, unsigned threads,
                        tm_error *error);
 tm_status tm_mvm_write(tm_text *text, const tm_stream *stream, unsigned threads,
                        tm_error *error);
-
-/* OpenFOAM ------------------------------------------------------------------------- */
-
-/* OpenFOAM's polyMesh: text files (OpenFOAM User Guide, section Mesh description).
- *
- * Faces inside come first, in upper-triangular order: by their owner, the lesser of their
- * two cells, then by the other one, their neighbour; their normals point to the
- * neighbour. Then those of the boundary, outward, patch by patch. */
-
-enum { TM_OPENFOAM_FILES = 7 };
-
-/* points, faces, owner, neighbour, boundary; cellZones and faceZones, which may be lists
- * of none */
-extern const char *const tm_openfoam_name[TM_OPENFOAM_FILES];
-
-typedef struct tm_openfoam_counts {
-    size_t points, cells, faces, patches, cell_zones, face_zones;
-} tm_openfoam_counts;
-
-/* Appends the files of a stream's tetrahedra, mixed elements or polyhedra to file[i], in
- * the order of tm_openfoam_name. Boundary facets with the same marker N are a patch of
- * the name that .group has for it, else marker_N, patches in the order of N; without
- * markers there is one, marker_0. Facets inside with a marker other than 0 are a zone of
- * faces, cells of a region (tm_group_region()) with a name, or another than 0, a zone of
- * cells, named alike, else marker_N and region_N. What a word of OpenFOAM cannot have
- * becomes '_', and a name that is taken gets the value behind it. Nodes that no cell has
- * are left out. What checkMesh will measure goes to *measures, if that is not NULL; with
- * all_geometry what it does with that option, too. TM_ERROR_INPUT as
- * tm_cell_faces_find(), or where there are no cells. Expected O(n + b log b) for b facets
- * of the boundary, and what the measures take. */
-tm_status tm_openfoam_write(tm_text file[TM_OPENFOAM_FILES], const tm_stream *stream,
-                            tm_openfoam_counts *counts, tm_poly_finite_volume *measures,
-                            bool all_geometry, tm_error *error);
 
 TM_EXTERN_C_END
 

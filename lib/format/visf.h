@@ -17,6 +17,7 @@
 #define TM_FORMAT_VISF_H
 
 #include "../base/extern_c.h"
+#include "../mesh/polyhedra.h"
 #include "../stream/stream.h"
 
 #include <stdbool.h>
@@ -41,13 +42,6 @@ typedef struct tm_visf_options {
 tm_status tm_visf_write(tm_text *text, const tm_stream *stream,
                         const tm_visf_options *options, tm_error *error);
 
-/* What tm_visf_read() had to do. */
-typedef struct tm_visf_repairs {
-    size_t joined;  /* polygons that were there before, and became one with those */
-    size_t dropped; /* polygons that no polyhedron has */
-    size_t turned;  /* polygons at the boundary that were inward */
-} tm_visf_repairs;
-
 /* Reads a file of any order, with or without the flag, into an empty stream of base 0:
  * .node alone; .node and .face; or .node, .facet and .cell. The facets keep the order and
  * the sense of the polygons but for the repairs above; their cells are those for which
@@ -58,7 +52,7 @@ typedef struct tm_visf_repairs {
  * closed or has not two sides; a polygon of three polyhedra, or of two on its same side.
  * After an error the stream is empty. Expected O(size). */
 tm_status tm_visf_read(tm_stream *stream, const char *bytes, size_t size,
-                       const char *name, tm_visf_repairs *repairs, tm_error *error);
+                       const char *name, tm_polyhedra_repairs *repairs, tm_error *error);
 
 TM_EXTERN_C_END
 

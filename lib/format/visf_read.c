@@ -1,28 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "visf.h"
 
-#include "../base/array.h"
 #include "binary.h"
-#include "../mesh/cell_orient.h"
-#include "../mesh/polygon_table.h"
 #include "scan.h"
 
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { POINTS, POLYGONS, POLYHEDRA };
 enum { TEXT = 2, COORDINATES = 3, TRIANGLE = 3, TETRAHEDRON = 4, WORD = 4 };
-
-/* Lists of numbers, one after another. */
-typedef struct lists {
-    size_t count;
-    size_t *start; /* [count + 1] */
-    uint32_t *item;
-    size_t start_room, item_room;
-} lists;
 
 /* A place in the file; a copy of it is one, too. */
 typedef struct place {
@@ -35,9 +23,9 @@ typedef struct reader {
     place at;
     int type;
     tm_block *node;
-    lists polygons;
-    lists polyhedra;
-    tm_visf_repairs *repairs;
+    tm_lists polygons;
+    tm_lists polyhedra;
+    tm_polyhedra_repairs *repairs;
     tm_error *error;
 } reader;
 
@@ -133,43 +121,31 @@ static tm_status read_points(reader *r)
 }
 
 /* Appends a list of at least `least` numbers below `limit`. */
-static tm_status read_list(reader *r, lists *to, const char *what, size_t least,
+static tm_status read_list(reader *r, tm_lists *to, const char *what, size_t least,
                            size_t limit)
 {
-    size_t k = 0, begin = to->start[to->count];
+    size_t k = 0;
     tm_status status = next_count(r, what, 1, &k);
     if (status != TM_OK)
         return status;
     if (k < least)
         return fail(r, "%s is %zu (%zu or more would be right)", what, k, least);
-    uint32_t *item = tm_grow(to->item, &to->item_room, begin + k, sizeof *item);
+    uint32_t *item = tm_lists_room(to, k);
     if (!item)
         return tm_fail_memory(r->error);
-    to->item = item;
     for (size_t i = 0; i < k && status == TM_OK; i++) {
         int64_t number = 0;
         status = next_integer(r, "a number in the list", 0, (int64_t)limit - 1, &number);
-        item[begin + i] = (uint32_t)number;
+        item[i] = (uint32_t)number;
     }
-    size_t *start = tm_grow(to->start, &to->start_room, to->count + 2, sizeof *to->start);
-    if (status == TM_OK && !start)
+    if (status == TM_OK && !tm_lists_end(to, k))
         status = tm_fail_memory(r->error);
-    to->start = start ? start : to->start;
-    if (status == TM_OK)
-        start[++to->count] = begin + k;
     return status;
 }
 
-static tm_status begin_lists(reader *r, lists *to)
+static tm_status begin_lists(reader *r, tm_lists *to)
 {
-    free(to->start);
-    free(to->item);
-    *to = (lists){0};
-    to->start = tm_grow(NULL, &to->start_room, 1, sizeof *to->start);
-    if (!to->start)
-        return tm_fail_memory(r->error);
-    to->start[0] = 0;
-    return TM_OK;
+    return tm_lists_begin(to) ? TM_OK : tm_fail_memory(r->error);
 }
 
 static tm_status read_polygons(reader *r)
@@ -207,7 +183,7 @@ static tm_status skip_neighbours(reader *r)
 {
     int64_t flag = 0;
     size_t count = r->polygons.count;
-    lists skipped = {0};
+    tm_lists skipped = {0};
     tm_status status = begin_lists(r, &skipped);
     if (status == TM_OK)
         status =
@@ -217,8 +193,7 @@ static tm_status skip_neighbours(reader *r)
         status =
             read_list(r, &skipped, "the number of neighbours of a polygon", 0, count);
     }
-    free(skipped.start);
-    free(skipped.item);
+    tm_lists_free(&skipped);
     return status;
 }
 
@@ -250,7 +225,7 @@ static tm_status read_rest(reader *r)
 
 static tm_status add_surface(reader *r, tm_stream *stream)
 {
-    const lists *polygons = &r->polygons;
+    const tm_lists *polygons = &r->polygons;
     for (size_t p = 0; p < polygons->count; p++)
         if (polygons->start[p + 1] - polygons->start[p] != TRIANGLE)
             return tm_fail_at(r->error, TM_ERROR_INPUT, r->at.scan.name, 0, NULL,
@@ -264,152 +239,6 @@ static tm_status add_surface(reader *r, tm_stream *stream)
     if (status == TM_OK && polygons->count > 0)
         memcpy(face->integer, polygons->item,
                TRIANGLE * polygons->count * sizeof *face->integer);
-    return status;
-}
-
-/* Makes all polygons that are the same one, and drops those that no polyhedron has: the
- * polyhedra then name polygons as they are numbered then. */
-static tm_status join_polygons(reader *r)
-{
-    lists *polygons = &r->polygons, *polyhedra = &r->polyhedra;
-    size_t count = polygons->count, kept = 0, end = 0;
-    uint32_t *name = tm_new(count, sizeof *name); /* the first that is the same */
-    tm_polygon_table table = {0};
-    bool done = name != NULL;
-    for (size_t p = 0; p < count && done; p++)
-        done = tm_polygon_table_join(&table, polygons->start, polygons->item, (uint32_t)p,
-                                     &name[p]);
-    tm_polygon_table_free(&table);
-    unsigned char *used = calloc(count + 1, 1);
-    if (!done || !used) {
-        free(name);
-        free(used);
-        return tm_fail_memory(r->error);
-    }
-    size_t items = polyhedra->start[polyhedra->count];
-    for (size_t i = 0; i < items; i++) {
-        r->repairs->joined += name[polyhedra->item[i]] != polyhedra->item[i];
-        polyhedra->item[i] = name[polyhedra->item[i]];
-        used[polyhedra->item[i]] = 1;
-    }
-    for (size_t p = 0; p < count; p++) {
-        size_t begin = polygons->start[p], k = polygons->start[p + 1] - begin;
-        r->repairs->dropped += name[p] == p && !used[p];
-        if (!used[p])
-            continue;
-        memmove(polygons->item + end, polygons->item + begin, k * sizeof *polygons->item);
-        polygons->start[kept] = end;
-        end += k;
-        name[p] = (uint32_t)kept++;
-    }
-    polygons->start[kept] = end;
-    polygons->count = kept;
-    for (size_t i = 0; i < items; i++)
-        polyhedra->item[i] = name[polyhedra->item[i]];
-    free(name);
-    free(used);
-    return TM_OK;
-}
-
-/* A polygon is in two polyhedra at most, and only once in each. */
-static tm_status check_uses(reader *r, tm_block *facet)
-{
-    const lists *polyhedra = &r->polyhedra;
-    memset(facet->integer, UINT8_MAX, 2 * facet->count * sizeof *facet->integer);
-    for (size_t c = 0; c < polyhedra->count; c++)
-        for (size_t i = polyhedra->start[c]; i < polyhedra->start[c + 1]; i++) {
-            uint32_t *side = facet->integer + 2 * (size_t)polyhedra->item[i];
-            if (side[0] == c || side[1] != TM_NONE)
-                return tm_fail_at(r->error, TM_ERROR_INPUT, r->at.scan.name, 0, NULL,
-                                  "polyhedron %zu has a polygon twice, or one that two "
-                                  "others have",
-                                  c);
-            side[side[0] != TM_NONE] = (uint32_t)c;
-        }
-    return TM_OK;
-}
-
-static void reverse(uint32_t *node, size_t k)
-{
-    for (size_t i = 1, j = k - 1; i < j; i++, j--) {
-        uint32_t swapped = node[i];
-        node[i] = node[j];
-        node[j] = swapped;
-    }
-}
-
-/* Side 0 becomes the cell that the facet is outward for; where there is one cell and the
- * facet is inward, the facet is turned. */
-static void set_sides(reader *r, tm_block *facet, const bool *inward)
-{
-    const lists *polyhedra = &r->polyhedra;
-    memset(facet->integer, UINT8_MAX, 2 * facet->count * sizeof *facet->integer);
-    for (size_t c = 0; c < polyhedra->count; c++)
-        for (size_t i = polyhedra->start[c]; i < polyhedra->start[c + 1]; i++)
-            facet->integer[2 * (size_t)polyhedra->item[i] + inward[i]] = (uint32_t)c;
-    for (size_t f = 0; f < facet->count; f++) {
-        uint32_t *side = facet->integer + 2 * f;
-        if (side[0] != TM_NONE)
-            continue;
-        side[0] = side[1];
-        side[1] = TM_NONE;
-        reverse(facet->item + facet->start[f], facet->start[f + 1] - facet->start[f]);
-        r->repairs->turned++;
-    }
-}
-
-static tm_status orient(reader *r, tm_block *facet)
-{
-    const lists *polyhedra = &r->polyhedra;
-    size_t uses = polyhedra->start[polyhedra->count];
-    const tm_polygon_cells mesh = {r->node->count,   (const double(*)[3])r->node->real,
-                                   facet->count,     facet->start,
-                                   facet->item,      polyhedra->count,
-                                   polyhedra->start, polyhedra->item};
-    bool *inward = tm_new(uses, sizeof *inward);
-    tm_status status = inward ? check_uses(r, facet) : tm_fail_memory(r->error);
-    if (status == TM_OK) {
-        tm_error cause;
-        status = tm_cells_orient(&mesh, inward, &cause);
-        if (status == TM_ERROR_INPUT)
-            tm_fail_at(r->error, status, r->at.scan.name, 0, NULL, "%s", cause.what);
-        else if (status != TM_OK)
-            tm_fail_as(r->error, &cause);
-    }
-    if (status == TM_OK)
-        set_sides(r, facet, inward);
-    free(inward);
-    return status;
-}
-
-/* Adds a block with a copy of the lists. */
-static tm_status add_lists(reader *r, tm_stream *stream, const char *name,
-                           const lists *from, tm_block **block)
-{
-    *block = tm_stream_add(stream, name);
-    if (!*block)
-        return tm_fail_memory(r->error);
-    size_t items = from->start[from->count];
-    tm_status status = tm_block_allocate(*block, from->count, items, r->error);
-    if (status != TM_OK)
-        return status;
-    memcpy((*block)->start, from->start, (from->count + 1) * sizeof *from->start);
-    if (items > 0)
-        memcpy((*block)->item, from->item, items * sizeof *from->item);
-    return TM_OK;
-}
-
-static tm_status add_polyhedra(reader *r, tm_stream *stream)
-{
-    tm_block *facet, *cell;
-    tm_status status = join_polygons(r);
-    if (status == TM_OK)
-        status = add_lists(r, stream, ".facet", &r->polygons, &facet);
-    r->node = tm_stream_find(stream, ".node"); /* adding may move blocks */
-    if (status == TM_OK)
-        status = orient(r, facet);
-    if (status == TM_OK)
-        status = add_lists(r, stream, ".cell", &r->polyhedra, &cell);
     return status;
 }
 
@@ -456,20 +285,21 @@ static tm_status read_all(reader *r, tm_stream *stream)
         status = read_rest(r);
     if (status != TM_OK)
         return status;
-    return r->type == POLYGONS ? add_surface(r, stream) : add_polyhedra(r, stream);
+    if (r->type == POLYGONS)
+        return add_surface(r, stream);
+    return tm_polyhedra_to_stream(stream, &r->polygons, &r->polyhedra, r->at.scan.name,
+                                  r->repairs, r->error);
 }
 
 tm_status tm_visf_read(tm_stream *stream, const char *bytes, size_t size,
-                       const char *name, tm_visf_repairs *repairs, tm_error *error)
+                       const char *name, tm_polyhedra_repairs *repairs, tm_error *error)
 {
     reader r = {.repairs = repairs, .error = error};
-    *repairs = (tm_visf_repairs){0};
+    *repairs = (tm_polyhedra_repairs){0};
     tm_scan_begin(&r.at.scan, bytes, size, name, '#');
     tm_status status = read_all(&r, stream);
-    free(r.polygons.start);
-    free(r.polygons.item);
-    free(r.polyhedra.start);
-    free(r.polyhedra.item);
+    tm_lists_free(&r.polygons);
+    tm_lists_free(&r.polyhedra);
     if (status != TM_OK)
         tm_stream_free(stream);
     stream->base = 0;

@@ -10,11 +10,14 @@
 #ifndef TM_MESH_FACE_TABLE_H
 #define TM_MESH_FACE_TABLE_H
 
+#include "../base/extern_c.h"
 #include "../base/error.h"
 #include "../base/hash.h"
 #include "mesh_view.h"
 
 #include <stdbool.h>
+
+TM_EXTERN_C_BEGIN
 
 /* A half face, or row r of .face as first_row + r, and those of .facet after them. It is
  * turned if the larger one of the nodes beside the smallest one follows it, seen from
@@ -77,7 +80,8 @@ tm_status tm_face_mates(uint32_t **mate, const tm_mesh_view *mesh, tm_error *err
 /* The numbers of half faces are below. */
 static inline size_t tm_half_faces(const tm_mesh_view *mesh)
 {
-    return (size_t)(mesh->start ? TM_ELEMENT_NODES : TM_TET_NODES) * mesh->elements;
+    return (mesh->start ? (size_t)TM_ELEMENT_NODES : (size_t)TM_TET_NODES) *
+           mesh->elements;
 }
 
 /* Face i (shape.h) of element e as a half face. */
@@ -103,5 +107,7 @@ bool tm_row_is_face(const tm_mesh_view *mesh, size_t row);
 
 /* The nodes of a half face, outward where its element is positive; how many. */
 size_t tm_half_face_nodes(const tm_mesh_view *mesh, uint32_t half, uint32_t node[4]);
+
+TM_EXTERN_C_END
 
 #endif

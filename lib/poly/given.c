@@ -19,21 +19,6 @@ static int by_value(const void *a, const void *b)
     return (p->row > q->row) - (p->row < q->row);
 }
 
-/* Closes the gap that an attribute leaves. */
-static void drop_attribute(tm_block *block, size_t which)
-{
-    const size_t width = block->attributes;
-    double *to = block->attribute;
-    for (size_t k = 0; k < block->count * width; k++)
-        if (k % width != which)
-            *to++ = block->attribute[k];
-    block->attributes--;
-    if (block->attributes == 0) {
-        free(block->attribute);
-        block->attribute = NULL;
-    }
-}
-
 tm_status tm_take_given(tm_block *block, size_t which, uint32_t **label, tm_error *error)
 {
     *label = NULL;
@@ -52,7 +37,7 @@ tm_status tm_take_given(tm_block *block, size_t which, uint32_t **label, tm_erro
         list[r] = (given){block->attribute[r * block->attributes + which], r};
     if (done) {
         qsort(list, block->count, sizeof *list, by_value);
-        drop_attribute(block, which);
+        tm_block_drop_attribute(block, which);
     }
     uint32_t name = 0;
     for (size_t k = 0; k < block->count && done; k++) {

@@ -137,3 +137,17 @@ tm_status tm_block_add_attribute(tm_block *block, const double *value, tm_error 
     block->attributes = wider;
     return TM_OK;
 }
+
+void tm_block_drop_attribute(tm_block *block, size_t which)
+{
+    const size_t width = block->attributes;
+    double *to = block->attribute;
+    for (size_t k = 0; k < block->count * width; k++)
+        if (k % width != which)
+            *to++ = block->attribute[k];
+    block->attributes--;
+    if (block->attributes == 0) {
+        free(block->attribute);
+        block->attribute = NULL;
+    }
+}

@@ -18,7 +18,7 @@ typedef struct row {
 
 /* Of these the very first bytes. */
 static const row magic[] = {
-    {"# vtk DataFile", {"a legacy VTK file", NONE_YET}},
+    {"# vtk DataFile", {"a legacy VTK file", "use vtk-import"}},
     {"\xFF\xFE", {"UTF-16 text", "save it as UTF-8 or ASCII"}},
     {"\xFE\xFF", {"UTF-16 text", "save it as UTF-8 or ASCII"}},
     {"\x1F\x8B", {"gzip data within gzip data", "unpack it with zcat"}},
@@ -79,8 +79,8 @@ static const row words[] = {
     {"CEND", {"a Nastran input file", GMSH " of a file named .bdf"}},
     {"BEGIN BULK", {"a Nastran input file", GMSH " of a file named .bdf"}},
     {"GRID", {"a Nastran input file", GMSH " of a file named .bdf"}},
-    {"/*--", {"an OpenFOAM file", NONE_YET}},
-    {"FoamFile", {"an OpenFOAM file", NONE_YET}},
+    {"/*--", {"an OpenFOAM file", "use openfoam-import with its folder"}},
+    {"FoamFile", {"an OpenFOAM file", "use openfoam-import with its folder"}},
     {"{\"", {"JSON", NONE}},
 };
 
@@ -154,7 +154,7 @@ static tm_look look_at_sections(const char *at, const char *end)
 static tm_look look_at_markup(const char *at, const char *end)
 {
     if (holds(at, end, "<VTKFile"))
-        return (tm_look){"an XML file of VTK (.vtu)", NONE_YET};
+        return (tm_look){"an XML file of VTK (.vtu)", "use vtu-import"};
     if (holds(at, end, "<html") || holds(at, end, "<HTML"))
         return (tm_look){"an HTML page, perhaps of a server that had no file", NONE};
     return (tm_look){"XML", NONE};

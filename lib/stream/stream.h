@@ -131,6 +131,9 @@ void tm_block_clear(tm_block *block);
  * TM_ERROR_SYSTEM where memory is out: nothing has changed then. */
 tm_status tm_block_add_attribute(tm_block *block, const double *value, tm_error *error);
 
+/* Takes attribute `which` from the rows, from 0: there is one. */
+void tm_block_drop_attribute(tm_block *block, size_t which);
+
 /* Appends "# line\n" to the history, or nothing where memory is out; line breaks inside
  * become blanks. */
 tm_status tm_stream_add_history(tm_stream *stream, const char *line, tm_error *error);

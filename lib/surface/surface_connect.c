@@ -239,7 +239,32 @@ static bool pair_wedges(tm_surface *surface, const half_edge *edge, size_t count
 typedef struct defects {
     size_t open, crowded, odd;
     uint32_t open_edge[2], crowded_edge[2];
+    bool overlaps; /* two triangles at the crowded edge do */
 } defects;
+
+/* Whether two triangles at an edge are in one plane, and on the same side of it. */
+static bool is_overlapped(const tm_surface *surface, const half_edge *edge, size_t count,
+                          uint32_t low)
+{
+    const double *origin = surface->xyz[low];
+    double along[3], a[3], b[3], across_a[3], across_b[3];
+    tm_subtract(along, surface->xyz[edge->high], origin);
+    for (size_t i = 0; i < count; i++)
+        for (size_t k = 0; k < i; k++) {
+            const uint32_t g = edge[i].half, h = edge[k].half;
+            if (!tm_surface_is_level(surface, g / 3, h / 3))
+                continue;
+            tm_subtract(a, surface->xyz[surface->triangle[g / 3][(g % 3 + 2) % 3]],
+                        origin);
+            tm_subtract(b, surface->xyz[surface->triangle[h / 3][(h % 3 + 2) % 3]],
+                        origin);
+            tm_cross(across_a, along, a);
+            tm_cross(across_b, along, b);
+            if (tm_dot(across_a, across_b) > 0)
+                return true;
+        }
+    return false;
+}
 
 static void join_edge(tm_surface *surface, const half_edge *edge, size_t count,
                       uint32_t low, defects *found)
@@ -252,8 +277,11 @@ static void join_edge(tm_surface *surface, const half_edge *edge, size_t count,
             memcpy(found->open_edge, nodes, sizeof nodes);
     } else if (!pair_wedges(surface, edge, count, low)) {
         found->odd += count % 2;
-        if (found->crowded++ == 0)
+        if (found->crowded++ == 0 || !found->overlaps) {
             memcpy(found->crowded_edge, nodes, sizeof nodes);
+            found->overlaps =
+                count <= TM_WEDGES_MOST && is_overlapped(surface, edge, count, low);
+        }
         surface->open_edges += count;
     }
 }
@@ -268,10 +296,12 @@ static tm_status report(const tm_surface *surface, const defects *found, unsigne
     return tm_fail(error, TM_ERROR_INPUT,
                    "the surface is %s: edges with one triangle: %zu, with more than two "
                    "that do not pair: %zu (every edge would have two); one is between "
-                   "nodes %zu (%g, %g, %g) and %zu (%g, %g, %g)",
+                   "nodes %zu (%g, %g, %g) and %zu (%g, %g, %g)%s%s",
                    open ? "open" : "not manifold", found->open, found->crowded,
                    (size_t)surface->origin[e[0]] + base, a[0], a[1], a[2],
-                   (size_t)surface->origin[e[1]] + base, b[0], b[1], b[2]);
+                   (size_t)surface->origin[e[1]] + base, b[0], b[1], b[2],
+                   !open && found->overlaps ? ", where triangles overlap" : "",
+                   !open && found->overlaps ? tm_surface_overlap_help : "");
 }
 
 /* Parts the triangles at edges with more than two: there walls meet. */

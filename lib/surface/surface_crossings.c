@@ -285,6 +285,22 @@ static void try_nodes(finder *f, const tm_tree_node *n, const tm_tree_node *m)
     }
 }
 
+bool tm_surface_is_level(const tm_surface *surface, uint32_t s, uint32_t t)
+{
+    const uint32_t *v = surface->triangle[s];
+    const double(*xyz)[3] = (const double(*)[3])surface->xyz;
+    for (int i = 0; i < 3; i++)
+        if (tm_orient3d(xyz[v[0]], xyz[v[1]], xyz[v[2]], xyz[surface->triangle[t][i]]) !=
+            0)
+            return false;
+    return true;
+}
+
+const char tm_surface_overlap_help[] =
+    ", in one plane: where solids touch, both need the same triangles on all of their "
+    "common face, with no node of one on an edge of the other, or the face is in the "
+    "file once (as in a .poly)";
+
 tm_status tm_surface_find_crossings(tm_surface *surface, bool lenient, unsigned base,
                                     tm_error *error)
 {
@@ -292,13 +308,15 @@ tm_status tm_surface_find_crossings(tm_surface *surface, bool lenient, unsigned 
     try_nodes(&f, &surface->tree->node[0], &surface->tree->node[0]);
     if (lenient || surface->crossings == 0)
         return TM_OK;
-    return tm_fail(error, TM_ERROR_INPUT,
-                   "%s: faces %zu and %zu meet near (%g, %g, %g), elsewhere than in a "
-                   "common node or edge",
-                   surface->shell[f.pair[0]] == surface->shell[f.pair[1]]
-                       ? "the surface crosses itself"
-                       : "two pieces of the surface cross",
-                   (size_t)surface->facet[f.pair[0]] + base,
-                   (size_t)surface->facet[f.pair[1]] + base, f.point[0], f.point[1],
-                   f.point[2]);
+    return tm_fail(
+        error, TM_ERROR_INPUT,
+        "%s: faces %zu and %zu meet near (%g, %g, %g), elsewhere than in a "
+        "common node or edge%s",
+        surface->shell[f.pair[0]] == surface->shell[f.pair[1]]
+            ? "the surface crosses itself"
+            : "two pieces of the surface cross",
+        (size_t)surface->facet[f.pair[0]] + base,
+        (size_t)surface->facet[f.pair[1]] + base, f.point[0], f.point[1], f.point[2],
+        tm_surface_is_level(surface, f.pair[0], f.pair[1]) ? tm_surface_overlap_help
+                                                           : "");
 }

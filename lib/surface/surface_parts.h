@@ -23,6 +23,12 @@ tm_status tm_surface_drop_nodes(tm_surface *surface, tm_error *error);
 /* Whether the three points are on a line, exactly. */
 bool tm_is_flat(const double a[3], const double b[3], const double c[3]);
 
+/* Whether two triangles are in one plane, exactly. */
+bool tm_surface_is_level(const tm_surface *surface, uint32_t s, uint32_t t);
+
+/* For messages, where such triangles overlap. */
+extern const char tm_surface_overlap_help[];
+
 /* A half edge, 3 t + i, and its angle about the edge. */
 typedef struct tm_around {
     double angle;

@@ -182,6 +182,18 @@ static tm_status add_marks(view_writer *w, const view_source *s, tm_error *error
     return status;
 }
 
+/* "edge": the nodes of the rows of .edge, and "edgeMarker". */
+static void add_edges(view_writer *w, const view_source *s)
+{
+    const tm_block *edge = tm_stream_find(s->stream, ".edge");
+    if (!edge || edge->count == 0)
+        return;
+    tm_view_numbers(w, "edge", "u32", edge->integer, 2 * edge->count);
+    if (edge->marker)
+        tm_view_numbers(w, "edgeMarker", "i32", (const uint32_t *)edge->marker,
+                        edge->count);
+}
+
 /* Words ------------------------------------------------------------------------------ */
 
 void tm_view_string(tm_json *json, const char *key, const char *bytes)
@@ -260,6 +272,7 @@ static tm_status add_arrays(view_writer *w, const view_source *s, tm_error *erro
         status = add_facets(w, s, error);
     else if (status == TM_OK && s->content > TM_CONTENT_POINTS)
         status = add_elements(w, s, error);
+    add_edges(w, s);
     if (s->number)
         tm_view_numbers(w, "number", "u32", s->number, s->kept);
     if (s->number && s->content != TM_CONTENT_POLYHEDRA)

@@ -373,7 +373,8 @@ volumes() {
     fi
     if command -v poly-dual >/dev/null; then
         judged poly-dual poly-dual -q "$work/tets.tm"
-        aims poly-dual
+        judged 'poly-dual --convex' poly-dual -q --feature-angle 30 --convex "$work/tets.tm"
+        aims 'poly-dual --convex'
     else
         note poly-dual
     fi

@@ -80,6 +80,18 @@ END
     printf '%s\n' '$MeshFormat' '2.2 0 8' '$EndMeshFormat' '$Nodes' 4 '1 0 0 0' '2 1 0 0' \
         '3 0 1 0' '4 0 0 1' '$EndNodes' '$Elements' 1 '1 4 2 7 1 1 2 3 4' '$EndElements' \
         >corner.msh
+    printf '%s\n' '# vtk DataFile Version 2.0' point ASCII 'DATASET POLYDATA' 'POINTS 1 float' \
+        '1 2 3' 'VERTICES 1 2' '1 0' >point.vtk
+    mkdir polyMesh
+    echo '4((0 0 0) (1 0 0) (0 1 0) (0 0 1))' >polyMesh/points
+    echo '4(3(0 2 1) 3(0 1 3) 3(1 2 3) 3(2 0 3))' >polyMesh/faces
+    echo '4{0}' >polyMesh/owner
+    echo '0()' >polyMesh/neighbour
+    echo '1(wall {type wall; nFaces 4; startFace 0;})' >polyMesh/boundary
+    printf '%s\n' '<VTKFile type="UnstructuredGrid"><UnstructuredGrid>' \
+        '<Piece NumberOfPoints="1" NumberOfCells="0"><Points>' \
+        '<DataArray type="Float32" NumberOfComponents="3">1 2 3</DataArray></Points></Piece>' \
+        '</UnstructuredGrid></VTKFile>' >point.vtu
     { sed '$d' corner.tm; printf '%s\n' .mix '1 0' '1 4 1 2 3 4' .octant '1 0' \
         '1 0 0 0 0 1 2' .root '1 0' '1 0 0 0 1 0' surface.node '3 3 0 0' '1 0 0 0' \
         '2 1 0 0' '3 0 1 0' surface.face '1 0' '1 1 2 3' .end; } >octant.tm
@@ -105,8 +117,11 @@ input() {
     case $1 in
     poly-stats) echo cell.tm ;;
     tetgen-import) echo corner.node ;;
-    tetgen-mesh | octree-mesh | surface-import) echo surface.tm ;;
+    tetgen-mesh | octree-mesh | surface-import | surface-mend) echo surface.tm ;;
     visf-import) echo corner.visf ;;
+    vtu-import) echo point.vtu ;;
+    vtk-import) echo point.vtk ;;
+    openfoam-import) echo polyMesh ;;
     mdl-import) echo corner.mdl ;;
     m3d-import) echo corner.mvm ;;
     oct-import) echo cube.oct ;;

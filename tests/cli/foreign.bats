@@ -62,8 +62,8 @@ write_samples() {
         visf-export $options cubes.tm >"a${options##* }.visf-import"
     done
     write_oct >a.oct-import
-    vtu-export mixed.tm >'an XML file of VTK.none'
-    vtk-export mixed.tm >'a legacy VTK file.none'
+    vtu-export mixed.tm >a.vtu-import
+    vtk-export --no-quality mixed.tm >a.vtk-import
     getfem-export mixed.tm >'a GetFEM mesh.none'
     if [ -x "$TM_BUILD/bin/gmsh-export" ]; then
         for format in msh4 msh2 msh1; do
@@ -104,7 +104,7 @@ write_others() {
     printf '*KEYWORD\n*NODE\n' >'an LS-DYNA.none'
     printf '$ made by hand\nSOL 101\nCEND\nBEGIN BULK\n' >'a Nastran.use gmsh-import of a file'
     printf 'GRID,1,,0.,0.,0.\n' >'a Nastran input file.use gmsh-import of a file'
-    printf '/*------------*- C++ -*-----*/\nFoamFile\n{\n}\n' >'an OpenFOAM file.none'
+    printf '/*------------*- C++ -*-----*/\nFoamFile\n{\n}\n' >'an OpenFOAM file.with its folder'
     printf '%%PDF-1.4\n%%\342\343\317\323\n' >'a PDF document.none'
     printf '\211PNG\r\n\032\n' >'a PNG image.none'
     printf '\211HDF\r\n\032\n' >'an HDF5 file.use gmsh-import of a file'
@@ -148,6 +148,7 @@ is_refused() {
             poly.surface:tetgen-import | smesh.surface:tetgen-import) continue ;;
             *'use gmsh-import of a file':gmsh-import) continue ;;
             *.surface:surface-import | *.mdl-import:surface-import | *.stream:surface-import) continue ;;
+            *'its folder':openfoam-import) continue ;;
             *:tetgen-import)
                 cp "$sample" wrong.node
                 is_refused "$sample" tetgen-import wrong.node

@@ -74,6 +74,7 @@ poly-dual       3 3 3 3 0 0 3 3 3
 poly-stats      3 3 3 3 3 3 3 3 0
 polylla3d       3 3 3 3 0 0 3 3 0
 stl-export      3 3 3 0 0 3 0 0 0
+surface-mend    3 0 3 0 3 3 3 3 3
 tet-stats       3 3 3 3 0 0 3 3 3
 tetgen-export   3 0 0 0 0 0 3 3 3
 tetgen-mesh     3 0 0 0 3 3 3 3 3

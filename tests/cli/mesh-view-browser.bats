@@ -293,6 +293,32 @@ with Browser() as browser:
 END
 }
 
+@test "marked edges: lines with the names of their markers, cut with the mesh" {
+    { grid 2 0 | sed '/^.group/,$d'; printf '%s\n' .edge '3 1' '0 1 2 5' '1 2 3 5' '2 1 4 -3' .group \
+        '1 0' '0 1 5 <ridge>' .end; } >edges.tm
+    mesh-view -o edges.html edges.tm
+    { grid 2 0 | sed '$d'; printf '%s\n' .edge '1 1' '0 1 2 1' .end; } >one.tm
+    mesh-view -o one.html one.tm
+    look <<'END'
+LINES = '(o => [o.visible, o.geometry.attributes.position.count])(meshView.view.meshes[0].lines.object)'
+NAMES = '[...document.querySelectorAll("#lineNames li")].map(e => e.textContent)'
+with Browser() as browser:
+    browser.open('edges.html')
+    assert browser.run('meshView.update(), ' + LINES) == [True, 6]
+    assert browser.run(NAMES) == ['-31', '5 <ridge>2']
+    browser.key('m')
+    assert browser.run('meshView.update(), ' + LINES) == [False, 6]
+    assert 'l=0' in browser.run('meshView.hashOfState()')
+    browser.run('meshView.set({lines: true}), meshView.setCut("whole"), meshView.setNormal([1, 0, 0]), meshView.setOffset(-0.5)')
+    assert browser.run('meshView.update(), (p => [p.normal.x, p.constant])(meshView.view.meshes[0].lines.plane)') == [-1, -0.5]
+    # those that TetGen gives to all are there, but not at first
+    browser.open('one.html')
+    assert browser.run('meshView.update(), ' + LINES) == [False, 2]
+    assert browser.run('document.getElementById("lining").hidden') == False
+    assert not browser.errors and not browser.requests
+END
+}
+
 @test "two meshes, both themes, a narrow window, labels, text that is text" {
     grid 3 0.2 >a.tm
     boxes 3 >'<b>&.tm'

@@ -255,6 +255,23 @@ sides() {
         { printf "%.6g ", side / 2 ^ $1 / unit }'
 }
 
+@test "-s: planes where the octants with the surface are dropped have faces of that level, too" {
+    awk 'NR > 2 && NR <= 10 { print $1 * 2.3, $2, $3; next } { print }' box.off >long.off
+    for resolve in 0 1; do
+        octree-mesh -q -u -s 4 --resolve "$resolve" -o mesh.tm long.off
+        # of each element the level, and its nodes at an end
+        awk '/^[.]/ { block = $1; head = 1; next } head { head = 0; next }
+            block == ".node" { end[$1] = $2 * $2 < 1e-18 || ($2 - 2.3) ^ 2 < 1e-18 }
+            block == ".mix" {
+                n = 0
+                for (i = 3; i < 3 + $2; i++) n += end[$i]
+                if (n >= 3) { faces++; if ($(3 + $2) != 4) coarse++ }
+            }
+            END { print coarse + 0; exit faces < 400 }' mesh.tm >coarse
+        [ "$(cat coarse)" -eq 0 ]
+    done
+}
+
 @test "--size, --inner-size: octants of a given size, whatever the shape is" {
     # the thin side of a plate says nothing of them
     awk 'NR > 2 && NR <= 10 { print $1 * 10, $2 * 10, $3; next } { print }' box.off >slab.off

@@ -231,7 +231,16 @@ checked() {
     [[ "$stderr" == *"a skewness above 4"*"what may help: lepp-improve"* ]]
     mixed | sed 's/^4 1$/2 1/; /^3 6 /d; /^4 4 /d; s/^9 .*/9 60 0.5 1.2/' >far.tm
     run -0 --separate-stderr openfoam-export far far.tm
-    [[ "$stderr" == *"checkMesh would fail: "*"what may help: octree-mesh --polyhedra" ]]
+    [[ "$stderr" == *"checkMesh would fail: "*"what may help: octree-mesh --polyhedra of its surface"* ]]
+    # Polyhedra: by what they were made from.
+    advice() {
+        { printf 'termesh 1\n%s' "$1"; sed -e 1d -e '/^#/d' stars.tm; } >told.tm
+        openfoam-export told told.tm 2>&1 | sed -n 's/.*what may help: //p'
+    }
+    [[ "$(advice $'# tetgen-mesh 1: a\n')" == 'octree-mesh --polyhedra of its surface'* ]]
+    [[ "$(advice $'# tetgen-mesh 1: a\n# poly-dual 1: b\n# vtk-export 1: c\n')" == poly-dual* ]]
+    [[ "$(advice $'# octree-mesh 1: a\n')" == 'octree-mesh --polyhedra with another -s' ]]
+    [[ "$(advice $'# octree-mesh 1: a\n# polylla3d 1: b\n')" == *'polylla3d --star=centroid'* ]]
     sheared_boxes 4 >boxes.tm
     run -0 --separate-stderr openfoam-export boxes boxes.tm
     [[ "$stderr" != *checkMesh* ]]

@@ -650,6 +650,15 @@ END
     # The levels before go where they are made again.
     polylla3d -q --levels 1 "$out/levels.tm" >"$out/again.tm"
     [ "$(grep -c '^level.*cell' "$out/again.tm")" -eq 1 ]
+    [ "$(header .cell "$out/again.tm")" = "$(header .cell "$out/levels.tm")" ]
+    # The parents are no regions: neither to others nor where it is joined again.
+    [ "$(awk '$1 == ".cell" { getline; n = $1; next } n-- > 0 { print $(NF - 1) }' \
+        "$out/levels.tm" | sort -u)" = 0 ]
+    polylla3d -q --no-history "$out/levels.tm" >"$out/joined.tm"
+    polylla3d -q --no-history "$out/poly.tm" >"$out/other.tm"
+    diff <(rows .facet "$out/joined.tm") <(rows .facet "$out/other.tm")
+    [ "$(header .cell "$out/joined.tm" | cut -d' ' -f1)" -lt "$(header .cell "$out/poly.tm" | cut -d' ' -f1)" ]
+    ! grep -q '^level' "$out/joined.tm"
 }
 
 @test "the polyhedra do not depend on how the mesh is numbered" {

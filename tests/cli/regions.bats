@@ -137,6 +137,119 @@ END
     done
 }
 
+# sharp NAME [TURN]: regions that end at angles well below 90 degrees, as OFF, turned about
+# two axes by so much: tetrahedron (four, around its centre), wedges (a box cut along both
+# diagonals of its base), corner (cut off a cube).
+sharp() {
+    python3 - "$@" <<'END'
+import itertools, math, sys
+name, turn = sys.argv[1], float((sys.argv + ['0'])[2])
+cube = [(i & 1, i >> 1 & 1, i >> 2) for i in range(8)]
+if name == 'tetrahedron':
+    xyz = [(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1), (0, 0, 0)]
+    faces = list(itertools.combinations(range(4), 3))
+    faces += [(a, b, 4) for a, b in itertools.combinations(range(4), 2)]
+elif name == 'wedges':
+    xyz = cube + [(.5, .5, 0), (.5, .5, 1)]
+    base = ((0, 1), (1, 3), (3, 2), (2, 0))
+    faces = [(a, b, 8) for a, b in base] + [(a + 4, b + 4, 9) for a, b in base]
+    faces += [(a, b, b + 4, a + 4) for a, b in base] + [(a, 8, 9, a + 4) for a in range(4)]
+else:
+    xyz = cube + [(.4, 0, 0), (0, .4, 0), (0, 0, .4)]
+    faces = [(8, 9, 10), (0, 8, 9), (0, 9, 10), (0, 8, 10), (8, 1, 3, 2, 9),
+             (8, 1, 5, 4, 10), (9, 2, 6, 4, 10), (1, 3, 7, 5), (2, 6, 7, 3), (4, 5, 7, 6)]
+
+def turned(p, a, b, by):
+    p = list(p)
+    c, s = math.cos(by), math.sin(by)
+    p[a], p[b] = c * p[a] - s * p[b], s * p[a] + c * p[b]
+    return p
+
+print('OFF\n%d %d 0' % (len(xyz), len(faces)))
+for p in xyz:
+    print('%.17g %.17g %.17g' % tuple(turned(turned(p, 0, 1, turn), 1, 2, 1.6 * turn)))
+for f in faces:
+    print(len(f), *f)
+END
+}
+
+@test "regions that end at sharp angles are filled to their volumes, in one piece, on their walls" {
+    # the volume of each region, or of the smaller one
+    while read -r name volume; do
+        for turn in 0 0.37; do
+            sharp "$name" "$turn" >surface.off
+            octree-mesh -q -s 4 --json report -o mesh.tm surface.off
+            run -0 mesh-check -q mesh.tm
+            run -0 jens-stats --fail-below 0.05 mesh.tm
+            python3 -c 'import json
+report = json.load(open("report"))
+assert not any(report[k] for k in ("lost_corners", "lost_edges", "lost_regions"))
+assert report["held_back"] < 5'
+            volumes mesh.tm | sort -g -k 2 | awk -v v="$volume" '
+                { if (NR == 1 || v > 0.1) d = ($2 - v) / v; if (d * d > 1e-6) exit 1 }'
+        done
+    done <<'END'
+tetrahedron 0.666666666667
+wedges 0.25
+corner 0.0106666666667
+END
+}
+
+@test "reports where regions touch: of the outer boundary, and walls are no surface that is missed" {
+    sharp wedges >surface.off
+    octree-mesh -q -s 4 --json mesh.json -o mesh.tm surface.off
+    run -0 octree-repair -q --json repair.json -o repaired.tm mesh.tm
+    python3 - <<'END'
+import json
+mesh, repair = json.load(open("mesh.json")), json.load(open("repair.json"))
+assert (mesh["components"], mesh["euler"], mesh["regions"]) == (1, 2, 4)
+for state in (repair["before"], repair["after"]):
+    assert (state["components"], state["euler"]) == (1, 2)
+    for key in ("to_surface", "from_surface", "to_sharp", "from_sharp"):
+        assert 0 <= state[key] < 1e-9, (key, state[key])
+END
+}
+
+# touching WHICH: two solids of STL side by side whose common faces have different
+# diagonals, or one a node more, or are of different height.
+touching() {
+    python3 - "$1" <<'END'
+import sys
+sides = [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6)]
+
+def solid(low, high=1, turned=False, split=False):
+    xyz = [(low + (i & 1), i >> 1 & 1, high * (i >> 2)) for i in range(8)]
+    xyz.append((low, .5, high / 2))
+    for i, q in enumerate(sides):
+        if i == 0 and turned:
+            q = q[1:] + q[:1]
+        cut = [(q[0], q[1], q[2]), (q[0], q[2], q[3])]
+        if i == 0 and split:
+            cut = [(a, b, 8) for a, b in zip(q, q[1:] + q[:1])]
+        for t in cut:
+            print('facet normal 0 0 0\nouter loop')
+            for v in t:
+                print('vertex', *xyz[v])
+            print('endloop\nendfacet')
+
+print('solid s')
+solid(0)
+solid(1, **{'diagonals': dict(turned=True), 'node': dict(split=True),
+            'height': dict(high=.5)}[sys.argv[1]])
+print('endsolid s')
+END
+}
+
+@test "solids whose common faces do not have the same triangles: what is said helps" {
+    for which in diagonals node height; do
+        touching "$which" >surface.stl
+        run -3 --separate-stderr octree-mesh -s 3 surface.stl
+        [ "$output" = "" ]
+        [[ "$stderr" == *"overlap"*"where solids touch, both need the same triangles on all of their common face"* ||
+            "$stderr" == *"meet near (1, "*"in one plane: where solids touch, both need the same triangles"* ]]
+    done
+}
+
 @test "walls are refused with --lenient and --cavities, and what is said gives the outer surface" {
     command -v tetgen >/dev/null || skip "there is no tetgen"
     for boxes in "off" "off each" "poly" "stl each"; do

@@ -454,9 +454,30 @@ os.execvp(sys.argv[1], sys.argv[1:])' tetgen-mesh --tetgen ./slow cube.off -o ou
     run -4 --separate-stderr bash -c 'tetgen-mesh cube.off >/dev/full'
 }
 
+@test "numbers and switches reach TetGen as they are meant" {
+    surface sphere off >sphere.off
+    # says what it is called with
+    printf '%s\n' '#!/bin/sh' "echo \"\$*\" >>'$PWD/called'" 'exec tetgen "$@"' >recorder
+    chmod +x recorder
+    for ratio in 1000 100 20.5 1.4142135623730951 1e2; do
+        tetgen-mesh --quiet --tetgen "$PWD/recorder" -q"$ratio" -o mesh.tm sphere.off
+    done
+    grep -o -e '-q[0-9.]* ' called | tr -d '\n' |
+        grep -x -e '-q1000 -q100 -q20.5 -q1.4142135623730951 -q100 '
+    tetgen-mesh --no-history --switches a1e-2 sphere.off | cmp - <(tetgen-mesh --no-history -a 0.01 sphere.off)
+    tetgen-mesh --no-history --switches -q1.2/10T1e-9 sphere.off >mesh.tm
+    run -2 --separate-stderr tetgen-mesh --switches m sphere.off
+    [[ "$stderr" == "tetgen-mesh: --switches: 'm' is not possible here (nor any of "* ]]
+    run -2 --separate-stderr tetgen-mesh --switches Av sphere.off
+    [[ "$stderr" == "tetgen-mesh: --switches: 'v' would do nothing here (nor any of "* ]]
+    run -2 --separate-stderr tetgen-mesh --switches A:2 sphere.off
+    [[ "$stderr" == "tetgen-mesh: --switches: ':' is no switch of TetGen here"* ]]
+}
+
 @test "usage errors are exit 2" {
     surface cube off >cube.off
-    for wrong in -q0.5 -qx -a0 -a-1 -ax --switches= --switches=I --switches=qo2 -z \
+    for wrong in -q0.5 -qx -a0 -a-1 -ax --switches= --switches=I --switches=qo2 --switches=m \
+        --switches=Ai --switches=d --switches=q1e3 --switches=v --switches=q1.2o -z \
         --threads=0; do
         echo "$wrong"
         run --separate-stderr tetgen-mesh "$wrong" cube.off

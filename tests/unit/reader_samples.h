@@ -114,7 +114,7 @@ static tm_status read_edge(const char *bytes, size_t size, tm_text *meaning)
 static tm_status read_visf(const char *bytes, size_t size, tm_text *meaning)
 {
     tm_stream stream;
-    tm_visf_repairs repairs;
+    tm_polyhedra_repairs repairs;
     tm_error error;
     tm_stream_init(&stream);
     const tm_status status = tm_visf_read(&stream, bytes, size, "file", &repairs, &error);

@@ -68,7 +68,7 @@ static void test_words_of_binary(void **state)
     check_binary(read_ply, "PLY, big", ply_big.bytes, ply_big.size);
     for (size_t f = 0; f < sizeof forms / sizeof *forms; f++) {
         tm_stream stream;
-        tm_visf_repairs repairs;
+        tm_polyhedra_repairs repairs;
         tm_error error;
         tm_text visf = {0};
         tm_stream_init(&stream);

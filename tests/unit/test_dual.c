@@ -80,12 +80,12 @@ static void assert_sound(const tm_poly_arrays *mesh, size_t wrong_pyramids)
 }
 
 /* Makes the dual and asserts all that it promises. */
-static tm_dual_report check_dual(const tm_tet_mesh *mesh, double feature_angle)
+static tm_dual_report check(const tm_tet_mesh *mesh, double feature_angle, bool convex)
 {
     tm_error error = {0};
     tm_dual_blocks made;
     tm_dual_report report;
-    const tm_dual_options options = {.feature_angle = feature_angle};
+    const tm_dual_options options = {.feature_angle = feature_angle, .convex = convex};
     if (tm_dual_make(&made, mesh, &options, &report, &error) != TM_OK)
         fail_msg("%s", error.what);
     const tm_poly_arrays arrays = arrays_of(&made);
@@ -99,6 +99,11 @@ static tm_dual_report check_dual(const tm_tet_mesh *mesh, double feature_angle)
         assert_true(fabs(before.area[m] - after.area[m]) <= 1e-11 * before.area[m]);
     tm_dual_blocks_free(&made);
     return report;
+}
+
+static tm_dual_report check_dual(const tm_tet_mesh *mesh, double feature_angle)
+{
+    return check(mesh, feature_angle, false);
 }
 
 /* The mesh of a stream, which is used up. */
@@ -210,6 +215,28 @@ static void test_touching(void **state)
     }
 }
 
+/* Of what is concave everywhere hardly a cell is, where it is to be convex: those that
+ * have the surface on two sides of a hollow are cut between them. */
+static void test_convex(void **state)
+{
+    (void)state;
+    size_t before = 0, after = 0;
+    for (int k = 0; k < 12; k++) {
+        tm_stream stream;
+        tm_tet_mesh mesh;
+        make_grid(&stream, GRID, 0.2, k % 2);
+        keep_some(&stream, 0.7 + 0.2 * random_unit());
+        take_mesh(&mesh, &stream);
+        before += check(&mesh, 30, false).concave;
+        const tm_dual_report r = check(&mesh, 30, true);
+        assert_int_equal(r.wrong_pyramids, 0);
+        after += r.concave;
+        tm_tet_mesh_free(&mesh);
+    }
+    assert_true(before > 0);
+    assert_true(2 * after < before);
+}
+
 /* Regions and marked faces at random: faces that stay end anywhere. */
 static void test_regions(void **state)
 {
@@ -275,6 +302,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_one_tetrahedron), cmocka_unit_test(test_cube),
         cmocka_unit_test(test_grids),           cmocka_unit_test(test_touching),
-        cmocka_unit_test(test_regions),         cmocka_unit_test(test_scales)};
+        cmocka_unit_test(test_convex),          cmocka_unit_test(test_regions),
+        cmocka_unit_test(test_scales)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

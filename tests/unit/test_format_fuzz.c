@@ -164,7 +164,7 @@ static void read_visf(const char *bytes, size_t size)
     assert_non_null(copy);
     memcpy(copy, bytes, size);
     tm_stream stream;
-    tm_visf_repairs repairs;
+    tm_polyhedra_repairs repairs;
     tm_error error = {.status = TM_OK};
     tm_cell_faces faces;
     tm_stream_init(&stream);
@@ -194,7 +194,7 @@ static void test_visf(void **state)
                                             {TM_VISF_LITTLE, true, false},
                                             {TM_VISF_BIG, false, true}};
     tm_stream stream;
-    tm_visf_repairs repairs;
+    tm_polyhedra_repairs repairs;
     tm_error error;
     tm_stream_init(&stream);
     assert_int_equal(

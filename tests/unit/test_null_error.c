@@ -4,6 +4,7 @@
  * headers, has a macro for each. The headers come before it, and so are not changed. */
 #include "../../lib/mesh/cell_faces.h"
 #include "../../lib/format/mesh_format.h"
+#include "../../lib/format/openfoam/openfoam.h"
 #include "../../lib/format/oct.h"
 #include "../../lib/surface/polygon_surface.h"
 #include "../../lib/format/tetgen.h"

@@ -168,7 +168,9 @@ static void test_shape(void **unused)
     assert_int_equal(whole.components, 1);
     assert_int_equal(whole.euler, 2);
     tm_surface_comparison apart;
-    assert_ok(tm_repair_shape_compare(&apart, &c.state, &c.surface, 40, &error), &error);
+    assert_ok(tm_repair_shape_compare(&apart, &c.state, &(tm_mixed_regions){0},
+                                      &c.surface, 40, &error),
+              &error);
     for (int way = 0; way < TM_WAYS; way++) {
         assert_true(apart.surface[way].most < 1e-9);
         assert_true(apart.curve[way].most < 1e-9);

@@ -26,6 +26,7 @@ static const struct {
 } table[] = {
     {"tetgen-mesh", POINTS | SURFACE | PART},
     {"surface-import", POINTS | SURFACE | PART},
+    {"surface-mend", SURFACE | PART},
     {"octree-mesh", SURFACE | PART},
     {"lepp-improve", TETRAHEDRA},
     {"poly-dual", TETRAHEDRA},

@@ -53,8 +53,7 @@ static const struct {
     {"gmsh-export su2", FACES | FACE_NAMES},
     {"gmsh-export unv", EDGES | FACES | REGIONS | EDGE_NAMES | FACE_NAMES | REGION_NAMES},
     {"m3d-export", 0},
-    {"mesh-view", NODE_ATTRIBUTES | NODE_MARKERS | FACES | FACES_BELOW_0 | ALL_REGIONS |
-                      ATTRIBUTES | NODE_NAMES | FACE_NAMES | REGION_NAMES},
+    {"mesh-view", ~0u & ~(unsigned)(PARTS | TETRAHEDRA)},
     {"mvm-export", 0},
     {"obj-export", GROUPS_OF_FACES},
     {"obj-export --regions", OF_CELLS},

@@ -121,6 +121,9 @@ static void write_imported(filter *f, tm_stream *stream)
     else if (tm_stream_find(stream, ".mix"))
         filter_write(f, stream, "%zu nodes, %zu elements", nodes,
                      mesh_rows(stream, ".mix"));
+    else if (tm_stream_find(stream, ".ele"))
+        filter_write(f, stream, "%zu nodes, %zu tetrahedra", nodes,
+                     mesh_rows(stream, ".ele"));
     else if (tm_stream_find(stream, ".face"))
         filter_write(f, stream, "%zu nodes, %zu triangles", nodes,
                      mesh_rows(stream, ".face"));
@@ -128,20 +131,30 @@ static void write_imported(filter *f, tm_stream *stream)
         filter_write(f, stream, "%zu nodes", nodes);
 }
 
-int mesh_import(int argc, char **argv, const char *name, const char *purpose,
-                mesh_reader *read)
+int mesh_write_stream(filter *f, tm_stream *stream)
 {
-    filter f = start(argc, argv, name, purpose);
+    mesh_input_report(f, stream);
+    write_imported(f, stream);
+    tm_stream_free(stream);
+    return filter_finish(f, 0);
+}
+
+int mesh_read(filter *f, mesh_reader *read)
+{
     tm_stream stream;
     tm_text bytes = {0};
     tm_error error;
     tm_stream_init(&stream);
-    filter_read_bytes(&f, &bytes);
-    if (read(&f, &stream, &bytes, &error) != TM_OK)
-        filter_fail_file(&f, &error, &bytes, name);
+    filter_read_bytes(f, &bytes);
+    if (read(f, &stream, &bytes, &error) != TM_OK)
+        filter_fail_file(f, &error, &bytes, f->name);
     tm_text_free(&bytes);
-    mesh_input_report(&f, &stream);
-    write_imported(&f, &stream);
-    tm_stream_free(&stream);
-    return filter_finish(&f, 0);
+    return mesh_write_stream(f, &stream);
+}
+
+int mesh_import(int argc, char **argv, const char *name, const char *purpose,
+                mesh_reader *read)
+{
+    filter f = start(argc, argv, name, purpose);
+    return mesh_read(&f, read);
 }

@@ -46,6 +46,12 @@ int mesh_write(filter *f, mesh_writer *write);
 typedef tm_status mesh_reader(const filter *f, tm_stream *stream, const tm_text *bytes,
                               tm_error *error);
 
+/* What an importer does after its options: reads, reports, writes. */
+int mesh_read(filter *f, mesh_reader *read);
+
+/* The end of that: reports, writes the stream and frees it. For main() to return. */
+int mesh_write_stream(filter *f, tm_stream *stream);
+
 /* All of main() of an exporter or an importer that has no options of its own. */
 int mesh_export(int argc, char **argv, const char *name, const char *purpose,
                 mesh_writer *write);

@@ -68,8 +68,8 @@ static tm_status read_stream(const tm_text *bytes, const char *name, tm_stream *
     return status;
 }
 
-static tm_status copy_nodes(const tm_block *node, tm_polygon_surface *surface,
-                            tm_error *error)
+tm_status surface_input_copy_nodes(const tm_block *node, tm_polygon_surface *surface,
+                                   tm_error *error)
 {
     tm_stream copy;
     tm_stream_init(&copy);
@@ -119,7 +119,7 @@ tm_status surface_input_of_stream(const tm_stream *stream, const char *name,
                           "the stream has no such block (the surface would be in it and "
                           "surface.face, or in .node and .face alone)");
     surface->base = stream->base;
-    tm_status status = copy_nodes(node, surface, error);
+    tm_status status = surface_input_copy_nodes(node, surface, error);
     if (status == TM_OK && face)
         status = tm_polygon_surface_add_faces(surface, face, error);
     const tm_block *group = tm_stream_find(stream, "surface.group");

@@ -27,70 +27,90 @@ double tm_facet_volume_ratio(const tm_poly_centroids *m, size_t f)
     return most > 0 ? fmin(a, b) / most : 0;
 }
 
-/* Of the triangles of a facet around a point, but for those with its corner `base`. */
-static double least_sight(const tm_poly_centroids *m, size_t f, int s,
+/* From the centroids of the sides from … to - 1, of the triangles of a facet around a
+ * point, but for those with its corner `base`. */
+static double least_sight(const tm_poly_centroids *m, size_t f, int from, int to,
                           const double point[3], size_t base)
 {
     const size_t count = tm_facet_corners(m->mesh, f);
-    double least = HUGE_VAL, to[3];
-    tm_subtract(to, point, m->cell[m->mesh->side[f][s]].centre);
-    const double scale = tm_norm(to) * tm_norm(m->face[f].area) * (s == 0 ? 1 : -1);
-    if (scale == 0)
-        return 0;
-    for (size_t i = 0; i < count; i++) {
-        double normal[3];
-        if (i == base || (i + 1) % count == base)
-            continue;
-        tm_triangle_normal(normal, point, tm_facet_corner(m->mesh, f, i),
-                           tm_facet_corner(m->mesh, f, (i + 1) % count));
-        least = fmin(least, tm_dot(normal, to) / scale);
+    const double area = tm_norm(m->face[f].area);
+    double least = HUGE_VAL, line[2][3], p[3], q[3], normal[3];
+    for (int s = from; s < to; s++) {
+        tm_subtract(line[s], point, m->cell[m->mesh->side[f][s]].centre);
+        const double scale = tm_norm(line[s]) * area * (s == 0 ? 1 : -1);
+        if (scale == 0)
+            return 0;
+        for (int x = 0; x < 3; x++)
+            line[s][x] /= scale;
+    }
+    tm_subtract(p, tm_facet_corner(m->mesh, f, count - 1), point);
+    for (size_t i = 0, last = count - 1; i < count; last = i++) {
+        tm_subtract(q, tm_facet_corner(m->mesh, f, i), point);
+        tm_cross(normal, p, q);
+        for (int s = from; s < to && last != base && i != base; s++) {
+            const double sight = tm_dot(normal, line[s]);
+            least = sight < least ? sight : least;
+        }
+        p[0] = q[0];
+        p[1] = q[1];
+        p[2] = q[2];
     }
     return least;
 }
 
+static int sides_of(const tm_poly_centroids *m, size_t f)
+{
+    return m->mesh->side[f][1] == TM_NONE ? 1 : 2;
+}
+
 double tm_facet_sight(const tm_poly_centroids *m, size_t f, int s)
 {
-    return least_sight(m, f, s, m->face[f].centre, SIZE_MAX);
+    return least_sight(m, f, s, s + 1, m->face[f].centre, SIZE_MAX);
+}
+
+double tm_facet_sights(const tm_poly_centroids *m, size_t f)
+{
+    return least_sight(m, f, 0, sides_of(m, f), m->face[f].centre, SIZE_MAX);
 }
 
 double tm_facet_fan(const tm_poly_centroids *m, size_t f, double enough)
 {
     double best = -HUGE_VAL;
-    for (size_t base = 0; base < tm_facet_corners(m->mesh, f) && !(best > enough);
-         base++) {
-        double least = HUGE_VAL;
-        for (int s = 0; s < 2; s++)
-            if (m->mesh->side[f][s] != TM_NONE)
-                least = fmin(
-                    least, least_sight(m, f, s, tm_facet_corner(m->mesh, f, base), base));
-        best = fmax(best, least);
-    }
+    for (size_t base = 0; base < tm_facet_corners(m->mesh, f) && !(best > enough); base++)
+        best = fmax(best, least_sight(m, f, 0, sides_of(m, f),
+                                      tm_facet_corner(m->mesh, f, base), base));
     return best;
+}
+
+double tm_determinant_of(const double spread[3][3], double area, size_t inside)
+{
+    const double cube = 8; /* of a cube with all facets inside */
+    const double mean = inside > 0 ? area / (double)inside : 0;
+    double sum[3][3], cross[3];
+    for (int x = 0; x < 3; x++)
+        for (int y = 0; y < 3; y++)
+            sum[x][y] = mean > 0 ? spread[x][y] / mean / mean : 0;
+    tm_cross(cross, sum[1], sum[2]);
+    return fabs(tm_dot(sum[0], cross)) / cube;
 }
 
 double tm_cell_determinant(const tm_poly_centroids *m, size_t c)
 {
     const tm_poly_arrays *mesh = m->mesh;
-    const double cube = 8; /* of a cube with all facets inside */
-    double sum[3][3] = {{0}}, mean = 0, cross[3];
+    double spread[3][3] = {{0}}, sum = 0;
     size_t inside = 0;
     for (size_t k = mesh->cell_start[c]; k < mesh->cell_start[c + 1]; k++) {
         const uint32_t f = mesh->cell_facet[k];
         if (mesh->side[f][1] == TM_NONE)
             continue;
         const double *area = m->face[f].area;
-        mean += tm_norm(area);
+        sum += tm_norm(area);
         inside++;
         for (int x = 0; x < 3; x++)
             for (int y = 0; y < 3; y++)
-                sum[x][y] += area[x] * area[y];
+                spread[x][y] += area[x] * area[y];
     }
-    mean /= inside > 0 ? (double)inside : 1;
-    for (int x = 0; x < 3; x++)
-        for (int y = 0; y < 3; y++)
-            sum[x][y] = mean > 0 ? sum[x][y] / mean / mean : 0;
-    tm_cross(cross, sum[1], sum[2]);
-    return fabs(tm_dot(sum[0], cross)) / cube;
+    return tm_determinant_of((const double(*)[3])spread, sum, inside);
 }
 
 double tm_facet_beyond(const tm_poly_centroids *m, size_t f, size_t other, size_t c)
@@ -103,15 +123,7 @@ double tm_facet_beyond(const tm_poly_centroids *m, size_t f, size_t other, size_
     return lengths > 0 ? sign * tm_dot(to, at->area) / lengths : -1;
 }
 
-static bool is_seen(const tm_poly_centroids *m, size_t f)
-{
-    for (int s = 0; s < 2; s++)
-        if (m->mesh->side[f][s] != TM_NONE && !(tm_facet_sight(m, f, s) > 0))
-            return false;
-    return true;
-}
-
-static bool is_concave(const tm_poly_centroids *m, size_t c)
+bool tm_cell_is_concave(const tm_poly_centroids *m, size_t c)
 {
     const tm_poly_arrays *mesh = m->mesh;
     const size_t begin = mesh->cell_start[c], end = mesh->cell_start[c + 1];
@@ -125,7 +137,7 @@ static bool is_concave(const tm_poly_centroids *m, size_t c)
 
 static void judge_facet(const tm_poly_centroids *m, size_t f, tm_poly_finite_volume *out)
 {
-    out->unseen += !is_seen(m, f);
+    out->unseen += !(tm_facet_sights(m, f) > 0);
     out->no_fan += !(tm_facet_fan(m, f, 0) > 0);
     if (m->mesh->side[f][1] == TM_NONE)
         return;
@@ -150,7 +162,7 @@ void tm_poly_all_geometry(const tm_poly_centroids *m, tm_poly_finite_volume *out
         const double determinant = tm_cell_determinant(m, c);
         out->min_determinant = fmin(out->min_determinant, determinant);
         out->small_determinants += determinant < TM_FV_DETERMINANT;
-        out->concave += is_concave(m, c);
+        out->concave += tm_cell_is_concave(m, c);
     }
     if (inside == 0)
         out->min_weight = out->min_volume_ratio = 0;

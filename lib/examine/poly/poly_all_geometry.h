@@ -24,18 +24,23 @@ double tm_facet_skewness(const tm_poly_centroids *m, size_t f);
 
 /* The least of the volumes of tetrahedra, by their scale, that triangles of a facet make
  * with the centroid of its first (s = 0) or second cell: of the triangles around the
- * facet's centroid; and of those around the corner where the least for both is largest.
- */
+ * facet's centroid, for one cell, and for both; and of those around the corner where the
+ * least for both is largest, or the first one where it is `enough`. */
 double tm_facet_sight(const tm_poly_centroids *m, size_t f, int s);
+double tm_facet_sights(const tm_poly_centroids *m, size_t f);
 double tm_facet_fan(const tm_poly_centroids *m, size_t f, double enough);
 
 /* Of the sum of n n^T over the inner facets of a cell, where n is their area by the mean
  * of these areas, over that of a cube: TM_FV_DETERMINANT. */
 double tm_cell_determinant(const tm_poly_centroids *m, size_t c);
 
+/* The same from Σ a aᵀ, Σ |a|, and how many they are. */
+double tm_determinant_of(const double spread[3][3], double area, size_t inside);
+
 /* The sine of the angle at which the centroid of facet `other` of cell c is beyond the
  * plane of its facet f: to be below -TM_FV_PLANE, so that a cell with facets around a
  * hanging node in one plane is concave to checkMesh. */
 double tm_facet_beyond(const tm_poly_centroids *m, size_t f, size_t other, size_t c);
+bool tm_cell_is_concave(const tm_poly_centroids *m, size_t c);
 
 #endif

@@ -47,12 +47,7 @@ static void write_text(tm_text *text, const tm_polygon_list *list)
     for (size_t v = 0; v < list->nodes; v++)
         tm_polygon_point(list, v, "", text);
     for (size_t p = 0; p < list->polygons; p++) {
-        const size_t k = tm_polygon_corners(list, p);
-        tm_text_integer(text, (int64_t)k);
-        for (size_t i = 0; i < k; i++) {
-            tm_text_append(text, " ", 1);
-            tm_text_integer(text, list->number[list->room[i]]);
-        }
+        tm_polygon_row(list, p, text);
         if (list->grouped) {
             tm_text_append(text, " ", 1);
             tm_text_integer(text, list->polygon[p].value);

@@ -164,6 +164,16 @@ void tm_polygon_point(const tm_polygon_list *list, size_t v, const char *word,
     }
 }
 
+void tm_polygon_row(const tm_polygon_list *list, size_t p, tm_text *text)
+{
+    const size_t k = tm_polygon_corners(list, p);
+    tm_text_integer(text, (int64_t)k);
+    for (size_t i = 0; i < k; i++) {
+        tm_text_append(text, " ", 1);
+        tm_text_integer(text, list->number[list->room[i]]);
+    }
+}
+
 size_t tm_polygon_group_end(const tm_polygon_list *list, size_t p)
 {
     const int32_t value = list->polygon[p].value;

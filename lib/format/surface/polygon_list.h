@@ -46,6 +46,9 @@ size_t tm_polygon_corners(const tm_polygon_list *list, size_t p);
 void tm_polygon_point(const tm_polygon_list *list, size_t v, const char *word,
                       tm_text *text);
 
+/* Appends how many corners polygon p has, and these as the file numbers them from 0. */
+void tm_polygon_row(const tm_polygon_list *list, size_t p, tm_text *text);
+
 /* The end of the run of polygons that have the value of polygon p. */
 size_t tm_polygon_group_end(const tm_polygon_list *list, size_t p);
 

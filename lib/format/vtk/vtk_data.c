@@ -88,7 +88,7 @@ static tm_status write_attributes(const tm_vtk_grid *grid, tm_vtk_take *take,
     tm_vtk_column column;
     for (size_t i = 0; i < cell->attributes && status == TM_OK; i++) {
         const char *name = i == region ? "region" : i < region ? "tetrahedra" : NULL;
-        status = new_attribute(&column, cell, i, name, tm_vtk_cells(grid))
+        status = new_attribute(&column, cell, i, name, tm_vtk_cell_count(grid))
                      ? tm_vtk_finish(grid, &column, 0, TM_OK, take, context)
                      : tm_fail_memory(error);
     }
@@ -104,7 +104,7 @@ static tm_status write_markers(const tm_vtk_grid *grid, tm_vtk_take *take, void 
     tm_vtk_column column;
     if (!own && grid->marked == 0)
         return TM_OK;
-    if (!tm_vtk_column_new(&column, "marker", tm_vtk_cells(grid), true))
+    if (!tm_vtk_column_new(&column, "marker", tm_vtk_cell_count(grid), true))
         return tm_fail_memory(error);
     for (size_t c = 0; c < cells; c++)
         column.integer[c] = own ? own[c] : 0;

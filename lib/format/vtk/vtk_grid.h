@@ -35,7 +35,7 @@ tm_status tm_vtk_grid_find(tm_vtk_grid *grid, const tm_stream *stream,
                            tm_error *error);
 void tm_vtk_grid_free(tm_vtk_grid *grid);
 
-static inline size_t tm_vtk_cells(const tm_vtk_grid *grid)
+static inline size_t tm_vtk_cell_count(const tm_vtk_grid *grid)
 {
     return grid->cell->count + grid->marked;
 }

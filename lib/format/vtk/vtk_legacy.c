@@ -109,7 +109,7 @@ static char *put_type(const void *context, size_t c, char *to)
 
 static void append_cells(const tm_vtk_grid *grid, tm_text *text)
 {
-    const size_t cells = tm_vtk_cells(grid);
+    const size_t cells = tm_vtk_cell_count(grid);
     tm_text_format(text, "CELLS %zu %zu\n", cells, count_numbers(grid, 0, cells));
     append_rows(grid, text, grid, cells, cell_room, put_cell);
     tm_text_format(text, "CELL_TYPES %zu\n", cells);

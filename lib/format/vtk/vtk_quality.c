@@ -48,7 +48,7 @@ static tm_status write_measure(const tm_vtk_grid *grid, const char *name,
                                tm_vtk_take *take, void *context, tm_error *error)
 {
     tm_vtk_column column;
-    if (!tm_vtk_column_new(&column, name, tm_vtk_cells(grid), false))
+    if (!tm_vtk_column_new(&column, name, tm_vtk_cell_count(grid), false))
         return tm_fail_memory(error);
     measuring m = {grid, measure, column.real};
     tm_parallel(grid->threads, (grid->cell->count + CHUNK - 1) / CHUNK, measure_chunk,
@@ -67,7 +67,7 @@ static tm_status write_levels(const tm_vtk_grid *grid, tm_vtk_take *take, void *
     tm_vtk_column column;
     if (!octant)
         return TM_OK;
-    if (!tm_vtk_column_new(&column, "level", tm_vtk_cells(grid), true))
+    if (!tm_vtk_column_new(&column, "level", tm_vtk_cell_count(grid), true))
         return tm_fail_memory(error);
     for (size_t e = 0; e < grid->cell->count; e++)
         column.integer[e] = -1;
@@ -84,7 +84,7 @@ static tm_status write_of_polyhedra(const tm_vtk_grid *grid, tm_vtk_take *take,
 {
     const tm_poly_arrays mesh = tm_poly_arrays_of(grid->stream);
     tm_vtk_column volume = {.count = 0}, radius = {.count = 0};
-    const size_t cells = tm_vtk_cells(grid);
+    const size_t cells = tm_vtk_cell_count(grid);
     tm_status status = TM_OK;
     if (!tm_vtk_column_new(&volume, "volume", cells, false) ||
         !tm_vtk_column_new(&radius, "kernel_radius", cells, false))

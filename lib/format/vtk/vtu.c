@@ -152,7 +152,7 @@ static tm_status append_cells(const writer *w, cell_arrays *a)
     if (status != TM_OK)
         return status;
     append_marked(grid, a);
-    for (size_t c = 0; c < tm_vtk_cells(grid); c++)
+    for (size_t c = 0; c < tm_vtk_cell_count(grid); c++)
         a->type[c] = tm_vtk_type(grid, c);
     return TM_OK;
 }
@@ -196,7 +196,7 @@ static tm_status write_cell_arrays(writer *w, const cell_arrays *a)
         status = write_integers(w, "offsets", &a->offsets);
     if (status == TM_OK)
         status = tm_vtu_write_array(&w->arrays, "types", TM_VTU_UINT8, 1, a->type,
-                                    tm_vtk_cells(&w->grid));
+                                    tm_vtk_cell_count(&w->grid));
     if (w->grid.content != TM_CONTENT_POLYHEDRA || status != TM_OK)
         return status;
     status = write_integers(w, "faces", &a->faces);
@@ -205,7 +205,7 @@ static tm_status write_cell_arrays(writer *w, const cell_arrays *a)
 
 static tm_status write_cells(writer *w)
 {
-    size_t connectivity, faces, cells = tm_vtk_cells(&w->grid);
+    size_t connectivity, faces, cells = tm_vtk_cell_count(&w->grid);
     count_numbers(&w->grid, &connectivity, &faces);
     bool wide = w->grid.node->count > INT32_MAX || connectivity + faces > INT32_MAX;
     cell_arrays a = {.type = tm_new(cells, sizeof *a.type)};
@@ -275,7 +275,7 @@ static tm_status write_piece(writer *w, tm_text *xml)
                         "  <UnstructuredGrid>\n");
     write_names(w, xml);
     tm_text_format(xml, "    <Piece NumberOfPoints=\"%zu\" NumberOfCells=\"%zu\">\n",
-                   w->grid.node->count, tm_vtk_cells(&w->grid));
+                   w->grid.node->count, tm_vtk_cell_count(&w->grid));
     tm_status status = write_section(w, "PointData", write_point_data);
     if (status == TM_OK)
         status = write_section(w, "CellData", write_cell_data);

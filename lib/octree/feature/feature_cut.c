@@ -64,7 +64,8 @@ void tm_feature_cut_wide(const tm_feature *feature, tm_interior_boundary *bounda
                          const tm_surface *surface, const uint8_t *on_path,
                          const tm_surface_point *at)
 {
-    const double wide = -0.6; /* the cosine of 127° */
+    const double wide = -0.6;   /* the cosine of 127° */
+    const double straight = -2; /* wider than all: three nodes of one curve */
     for (size_t f = 0; f < boundary->faces; f++) {
         double widest = wide;
         if (on_path[f] == 0 || boundary->cut[f] != TM_UNCUT ||
@@ -82,7 +83,7 @@ void tm_feature_cut_wide(const tm_feature *feature, tm_interior_boundary *bounda
             normal_at(surface, &at[boundary->face[f][(i + 2) % 4]], normal);
             const double cosine =
                 is_passed_by_walls(feature, surface, boundary->face[f], i)
-                    ? -1
+                    ? straight
                     : cosine_at(p[0], p[1], p[2], normal);
             if (cosine < widest) {
                 widest = cosine;

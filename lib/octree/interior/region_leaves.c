@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "region_leaves.h"
 #include "contacts.h"
-#include "region_sets.h"
+#include "region_layout.h"
 
 #include "../../base/array.h"
 
@@ -62,10 +62,14 @@ typedef struct {
     tm_interior *interior;
     tm_walls walls;
     uint32_t (*leaf)[OCTANTS]; /* [nodes]: those around it */
-    bool strict;      /* not only masks count, but what the surface does not have */
-    bool *bad;        /* [nodes] */
-    uint8_t *changes; /* [leaves]: how often it was changed, at most MOST_CHANGES */
-    size_t wrong;     /* what is, at the beginning of a round */
+    unsigned finest;           /* level of the smallest leaf with surface */
+    bool strict;       /* not only masks count, but what the surface does not have */
+    bool *bad;         /* [nodes] */
+    const bool *sharp; /* [nodes]: faces there may be flat; NULL: nowhere */
+    bool *laid;        /* [leaves]: of the best layout, `fixed` */
+    const bool *fixed; /* [leaves]: it keeps its label while strict */
+    uint8_t *changes;  /* [leaves]: how often it was changed, at most MOST_CHANGES */
+    size_t wrong;      /* what is, at the beginning of a round */
     tm_contacts contacts;
 } cleaner;
 
@@ -145,6 +149,9 @@ static bool is_node_of_walls(const cleaner *c, size_t l, unsigned f, unsigned i)
 static unsigned count_flat(const cleaner *c, size_t l)
 {
     unsigned flat = 0;
+    for (unsigned i = 0; c->sharp && i < 8; i++)
+        if (c->sharp[c->octree->node[l][i]])
+            return 0;
     for (unsigned f = 0; f < 6; f++) {
         const unsigned corner = f % 2 << f / 2, own = 7 - corner;
         const uint32_t *octant = c->interior->octant[c->octree->node[l][corner]];
@@ -242,16 +249,27 @@ typedef struct {
     double cost;
 } change;
 
+/* Whether a leaf is of one region all over, and larger than the smallest with surface. */
+static bool is_large(const cleaner *c, size_t l)
+{
+    const tm_leaf *leaf = &c->octree->leaf[l];
+    return !leaf->crossed && leaf->level < c->finest;
+}
+
 /* The best change of one of the leaves contact[0 … count) around a node that makes it
  * worse by no more than `most`: what does most good, and of that the leaf closest to the
  * surface. */
 static change find_change(const cleaner *c, const tm_contact *around, size_t count,
                           const label_list *to, int most, bool only_smaller)
 {
+    const double fixed_cost = 4; /* one that was laid out is the last to change */
     change best = {.leaf = TM_NONE, .cost = INFINITY};
     for (size_t i = 0; i < count; i++) {
         const size_t l = around[i].leaf;
-        const double depth = tm_leaf_depth(c->octree, c->surface, l);
+        if (c->strict && (c->fixed[l] || is_large(c, l)))
+            continue;
+        const double depth =
+            tm_leaf_depth(c->octree, c->surface, l) + (c->fixed[l] ? fixed_cost : 0);
         const int before = (int)badness(c, l);
         const uint32_t now = c->interior->label[l];
         for (unsigned k = 0; k < to->count; k++) {
@@ -304,25 +322,51 @@ static bool is_bad(const cleaner *c, const tm_contact *around, size_t count)
     return false;
 }
 
-static tm_status clean(cleaner *c, tm_error *error)
+/* A round: false in *any where nothing was changed. */
+static tm_status clean_once(cleaner *c, bool only_smaller, bool *any, tm_error *error)
+{
+    const tm_status status = find_contacts(c, error);
+    *any = false;
+    if (status != TM_OK)
+        return status;
+    for (size_t i = 0, next; i < c->contacts.count; i = next) {
+        const tm_contact *around = &c->contacts.contact[i];
+        next = tm_contacts_next(&c->contacts, i);
+        if (is_bad(c, around, next - i))
+            *any |= mend(c, around, next - i, only_smaller);
+    }
+    return TM_OK;
+}
+
+/* Looks after all that is not as in the surface. */
+static tm_status clean_all(cleaner *c, tm_error *error)
 {
     size_t least = SIZE_MAX;
-    for (int round = 0, vain = 0;; round++) {
-        bool any = false;
-        c->strict &= round < STRICT_ROUNDS && vain < VAIN_ROUNDS;
-        const tm_status status = find_contacts(c, error);
+    bool any = true;
+    c->strict = true;
+    memset(c->changes, 0, c->octree->leaves);
+    for (int round = 0, vain = 0; any && round < STRICT_ROUNDS && vain < VAIN_ROUNDS;
+         round++) {
+        const tm_status status = clean_once(c, false, &any, error);
+        if (status != TM_OK)
+            return status;
         vain = c->wrong < least ? 0 : vain + 1;
         least = c->wrong < least ? c->wrong : least;
-        if (status != TM_OK || (c->contacts.count == 0 && !c->strict))
-            return status;
-        for (size_t i = 0, next; i < c->contacts.count; i = next) {
-            const tm_contact *around = &c->contacts.contact[i];
-            next = tm_contacts_next(&c->contacts, i);
-            if (is_bad(c, around, next - i))
-                any |= mend(c, around, next - i, round >= STRICT_ROUNDS + FREE_ROUNDS);
-        }
-        c->strict &= any;
     }
+    return TM_OK;
+}
+
+/* Looks after masks, until all are good. */
+static tm_status clean_masks(cleaner *c, tm_error *error)
+{
+    bool any = true;
+    c->strict = false;
+    for (int round = 0; any; round++) {
+        const tm_status status = clean_once(c, round >= FREE_ROUNDS, &any, error);
+        if (status != TM_OK)
+            return status;
+    }
+    return TM_OK;
 }
 
 /* Fills `leaf` of the cleaner. */
@@ -340,13 +384,95 @@ static void label_leaves(cleaner *c)
 {
     const tm_octree *octree = c->octree;
     for (size_t l = 0; l < octree->leaves; l++) {
+        const tm_leaf *leaf = &octree->leaf[l];
+        if (leaf->crossed && leaf->level > c->finest)
+            c->finest = leaf->level;
         double centre[3];
         uint32_t label = l > 0 ? c->interior->label[l - 1] : 0;
-        tm_leaf_centre(octree, &octree->leaf[l], centre);
+        tm_leaf_centre(octree, leaf, centre);
         if (l == 0 || !tm_leaf_is_as_before(octree, l))
             label = tm_surface_region_at(c->surface, centre);
         put(c->interior, octree, l, label);
     }
+}
+
+/* Counts what is wrong at nodes, faces aside, and makes it cost more to go by there. */
+static size_t remember(const cleaner *c, const tm_region_layout *layout, float *history)
+{
+    size_t wrong = 0;
+    for (uint32_t n = 0; n < c->octree->nodes; n++) {
+        if (node_badness(c, n) == 0)
+            continue;
+        wrong++;
+        history[n] += 1;
+        for (int side = 0; side < 6; side++)
+            if (layout->lattice.next[n][side] != TM_NONE)
+                history[layout->lattice.next[n][side]] += 1;
+    }
+    return wrong;
+}
+
+static void put_all(cleaner *c, const uint32_t *label)
+{
+    for (size_t l = 0; l < c->octree->leaves; l++)
+        if (c->interior->label[l] != label[l])
+            put(c->interior, c->octree, l, label[l]);
+}
+
+/* Lays out corners and curves and cleans what is around them; *wrong is what is left. */
+static tm_status lay_out_once(cleaner *c, float *history, tm_region_layout *layout,
+                              size_t *wrong, tm_error *error)
+{
+    const size_t lost_weight = 10;
+    *layout = (tm_region_layout){.history = history};
+    tm_status status =
+        tm_region_layout_make(layout, c->octree, c->surface, c->interior, error);
+    c->fixed = layout->fixed;
+    c->sharp = layout->sharp;
+    if (status == TM_OK)
+        status = clean_all(c, error);
+    if (status == TM_OK)
+        *wrong = remember(c, layout, history) + lost_weight * layout->lost;
+    c->fixed = c->laid;
+    c->sharp = NULL;
+    return status;
+}
+
+/* The same again and again while something is wrong then: elsewhere, with what was learnt
+ * (L. McMurchie and C. Ebeling, PathFinder, 1995). Leaves the best that was found. */
+static tm_status lay_out(cleaner *c, tm_error *error)
+{
+    enum { TRIES = 6 };
+    const size_t leaves = c->octree->leaves, bytes = leaves * sizeof(uint32_t);
+    uint32_t *start = tm_new(leaves, sizeof *start);
+    uint32_t *best = tm_new(leaves, sizeof *best);
+    float *history = calloc(c->octree->nodes + 1, sizeof *history);
+    tm_status status = TM_OK;
+    size_t least = SIZE_MAX, wrong = 0;
+    if (!start || !best || !history) {
+        free(start);
+        free(best);
+        free(history);
+        return tm_fail_memory(error);
+    }
+    memcpy(start, c->interior->label, bytes);
+    memcpy(best, start, bytes);
+    for (int i = 0; status == TM_OK && least > 0 && i < TRIES; i++) {
+        tm_region_layout layout;
+        put_all(c, start);
+        status = lay_out_once(c, history, &layout, &wrong, error);
+        if (status == TM_OK && wrong < least) {
+            memcpy(best, c->interior->label, bytes);
+            memcpy(c->laid, layout.fixed, leaves * sizeof *c->laid);
+            least = wrong;
+        }
+        tm_region_layout_free(&layout);
+    }
+    put_all(c, best);
+    free(start);
+    free(best);
+    free(history);
+    return status;
 }
 
 tm_status tm_interior_label(tm_interior *interior, const tm_octree *octree,
@@ -359,21 +485,26 @@ tm_status tm_interior_label(tm_interior *interior, const tm_octree *octree,
                  .interior = interior,
                  .leaf = tm_new(octree->nodes, sizeof *c.leaf),
                  .strict = true,
+                 .laid = calloc(octree->leaves + 1, 1),
                  .bad = malloc(octree->nodes + 1),
                  .changes = calloc(octree->leaves + 1, 1)};
-    const bool ok = interior->label && interior->octant && c.leaf && c.bad && c.changes;
+    const bool ok =
+        interior->label && interior->octant && c.leaf && c.laid && c.bad && c.changes;
     tm_status status = tm_walls_find(&c.walls, surface, error);
     if (status == TM_OK && !ok)
         status = tm_fail_memory(error);
     if (ok && status == TM_OK) {
         find_leaves(&c);
         label_leaves(&c);
-        status = clean(&c, error);
+        status = lay_out(&c, error);
+        if (status == TM_OK)
+            status = clean_masks(&c, error);
     }
     for (size_t l = 0; l < octree->leaves && ok && status == TM_OK; l++)
         interior->chosen[l] = interior->label[l] != 0;
     tm_walls_free(&c.walls);
     free(c.leaf);
+    free(c.laid);
     free(c.bad);
     free(c.changes);
     free(c.contacts.contact);

@@ -2,7 +2,9 @@
 #include "adaptive_refinement.h"
 
 #include "../../base/array.h"
+#include "../../base/disjoint_sets.h"
 #include "../forest/octree_build.h"
+#include "../interior/wall_refinement.h"
 #include "octree_mesh_parts.h"
 
 #include <stdlib.h>
@@ -25,10 +27,65 @@ static size_t keep_shallow(const tm_octree *octree, unsigned deepest, uint8_t *s
     return count;
 }
 
-/* Splits leaves with surface but no boundary close by, until there are none; then makes
- * the mesh. */
+/* Whether not all octants around a node are of the region of a chosen leaf. */
+static bool is_at_boundary(const tm_interior *interior, uint32_t node, size_t leaf)
+{
+    if (!interior->octant)
+        return interior->mask[node] != TM_ALL_OCTANTS;
+    for (int o = 0; o < 8; o++)
+        if (interior->octant[node][o] != interior->label[leaf])
+            return true;
+    return false;
+}
+
+/* Whether smaller leaves that are not chosen are at a face of a chosen leaf above a
+ * level: the surface is in these, but their centres are outside. */
+static bool is_behind_boundary(const tm_interior *interior, const tm_octree *octree,
+                               unsigned level, size_t l)
+{
+    for (int f = 0; interior->chosen[l] && octree->leaf[l].level < level && f < 6; f++) {
+        const uint32_t centre = octree->node[l][TM_LEAF_FACE + f];
+        if (centre != TM_NONE && is_at_boundary(interior, centre, l))
+            return true;
+    }
+    return false;
+}
+
+/* Marks such leaves where many touch, as along a plane: the boundary has large faces
+ * there. A few only are everywhere. */
+static tm_status mark_behind_boundary(const tm_interior *interior,
+                                      const tm_octree *octree, unsigned level,
+                                      uint8_t *split, tm_error *error)
+{
+    const uint32_t many = 8;
+    uint32_t *parent = tm_new(octree->nodes, sizeof *parent);
+    uint32_t *count = calloc(octree->nodes + 1, sizeof *count);
+    const bool ok = parent && count;
+    for (size_t n = 0; ok && n < octree->nodes; n++)
+        parent[n] = (uint32_t)n;
+    for (size_t l = 0; ok && l < octree->leaves; l++)
+        if (is_behind_boundary(interior, octree, level, l))
+            for (int p = 1; p < TM_LEAF_EDGE; p++)
+                tm_set_unite(parent, octree->node[l][0], octree->node[l][p]);
+    for (int round = 0; ok && round < 2; round++)
+        for (size_t l = 0; l < octree->leaves; l++) {
+            if (!is_behind_boundary(interior, octree, level, l))
+                continue;
+            uint32_t *of = &count[tm_set_root(parent, octree->node[l][0])];
+            if (round == 0)
+                ++*of;
+            else
+                split[l] |= *of >= many;
+        }
+    free(parent);
+    free(count);
+    return ok ? TM_OK : tm_fail_memory(error);
+}
+
+/* Splits leaves with surface but no boundary close by, and those behind a boundary of
+ * smaller ones, until there are none; then makes the mesh. */
 static tm_status make_without_loss(tm_octree_mesh *mesh, tm_octree *octree,
-                                   tm_surface *surface, unsigned deepest,
+                                   tm_surface *surface, unsigned level, unsigned deepest,
                                    const tm_progress *progress, tm_error *error)
 {
     tm_interior interior = {0};
@@ -41,6 +98,9 @@ static tm_status make_without_loss(tm_octree_mesh *mesh, tm_octree *octree,
                       : tm_fail_memory(error);
         if (status == TM_OK) {
             tm_interior_find_lost(&interior, octree, surface, lost);
+            for (size_t l = 0; deepest == level && l < octree->leaves; l++)
+                lost[l] = 0;
+            status = mark_behind_boundary(&interior, octree, level, lost, error);
             more = keep_shallow(octree, deepest, lost) > 0;
         }
         if (status == TM_OK && more) {
@@ -97,8 +157,8 @@ static uint64_t topology_missing(const tm_octree_mesh *mesh, const tm_surface *s
  * nodes are off the surface and its topology is as good, else the mesh is made of it
  * again. Meshes are large: there is only one at a time. */
 static tm_status try_split(tm_octree_mesh *mesh, tm_octree *octree, tm_surface *surface,
-                           unsigned deepest, const uint8_t *split, bool *better,
-                           const tm_progress *progress, tm_error *error)
+                           unsigned level, unsigned deepest, const uint8_t *split,
+                           bool *better, const tm_progress *progress, tm_error *error)
 {
     const size_t off_surface = mesh->report.off_surface;
     const uint64_t missing = topology_missing(mesh, surface);
@@ -109,7 +169,8 @@ static tm_status try_split(tm_octree_mesh *mesh, tm_octree *octree, tm_surface *
     if (status == TM_OK)
         status = tm_octree_refine(&finer, surface, split, error);
     if (status == TM_OK)
-        status = make_without_loss(mesh, &finer, surface, deepest, progress, error);
+        status =
+            make_without_loss(mesh, &finer, surface, level, deepest, progress, error);
     *better = status == TM_OK && mesh->report.off_surface < off_surface &&
               topology_missing(mesh, surface) <= missing;
     if (*better) {
@@ -134,16 +195,18 @@ tm_status tm_octree_mesh_refine_lost(tm_octree_mesh *mesh, tm_octree *octree,
     if (deepest > TM_OCTREE_LEVEL_MAX)
         deepest = TM_OCTREE_LEVEL_MAX;
     tm_status status =
-        levels > 0 ? make_without_loss(mesh, octree, surface, deepest, progress, error)
-                   : tm_octree_mesh_make(mesh, octree, surface, progress, error);
+        surface->walls ? tm_octree_refine_walls(octree, surface, error) : TM_OK;
+    if (status != TM_OK)
+        return status;
+    status = make_without_loss(mesh, octree, surface, level, deepest, progress, error);
     for (bool better = levels > 0; status == TM_OK && better;) {
         const bool tries =
             mesh->report.off_surface > 0 && mesh->assembly.mesh.elements <= most_to_try;
         uint8_t *split = tries ? mark_off_surface(mesh, octree, deepest) : NULL;
         if (!split)
             break;
-        status =
-            try_split(mesh, octree, surface, deepest, split, &better, progress, error);
+        status = try_split(mesh, octree, surface, level, deepest, split, &better,
+                           progress, error);
         free(split);
     }
     tm_progress_stage(progress, "looking for losses");

@@ -160,6 +160,39 @@ static tm_status measure_boundary(tm_octree_mesh *m, tm_error *error)
     return TM_OK;
 }
 
+/* The same, where walls meet, of the faces beyond which there is nothing: each edge has
+ * two of them. */
+static tm_status measure_outside(tm_octree_mesh *m, tm_error *error)
+{
+    const tm_interior_boundary *boundary = &m->boundary;
+    size_t half_edges = 0, faces = 0, nodes = 0;
+    m->report.outer_components = 0;
+    uint32_t *parent = tm_new(boundary->nodes, sizeof *parent);
+    bool *met = calloc(boundary->nodes + 1, sizeof *met);
+    const bool ok = parent && met;
+    for (size_t s = 0; ok && s < boundary->nodes; s++)
+        parent[s] = (uint32_t)s;
+    for (size_t f = 0; ok && f < boundary->faces; f++) {
+        const unsigned k = tm_boundary_face_corners(boundary, f);
+        if (boundary->region[f][1] != 0)
+            continue;
+        half_edges += k;
+        faces++;
+        for (unsigned i = 0; i < k; i++) {
+            met[boundary->face[f][i]] = true;
+            tm_set_unite(parent, boundary->face[f][0], boundary->face[f][i]);
+        }
+    }
+    for (size_t s = 0; ok && s < boundary->nodes; s++) {
+        nodes += met[s];
+        m->report.outer_components += met[s] && tm_set_root(parent, (uint32_t)s) == s;
+    }
+    m->report.outer_euler = (int64_t)(nodes + faces) - (int64_t)(half_edges / 2);
+    free(parent);
+    free(met);
+    return ok ? TM_OK : tm_fail_memory(error);
+}
+
 static tm_status find_boundary_once(tm_octree_mesh *m, const tm_octree *octree,
                                     tm_surface *surface, tm_error *error)
 {
@@ -173,6 +206,10 @@ static tm_status find_boundary_once(tm_octree_mesh *m, const tm_octree *octree,
         tm_interior_boundary_of_parts(&m->boundary, octree, m->part, m->parts, error);
     if (status == TM_OK)
         status = measure_boundary(m, error);
+    m->report.outer_components = m->report.components;
+    m->report.outer_euler = m->report.euler;
+    if (status == TM_OK && m->boundary.region)
+        status = measure_outside(m, error);
     if (status == TM_OK)
         status = find_closest(m, surface, error);
     return status;

@@ -26,8 +26,10 @@ typedef struct tm_octree_mesh_report {
     size_t invalid;      /* elements with J_ENS <= 0 */
     size_t regions;      /* 0 where none is inside of another */
     size_t regions_lost; /* shells inside of others that have none, or around such */
-    size_t components;   /* of the boundary */
-    int64_t euler;       /* of the boundary */
+    size_t components;   /* of the boundary, with what is between regions */
+    int64_t euler;
+    size_t outer_components; /* where regions touch, without that */
+    int64_t outer_euler;
 } tm_octree_mesh_report;
 
 typedef struct tm_octree_mesh {

@@ -120,10 +120,8 @@ static void retreat_all(tm_octree_mesh *m, retreat *r)
     while (take_back(r))
         ;
     m->report.invalid = r->invalid;
-    for (size_t s = 0; s < m->boundary.nodes; s++) {
-        m->off_surface[s] = r->steps[m->assembly.outer + s] > 0;
-        m->report.off_surface += m->off_surface[s];
-    }
+    for (size_t s = 0; s < m->boundary.nodes; s++)
+        m->off_surface[s] |= r->steps[m->assembly.outer + s] > 0;
 }
 
 static tm_status hold_back(tm_octree_mesh *m, const tm_octree *octree, tm_error *error)
@@ -192,6 +190,115 @@ static tm_status improve(tm_octree_mesh *m, tm_node_rule *rule,
     return status;
 }
 
+/* What lets outer nodes go: see release(). */
+typedef struct {
+    tm_octree_mesh *m;
+    tm_node_rule *rule;
+    uint8_t *ring;     /* [nodes]: how far from invalid elements, at least 1; 0 far */
+    double (*base)[3]; /* [nodes]: where all elements are valid */
+    double (*kept)[3]; /* [nodes] */
+} releaser;
+
+static size_t count_invalid(const tm_mixed_mesh *mesh)
+{
+    size_t invalid = 0;
+    for (size_t e = 0; e < mesh->elements; e++)
+        invalid += !is_valid(mesh, e);
+    return invalid;
+}
+
+/* Fills ring[] up to so many: the nodes of invalid elements are the first one. */
+static void find_rings(const releaser *r, int rings)
+{
+    const tm_mixed_mesh *mesh = &r->m->assembly.mesh;
+    memset(r->ring, 0, mesh->nodes);
+    for (int ring = 1; ring <= rings; ring++)
+        for (size_t e = 0; e < mesh->elements; e++) {
+            bool marks = ring == 1 && !is_valid(mesh, e);
+            for (size_t i = mesh->start[e]; ring > 1 && i < mesh->start[e + 1]; i++)
+                marks |= r->ring[mesh->item[i]] == ring - 1;
+            for (size_t i = mesh->start[e]; marks && i < mesh->start[e + 1]; i++)
+                if (r->ring[mesh->item[i]] == 0)
+                    r->ring[mesh->item[i]] = (uint8_t)ring;
+        }
+}
+
+/* Lets nodes in the rings go; after the first time from where they are valid, those of
+ * the last ring from half of the way there. */
+static void let_go(const releaser *r, int rings)
+{
+    const tm_octree_mesh *m = r->m;
+    double(*xyz)[3] = m->assembly.mesh.xyz;
+    for (size_t s = 0; s < m->boundary.nodes; s++)
+        if (r->ring[m->assembly.outer + s] > 0)
+            r->rule[m->assembly.outer + s].off_surface = true;
+    for (size_t n = 0; rings > 1 && n < m->assembly.mesh.nodes; n++)
+        for (int i = 0; r->ring[n] > 0 && i < 3; i++)
+            xyz[n][i] =
+                r->ring[n] < rings ? r->base[n][i] : (xyz[n][i] + r->base[n][i]) / 2;
+}
+
+/* Tries with one ring more each time, while elements are invalid. */
+static tm_status try_rings(releaser *r, const tm_boundary *boundary,
+                           tm_optimise_options *options, tm_error *error)
+{
+    enum { RINGS = 4, MANY = 100 };
+    tm_mixed_mesh *mesh = &r->m->assembly.mesh;
+    const size_t bytes = mesh->nodes * sizeof *mesh->xyz;
+    size_t before = count_invalid(mesh);
+    tm_optimise_report report;
+    for (int rings = 1; before > 0 && rings <= RINGS; rings++) {
+        memcpy(r->kept, mesh->xyz, bytes);
+        find_rings(r, rings);
+        let_go(r, rings);
+        const tm_status status =
+            tm_mixed_optimise(mesh, r->rule, boundary, options, &report, error);
+        if (status != TM_OK)
+            return status;
+        const size_t after = count_invalid(mesh);
+        if (after > before)
+            memcpy(mesh->xyz, r->kept, bytes);
+        if (after > MANY && after > before / 2)
+            break;
+        before = after < before ? after : before;
+    }
+    return TM_OK;
+}
+
+/* Where walls meet at sharp angles: outer nodes around invalid elements leave the surface
+ * until these are valid, and come back as far as they can. */
+static tm_status release(tm_octree_mesh *m, const tm_octree *octree, tm_node_rule *rule,
+                         const tm_boundary *boundary, const tm_progress *progress,
+                         tm_error *error)
+{
+    const double valid = 0.05;
+    const size_t least = 500000, each = 2, nodes = m->assembly.mesh.nodes;
+    tm_optimise_options options = {.threshold = valid,
+                                   .effort = 1,
+                                   .most_measured =
+                                       least + each * m->assembly.mesh.elements,
+                                   .progress = progress};
+    tm_optimise_report report;
+    releaser r = {m, rule, malloc(nodes + 1), tm_new(nodes, sizeof *r.base),
+                  tm_new(nodes, sizeof *r.kept)};
+    tm_status status = r.ring && r.base && r.kept ? TM_OK : tm_fail_memory(error);
+    if (status == TM_OK)
+        status = tm_lattice_points(&m->assembly, octree, m->part, m->parts, &m->boundary,
+                                   r.base, error);
+    if (status == TM_OK)
+        status = try_rings(&r, boundary, &options, error);
+    options.off_surface_threshold = valid;
+    if (status == TM_OK)
+        status = tm_mixed_optimise(&m->assembly.mesh, rule, boundary, &options, &report,
+                                   error);
+    for (size_t s = 0; s < m->boundary.nodes; s++)
+        m->off_surface[s] = rule[m->assembly.outer + s].off_surface;
+    free(r.ring);
+    free(r.base);
+    free(r.kept);
+    return status;
+}
+
 tm_status tm_untangle_layer(tm_octree_mesh *mesh, const tm_octree *octree,
                             const tm_surface *surface, const tm_progress *progress,
                             tm_error *error)
@@ -202,8 +309,17 @@ tm_status tm_untangle_layer(tm_octree_mesh *mesh, const tm_octree *octree,
         return tm_fail_memory(error);
     double worst = 1;
     tm_status status = improve(mesh, rule, &boundary, progress, &worst, error);
+    bool valid = status != TM_OK || (worst >= least_valid && !any_is_turned(mesh));
+    if (!valid && surface->walls) {
+        status = release(mesh, octree, rule, &boundary, progress, error);
+        valid = status != TM_OK || count_invalid(&mesh->assembly.mesh) == 0;
+        if (status == TM_OK && valid)
+            status = improve(mesh, rule, &boundary, progress, &worst, error);
+    }
     free(rule);
-    if (status == TM_OK && (worst < least_valid || any_is_turned(mesh)))
+    if (!valid)
         status = hold_back(mesh, octree, error);
+    for (size_t s = 0; s < mesh->boundary.nodes; s++)
+        mesh->report.off_surface += mesh->off_surface[s];
     return status;
 }

@@ -202,15 +202,17 @@ static uint32_t (*triangles_of(const boundary *b, size_t *count))[3]
 }
 
 tm_status tm_repair_shape_compare(tm_surface_comparison *comparison,
-                                  const tm_repair_state *state, const tm_surface *surface,
-                                  double feature_angle, tm_error *error)
+                                  const tm_repair_state *state,
+                                  const tm_mixed_regions *regions,
+                                  const tm_surface *surface, double feature_angle,
+                                  tm_error *error)
 {
     const tm_mixed_mesh *mesh = &state->mesh;
     boundary b = {.state = state, .surface = surface};
     tm_surface first = {0}, second = {0};
     uint32_t(*triangle)[3] = NULL;
     size_t triangles = 0;
-    tm_status status = tm_mixed_boundary_faces(mesh, &b.face, &b.faces, error);
+    tm_status status = tm_mixed_region_faces(mesh, regions, &b.face, &b.faces, error);
     if (status == TM_OK) {
         triangle = triangles_of(&b, &triangles);
         status = triangle ? TM_OK : tm_fail_memory(error);

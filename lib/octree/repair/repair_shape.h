@@ -5,6 +5,7 @@
 #define TM_REPAIR_REPAIR_SHAPE_H
 
 #include "../../base/extern_c.h"
+#include "../../mesh/mixed_boundary.h"
 #include "../../surface/surface.h"
 #include "../../surface/measure/surface_distance.h"
 #include "repair_state.h"
@@ -31,11 +32,14 @@ tm_status tm_repair_shape_measure(tm_repair_shape *shape, const tm_repair_state 
 bool tm_repair_shape_keeps(const tm_repair_shape *a, const tm_repair_shape *b,
                            const tm_surface *surface);
 
-/* How far the boundary of the mesh, in triangles, and the surface are from each other,
- * both ways, and their sharp edges and corners. O(n log n). */
+/* How far the boundary of the mesh, and what is between regions, in triangles, and the
+ * surface are from each other, both ways, and their sharp edges and corners. O(n log n).
+ */
 tm_status tm_repair_shape_compare(tm_surface_comparison *comparison,
-                                  const tm_repair_state *state, const tm_surface *surface,
-                                  double feature_angle, tm_error *error);
+                                  const tm_repair_state *state,
+                                  const tm_mixed_regions *regions,
+                                  const tm_surface *surface, double feature_angle,
+                                  tm_error *error);
 
 TM_EXTERN_C_END
 

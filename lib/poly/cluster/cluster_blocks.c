@@ -98,15 +98,19 @@ tm_status tm_cluster_blocks(const tm_cluster_mesh *mesh, const uint32_t *label,
     return status;
 }
 
-/* One more attribute of cells: their parents' numbers. */
+/* One more attribute of cells: their parents' numbers. The second one would be a region:
+ * so that is there, too. */
 static tm_status add_parents(tm_block *cell, const uint32_t *parent, unsigned base,
                              tm_error *error)
 {
-    double *number = tm_new(cell->count, sizeof *number);
+    double *number = calloc(cell->count + 1, sizeof *number);
+    tm_status status = number ? TM_OK : tm_fail_memory(error);
+    while (status == TM_OK && cell->attributes < 2)
+        status = tm_block_add_attribute(cell, number, error);
     for (size_t c = 0; c < cell->count && number; c++)
         number[c] = (double)parent[c] + base;
-    const tm_status status =
-        number ? tm_block_add_attribute(cell, number, error) : tm_fail_memory(error);
+    if (status == TM_OK)
+        status = tm_block_add_attribute(cell, number, error);
     free(number);
     return status;
 }
@@ -209,6 +213,14 @@ static bool is_of_level(const tm_block *block, const void *context)
     return strncmp(block->name, "level", strlen("level")) == 0;
 }
 
+void tm_cluster_forget_levels(tm_stream *stream)
+{
+    tm_block *cell = tm_stream_find(stream, ".cell");
+    if (cell && cell->attributes > 0 && tm_stream_find(stream, "level1.cell"))
+        tm_block_drop_attribute(cell, cell->attributes - 1);
+    tm_stream_remove_if(stream, is_of_level, NULL);
+}
+
 tm_status tm_cluster_levels(tm_stream *stream, size_t most,
                             const tm_poly_options *options, bool ignore_markers,
                             size_t *levels, tm_error *error)
@@ -216,7 +228,7 @@ tm_status tm_cluster_levels(tm_stream *stream, size_t most,
     tm_poly_options own = *options;
     bool joined = true;
     tm_status status = TM_OK;
-    tm_stream_remove_if(stream, is_of_level, NULL);
+    tm_cluster_forget_levels(stream);
     level now = {.facet = *tm_stream_find(stream, ".facet"),
                  .cell = *tm_stream_find(stream, ".cell")};
     own.cells = 0;

@@ -46,11 +46,15 @@ tm_status tm_cluster_blocks(const tm_cluster_mesh *mesh, const uint32_t *label,
 /* Adds levels to a stream of polyhedra, until there are so many or nothing is joined any
  * more: level k as the blocks of the part `levelk`, with the nodes that its facets have.
  * The last attribute of each cell of the mesh and of all levels but the last one becomes
- * the number of its parent in the next one. `options` are those of tm_cluster_cells(),
+ * the number of its parent in the next one, after that for regions, which is 0 if there
+ * was none. Levels that there were are forgotten. `options` are those of tm_cluster_cells(),
  * without sizes. *levels is how many there are. */
 tm_status tm_cluster_levels(tm_stream *stream, size_t most,
                             const tm_poly_options *options, bool ignore_markers,
                             size_t *levels, tm_error *error);
+
+/* Takes levels out of a stream, and the parents of its cells. */
+void tm_cluster_forget_levels(tm_stream *stream);
 
 TM_EXTERN_C_END
 

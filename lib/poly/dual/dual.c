@@ -201,16 +201,14 @@ tm_status tm_dual_make(tm_dual_blocks *made, const tm_tet_mesh *mesh,
         status = tm_dual_flatten(&d, error);
     if (status == TM_OK) {
         tm_dual_place_cuts(&d);
-        status = tm_dual_improve(&d, TM_DUAL_LOOK, report, error);
+        status = tm_dual_improve(&d, false, report, error);
     }
-    tm_dual_round round = TM_DUAL_FIRST;
     for (bool more = true; more && status == TM_OK; more = d.again) {
         if (d.again)
             status = build(&d, error);
         tm_progress_stage(options->progress, "moving points");
         if (status == TM_OK)
-            status = tm_dual_improve(&d, round, report, error);
-        round = TM_DUAL_NEXT;
+            status = tm_dual_improve(&d, true, report, error);
     }
     if (status == TM_OK)
         status = write_blocks(&d, made, error);

@@ -28,7 +28,7 @@ typedef struct tm_dual_options {
      * (tm_facet_flatness()), so that the surface stays exactly what it is. With more,
      * cells are cut along all edges where the surface is bent inward by more. */
     double feature_angle;
-    bool convex; /* points of cells that are not convex are moved, too: takes long */
+    bool convex; /* points of cells that are not convex are moved, and these cut, too */
     const tm_progress *progress;
 } tm_dual_options;
 
@@ -38,7 +38,7 @@ typedef struct tm_dual_report {
     size_t taken_apart;    /* nodes with a cell for each tetrahedron */
     size_t moved;          /* points that were moved for better facets */
     size_t wrong_pyramids; /* of a facet and a centroid: not of positive volume */
-    size_t bad_facets;     /* of which checkMesh complains, those of such among them */
+    size_t bad_facets;     /* of which checkMesh complains, and cells but for concave */
     size_t concave;        /* cells that it finds concave */
     size_t lost_edges;     /* of .edge with a marker, that are inside: dropped */
 } tm_dual_report;

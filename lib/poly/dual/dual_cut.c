@@ -225,8 +225,10 @@ static void put_at_centroids(tm_dual *d, const uint32_t *piece, size_t pieces)
         tm_dual_put_at_centroid(d, piece[k] / 4);
 }
 
-/* Cuts a node until no sector turns too far; *done is false where that cannot be. */
-static bool cut_node(cutter *c, const uint32_t *piece, size_t pieces, bool *done)
+/* Cuts a node until no sector turns too far, and with `apart` between places on the
+ * border; *done is false where that cannot be. */
+static bool cut_node(cutter *c, const uint32_t *piece, size_t pieces, bool apart,
+                     bool *done)
 {
     *done = false;
     if (pieces > MOST_TRIANGLES)
@@ -238,18 +240,21 @@ static bool cut_node(cutter *c, const uint32_t *piece, size_t pieces, bool *done
     if (!grown)
         return false;
     c->reached = grown;
-    for (bool first = true;;) {
+    bool any = false;
+    if (!find_sectors(c))
+        return false;
+    while (c->sectors > 0 && cut_sector(c, &c->sector[largest_sector(c)])) {
+        any = true;
         if (!find_sectors(c))
             return false;
-        if (c->sectors == 0)
-            *done = true;
-        if (c->sectors == 0 && first)
-            put_at_centroids(c->d, piece, pieces);
-        if (c->sectors == 0 || !cut_sector(c, &c->sector[largest_sector(c)]))
-            return true;
-        c->d->cut_nodes += first;
-        first = false;
     }
+    *done = c->sectors == 0;
+    if (*done && apart && !tm_dual_cut_apart(c->d, &c->link, &any))
+        return false;
+    if (*done && !any)
+        put_at_centroids(c->d, piece, pieces);
+    c->d->cut_nodes += any;
+    return true;
 }
 
 static bool is_to_be_cut(const tm_dual *d, uint32_t v)
@@ -306,7 +311,8 @@ tm_status tm_dual_cut(tm_dual *d, tm_error *error)
             continue;
         c.most = pi + (d->level[v] == TM_DUAL_TO_CUT ? beyond : little) * pi / half_turn;
         if (start[v] < start[v + 1])
-            done = cut_node(&c, piece + start[v], start[v + 1] - start[v], &is_cut);
+            done = cut_node(&c, piece + start[v], start[v + 1] - start[v],
+                            d->level[v] == TM_DUAL_TO_CUT_MORE, &is_cut);
         d->level[v] = (uint8_t)(is_cut ? d->level[v] + 1 : TM_DUAL_PIECES);
     }
     tm_dual_link_free(&c.link);

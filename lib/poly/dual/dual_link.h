@@ -40,4 +40,9 @@ double tm_dual_link_angle(const tm_dual_link *link, uint32_t triangle, int i);
 /* Cuts side j of a triangle. */
 void tm_dual_link_cut(tm_dual_link *link, tm_dual *d, uint32_t triangle, int j);
 
+/* Cuts regions of a link until each has sides that stay in one place of its border only,
+ * if it can be; *any becomes true where one was cut. False where memory is out. O(k²) for
+ * each. */
+bool tm_dual_cut_apart(tm_dual *d, tm_dual_link *link, bool *any);
+
 #endif

@@ -3,6 +3,7 @@
 #ifndef TM_POLY_DUAL_DUAL_STEPS_H
 #define TM_POLY_DUAL_DUAL_STEPS_H
 
+#include "../../mesh/poly_arrays.h"
 #include "dual_parts.h"
 
 /* Whether the face opposite a corner of a piece's tetrahedron is cut at the piece. */
@@ -55,14 +56,10 @@ tm_status tm_dual_make_facets(tm_dual *d, tm_error *error);
 tm_status tm_dual_flatten(tm_dual *d, tm_error *error);
 
 /* Nodes with a cell that is no ball are to be taken apart. */
-tm_status tm_dual_find_no_balls(tm_dual *d, const tm_block *cells, tm_error *error);
+tm_status tm_dual_find_no_balls(tm_dual *d, const tm_poly_arrays *mesh, tm_error *error);
 
-/* What a round of improvement does: looks only; moves points; moves the rest. */
-typedef enum tm_dual_round { TM_DUAL_LOOK, TM_DUAL_FIRST, TM_DUAL_NEXT } tm_dual_round;
-
-/* Moves points of bad facets; then nodes with a wrong pyramid are to be cut further, or
- * where it only looked those that are whole. Counts what is bad. */
-tm_status tm_dual_improve(tm_dual *d, tm_dual_round round, tm_dual_report *report,
-                          tm_error *error);
+/* Moves points of bad facets, and counts what is bad then; or only looks. Then nodes with
+ * a wrong pyramid are to be cut further, or where it only looked those that are whole. */
+tm_status tm_dual_improve(tm_dual *d, bool move, tm_dual_report *report, tm_error *error);
 
 #endif

@@ -2,6 +2,7 @@
 #include "fit_parts.h"
 
 #include "../../base/array.h"
+#include "../../base/hash.h"
 #include "../../geom/vector.h"
 
 #include <math.h>
@@ -9,312 +10,270 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Of the way to a corner, or the shortest side: a round takes one after the other. */
+static const double steps[] = {0.4, 0.2, 0.1, 0.3, 0.05, 0.02};
+
+enum { STEPS = sizeof steps / sizeof *steps, DIRECTIONS = 4 };
+
 typedef struct {
-    tm_poly_centroids m;
-    double (*xyz)[3];
-    const bool *fixed;
-    size_t *start; /* [nodes + 1]: facets of node v are */
-    uint32_t *facet;
-    bool *tried;     /* [nodes]: its faults are to be mended */
-    uint32_t *stamp; /* [facets]: the node that has it in `around` */
-    /* Around one node: its facets, their cells, all facets of these. */
-    uint32_t *cell, *around;
-    tm_facet_centroid *old_facet;
-    tm_cell_centroid *old_cell;
-    size_t cells, arounds, cell_room, around_room, old_facet_room, old_cell_room;
+    tm_fit_around a;
+    const tm_fit_options *o;
+    bool *tried;     /* [nodes]: may mend a fault */
+    uint8_t *missed; /* [nodes]: so many steps in a row gained nothing */
 } fitter;
 
-static void free_fitter(fitter *w)
+/* Which nodes ----------------------------------------------------------------------- */
+
+static void try_facet(const fitter *w, size_t f)
 {
-    tm_poly_centroids_free(&w->m);
-    free(w->start);
-    free(w->facet);
-    free(w->tried);
-    free(w->stamp);
-    free(w->cell);
-    free(w->around);
-    free(w->old_facet);
-    free(w->old_cell);
+    const tm_poly_arrays *mesh = w->a.m.mesh;
+    for (size_t i = mesh->facet_start[f]; i < mesh->facet_start[f + 1]; i++)
+        w->tried[mesh->facet_node[i]] = !w->o->fixed[mesh->facet_node[i]];
 }
 
-static bool list_facets_of_nodes(fitter *w)
+static void try_cell(const fitter *w, uint32_t c)
 {
-    const tm_poly_arrays *mesh = w->m.mesh;
-    const size_t corners = mesh->facets > 0 ? mesh->facet_start[mesh->facets] : 0;
-    w->start = calloc(mesh->nodes + 2, sizeof *w->start);
-    w->facet = tm_new(corners, sizeof *w->facet);
-    w->tried = calloc(mesh->nodes + 1, sizeof *w->tried);
-    w->stamp = tm_new(mesh->facets, sizeof *w->stamp);
-    if (!w->start || !w->facet || !w->tried || !w->stamp)
-        return false;
-    for (size_t i = 0; i < corners; i++)
-        w->start[mesh->facet_node[i] + 2]++;
-    for (size_t v = 0; v < mesh->nodes; v++)
-        w->start[v + 2] += w->start[v + 1];
-    for (uint32_t f = 0; f < mesh->facets; f++) {
-        w->stamp[f] = TM_NONE;
-        for (size_t i = mesh->facet_start[f]; i < mesh->facet_start[f + 1]; i++)
-            w->facet[w->start[mesh->facet_node[i] + 1]++] = f;
+    const tm_poly_arrays *mesh = w->a.m.mesh;
+    for (size_t i = mesh->cell_start[c]; i < mesh->cell_start[c + 1] && c != TM_NONE; i++)
+        try_facet(w, mesh->cell_facet[i]);
+}
+
+/* The facets of bad pairs. */
+static void try_pairs(const fitter *w, uint32_t c)
+{
+    const tm_poly_arrays *mesh = w->a.m.mesh;
+    const size_t begin = mesh->cell_start[c], end = mesh->cell_start[c + 1];
+    for (size_t i = begin; i < end; i++)
+        for (size_t k = begin; k < i; k++) {
+            tm_fit_pairs pair = {0, 0, 0};
+            tm_fit_add_pairs(&pair, &w->a.m, mesh->cell_facet[i], mesh->cell_facet[k], c);
+            if (pair.bad == 0)
+                continue;
+            try_facet(w, mesh->cell_facet[i]);
+            try_facet(w, mesh->cell_facet[k]);
+        }
+}
+
+/* Marks the nodes that may mend what is bad: those of bad facets and pairs; if `wide` all
+ * those of the cells that have them. How much is bad. */
+static size_t find_bad(const fitter *w, bool wide)
+{
+    const tm_poly_arrays *mesh = w->a.m.mesh;
+    size_t bad = 0;
+    memset(w->tried, 0, mesh->nodes * sizeof *w->tried);
+    for (size_t f = 0; f < mesh->facets; f++) {
+        if ((double)w->a.verdict[f].worst <= TM_FIT_BAD)
+            continue;
+        bad++;
+        try_facet(w, f);
+        for (int s = 0; s < 2 && wide; s++)
+            if (mesh->side[f][s] != TM_NONE)
+                try_cell(w, mesh->side[f][s]);
     }
+    for (uint32_t c = 0; c < mesh->cells; c++) {
+        tm_fit_sum sum = {{0}, 0, 0};
+        tm_fit_add_cell(&sum, &w->a.sums[c]);
+        bad += sum.bad > 0;
+        if (sum.bad > 0 && wide)
+            try_cell(w, c);
+        else if (sum.bad > 0)
+            try_pairs(w, c);
+    }
+    return bad;
+}
+
+/* Marks the nodes of all cells with a node that is marked. */
+static bool widen(const fitter *w)
+{
+    const tm_poly_arrays *mesh = w->a.m.mesh;
+    bool *marked = tm_new(mesh->nodes, sizeof *marked);
+    if (!marked)
+        return false;
+    memcpy(marked, w->tried, mesh->nodes * sizeof *marked);
+    for (size_t v = 0; v < mesh->nodes; v++)
+        for (size_t i = w->a.start[v]; i < w->a.start[v + 1] && marked[v]; i++)
+            for (int s = 0; s < 2; s++)
+                if (mesh->side[w->a.facet[i]][s] != TM_NONE)
+                    try_cell(w, mesh->side[w->a.facet[i]][s]);
+    free(marked);
     return true;
 }
 
-static size_t sum_of(const size_t count[TM_FIT_FAULTS])
+/* What is around a node is new: all nodes there are to be tried again. */
+static void forget_misses(const fitter *w)
 {
-    size_t sum = 0;
-    for (int k = 0; k < TM_FIT_FAULTS; k++)
-        sum += count[k];
-    return sum;
+    const tm_poly_arrays *mesh = w->a.m.mesh;
+    for (size_t k = 0; k < w->a.nears; k++)
+        for (size_t i = mesh->facet_start[w->a.near[k]];
+             i < mesh->facet_start[w->a.near[k] + 1]; i++)
+            w->missed[mesh->facet_node[i]] = 0;
 }
 
-static void add_counts(size_t to[TM_FIT_FAULTS], const size_t count[TM_FIT_FAULTS])
-{
-    for (int k = 0; k < TM_FIT_FAULTS; k++)
-        to[k] += count[k];
-}
-
-/* The nodes of a cell that are not fixed may mend it. */
-static void try_nodes_of(fitter *w, uint32_t c)
-{
-    const tm_poly_arrays *mesh = w->m.mesh;
-    if (c == TM_NONE)
-        return;
-    for (size_t i = mesh->cell_start[c]; i < mesh->cell_start[c + 1]; i++) {
-        const uint32_t f = mesh->cell_facet[i];
-        for (size_t k = mesh->facet_start[f]; k < mesh->facet_start[f + 1]; k++)
-            w->tried[mesh->facet_node[k]] = !w->fixed[mesh->facet_node[k]];
-    }
-}
-
-/* Counts faults, and marks the nodes that may mend them. */
-static void find_faults(fitter *w, size_t count[TM_FIT_FAULTS])
-{
-    const tm_poly_arrays *mesh = w->m.mesh;
-    memset(w->tried, 0, mesh->nodes * sizeof *w->tried);
-    memset(count, 0, TM_FIT_FAULTS * sizeof *count);
-    for (size_t f = 0; f < mesh->facets; f++) {
-        tm_fit_sum here = {{0}, 0};
-        tm_fit_judge_facet(&w->m, f, &here);
-        if (sum_of(here.count) > 0)
-            for (int s = 0; s < 2; s++)
-                try_nodes_of(w, mesh->side[f][s]);
-        add_counts(count, here.count);
-    }
-    for (uint32_t c = 0; c < mesh->cells; c++) {
-        tm_fit_sum here = {{0}, 0};
-        tm_fit_judge_cell(&w->m, c, &here);
-        if (sum_of(here.count) > 0)
-            try_nodes_of(w, c);
-        add_counts(count, here.count);
-    }
-}
-
-static bool add_cell(fitter *w, uint32_t c)
-{
-    for (size_t i = 0; i < w->cells; i++)
-        if (w->cell[i] == c)
-            return true;
-    return c == TM_NONE || tm_append(&w->cell, &w->cells, &w->cell_room, c);
-}
-
-/* What moves with a node. */
-static bool gather(fitter *w, uint32_t v)
-{
-    const tm_poly_arrays *mesh = w->m.mesh;
-    bool done = true;
-    w->cells = w->arounds = 0;
-    for (size_t i = w->start[v]; i < w->start[v + 1] && done; i++)
-        for (int s = 0; s < 2 && done; s++)
-            done = add_cell(w, mesh->side[w->facet[i]][s]);
-    for (size_t i = 0; i < w->cells && done; i++)
-        for (size_t k = mesh->cell_start[w->cell[i]];
-             k < mesh->cell_start[w->cell[i] + 1] && done; k++) {
-            const uint32_t f = mesh->cell_facet[k];
-            if (w->stamp[f] != v)
-                done = tm_append(&w->around, &w->arounds, &w->around_room, f);
-            w->stamp[f] = v;
-        }
-    for (size_t i = 0; i < w->arounds; i++)
-        w->stamp[w->around[i]] = TM_NONE;
-    const size_t facets = w->start[v + 1] - w->start[v];
-    tm_facet_centroid *old =
-        tm_grow(w->old_facet, &w->old_facet_room, facets, sizeof *old);
-    w->old_facet = old ? old : w->old_facet;
-    tm_cell_centroid *cell =
-        tm_grow(w->old_cell, &w->old_cell_room, w->cells, sizeof *cell);
-    w->old_cell = cell ? cell : w->old_cell;
-    return done && old && cell;
-}
-
-static tm_fit_sum judge(const fitter *w)
-{
-    tm_fit_sum sum = {{0}, 0};
-    for (size_t i = 0; i < w->arounds; i++)
-        tm_fit_judge_facet(&w->m, w->around[i], &sum);
-    for (size_t i = 0; i < w->cells; i++)
-        tm_fit_judge_cell(&w->m, w->cell[i], &sum);
-    return sum;
-}
-
-static void put(fitter *w, uint32_t v, const double at[3])
-{
-    memcpy(w->xyz[v], at, sizeof w->xyz[v]);
-    for (size_t i = w->start[v]; i < w->start[v + 1]; i++)
-        tm_facet_centroid_find(&w->m, w->facet[i]);
-    for (size_t i = 0; i < w->cells; i++)
-        tm_cell_centroid_find(&w->m, w->cell[i]);
-}
-
-static void save(const fitter *w, uint32_t v)
-{
-    for (size_t i = w->start[v]; i < w->start[v + 1]; i++)
-        w->old_facet[i - w->start[v]] = w->m.face[w->facet[i]];
-    for (size_t i = 0; i < w->cells; i++)
-        w->old_cell[i] = w->m.cell[w->cell[i]];
-}
-
-static void restore(fitter *w, uint32_t v, const double at[3])
-{
-    memcpy(w->xyz[v], at, sizeof w->xyz[v]);
-    for (size_t i = w->start[v]; i < w->start[v + 1]; i++)
-        w->m.face[w->facet[i]] = w->old_facet[i - w->start[v]];
-    for (size_t i = 0; i < w->cells; i++)
-        w->m.cell[w->cell[i]] = w->old_cell[i];
-}
-
-static bool is_better(const tm_fit_sum *now, const tm_fit_sum *before)
-{
-    for (int k = 0; k < TM_FIT_FAULTS; k++)
-        if (now->count[k] > before->count[k])
-            return false;
-    return now->missing < before->missing;
-}
+/* Where to -------------------------------------------------------------------------- */
 
 /* The shortest side of the facets at a node. */
-static double edge_length(const fitter *w, uint32_t v)
+static double shortest_side(const fitter *w, uint32_t v)
 {
-    const tm_poly_arrays *mesh = w->m.mesh;
+    const tm_poly_arrays *mesh = w->a.m.mesh;
     double least = HUGE_VAL;
-    for (size_t i = w->start[v]; i < w->start[v + 1]; i++) {
-        const uint32_t f = w->facet[i];
+    for (size_t i = w->a.start[v]; i < w->a.start[v + 1]; i++) {
+        const uint32_t f = w->a.facet[i];
         const size_t from = mesh->facet_start[f], count = mesh->facet_start[f + 1] - from;
         for (size_t k = 0; k < count; k++) {
             const uint32_t a = mesh->facet_node[from + k];
             const uint32_t b = mesh->facet_node[from + (k + 1) % count];
             if (a == v || b == v)
-                least = fmin(least, tm_distance2(w->xyz[a], w->xyz[b]));
+                least = fmin(least, tm_distance2(mesh->xyz[a], mesh->xyz[b]));
         }
     }
     return sqrt(least);
 }
 
-/* One step of a node along an axis; whether that is better. */
-static bool try_step(fitter *w, uint32_t v, int direction, double length,
-                     tm_fit_sum *best)
+/* The corners that a node moves between; how many. */
+static int find_corners(const fitter *w, uint32_t v, const double *corner[DIRECTIONS])
 {
-    double at[3], old[3];
-    memcpy(old, w->xyz[v], sizeof old);
-    memcpy(at, old, sizeof at);
-    at[direction / 2] += direction % 2 ? -length : length;
-    save(w, v);
-    put(w, v, at);
-    const tm_fit_sum now = judge(w);
-    if (!is_better(&now, best)) {
-        restore(w, v, old);
-        return false;
+    int count = 0;
+    while (w->o->corner && count < DIRECTIONS && w->o->corner[v][count] != TM_NONE) {
+        corner[count] = w->o->point[w->o->corner[v][count]];
+        count++;
     }
-    *best = now;
-    return true;
+    return count;
 }
 
-/* Steps along the axes, shorter and shorter until some lengths have gained nothing.
- * Whether the node moved. */
-static bool move_node(fitter *w, uint32_t v)
+/* Barycentric coordinate i of a point in a simplex, by its distance to the side opposite
+ * corner i. */
+static double coordinate(const double *const *corner, int corners, int i,
+                         const double p[3])
 {
-    const double longest = 0.2;
-    const int directions = 6, lengths = 8, most_idle = 4;
-    double length = longest * edge_length(w, v);
-    tm_fit_sum best = judge(w);
+    const double *a = corner[(i + 1) % corners];
+    double normal[3], to[3], height[3];
+    tm_subtract(to, p, a);
+    tm_subtract(height, corner[i], a);
+    if (corners == 4) {
+        tm_triangle_normal(normal, a, corner[(i + 2) % 4], corner[(i + 3) % 4]);
+    } else if (corners == 2) {
+        memcpy(normal, height, sizeof normal);
+    } else {
+        double plane[3], along[3];
+        tm_subtract(along, corner[(i + 2) % corners], a);
+        tm_cross(plane, along, height);
+        tm_cross(normal, plane, along);
+    }
+    return tm_dot(normal, to) / tm_dot(normal, height);
+}
+
+/* Three directions normal to each other: the axes, or these turned by a quaternion that
+ * depends on the node and the round, so that none is tried in vain for ever. */
+static void find_axes(uint32_t v, int round, double axis[3][3])
+{
+    double q[4] = {1, 0, 0, 0}, sum = 0;
+    uint64_t state = tm_hash(tm_hash(0, v), (uint64_t)round);
+    for (int i = 0; i < 4 && round >= STEPS; i++, state = tm_hash(state, 1))
+        q[i] = (double)(state >> 40) / 0x1p23 - 1;
+    for (int i = 0; i < 4; i++)
+        sum += q[i] * q[i];
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++) {
+            const int other = 3 - i - k;
+            const double sign = (k + 3 - i) % 3 == 1 ? 1 : -1;
+            axis[i][k] =
+                i == k ? (2 * (q[0] * q[0] + q[i + 1] * q[i + 1]) - sum) / sum
+                       : 2 * (q[i + 1] * q[k + 1] + sign * q[0] * q[other + 1]) / sum;
+        }
+}
+
+/* Tries a step towards each corner and away from it, or along the axes. */
+static bool move_node(fitter *w, uint32_t v, int round)
+{
+    const double step = steps[round % STEPS];
+    double axis[3][3];
+    find_axes(v, round, axis);
+    const double *corner[DIRECTIONS];
+    const int corners = find_corners(w, v, corner), directions = corners ? corners : 3;
+    const double side = corners ? 0 : shortest_side(w, v);
     bool moved = false;
-    if (sum_of(best.count) == 0)
-        return false;
-    for (int i = 0, idle = 0; i < lengths && idle < most_idle; i++, length /= 2) {
-        bool gains = false;
-        for (int d = 0; d < directions && best.missing > 0; d++)
-            gains |= try_step(w, v, d, length, &best);
-        idle = gains ? 0 : idle + 1;
+    for (int k = 0, gain = 0; k < 2 * directions && w->a.now.bad > 0; k += 1 + gain) {
+        double to[3];
+        bool inside = true;
+        memcpy(to, w->a.xyz[v], sizeof to);
+        for (int x = 0; x < 3; x++)
+            if (corners)
+                to[x] += (k % 2 ? -step : step) * (corner[k / 2][x] - to[x]);
+            else
+                to[x] += (k % 2 ? -step : step) * side * axis[k / 2][x];
+        for (int i = 0; i < corners && inside; i++)
+            inside = coordinate(corner, corners, i, to) >= w->o->least;
+        const bool gains = inside && tm_fit_around_move(&w->a, v, to);
+        gain = gains && k % 2 == 0; /* not back again */
         moved |= gains;
     }
     return moved;
 }
 
-/* Marks the nodes of all cells with a node that is marked. */
-static bool widen(fitter *w)
-{
-    const size_t nodes = w->m.mesh->nodes;
-    bool *marked = tm_new(nodes, sizeof *marked);
-    if (!marked)
-        return false;
-    memcpy(marked, w->tried, nodes * sizeof *marked);
-    for (size_t v = 0; v < nodes; v++)
-        for (size_t i = w->start[v]; i < w->start[v + 1] && marked[v]; i++)
-            for (int s = 0; s < 2; s++)
-                try_nodes_of(w, w->m.mesh->side[w->facet[i]][s]);
-    free(marked);
-    return true;
-}
-
-/* Rounds over the nodes at faults, then over those around them, too; until two have
- * mended few. */
+/* Rounds over the nodes at what is bad, then over those around them, too, until as many
+ * as there are steps have mended little. */
 static bool fit(fitter *w, tm_fit_report *r)
 {
-    const int near = 4, wide = 4, most_idle = 2; /* rounds */
-    const double few = 0.9;
+    const size_t few = 20; /* less of what is bad by a part of so much is little */
+    size_t least = SIZE_MAX;
     bool done = true;
-    memcpy(r->after, r->before, sizeof r->after);
-    for (int i = 0, idle = 0; i < near + wide && idle < most_idle && done; i++) {
-        const size_t before = sum_of(r->after);
-        if (before == 0)
+    for (int i = 0, idle = 0; i < w->o->rounds && idle < STEPS && done; i++) {
+        const size_t bad = find_bad(w, i >= 2);
+        idle = bad < least - least / few ? 0 : idle + 1;
+        least = idle == 0 ? bad : least;
+        if (bad == 0)
             break;
-        done = i < near || widen(w);
-        for (uint32_t v = 0; v < w->m.mesh->nodes && done; v++) {
-            if (!w->tried[v])
+        done = i < STEPS || widen(w);
+        for (uint32_t v = 0; v < w->a.m.mesh->nodes && done; v++) {
+            if (!w->tried[v] || w->missed[v] >= STEPS)
                 continue;
-            done = gather(w, v);
-            r->moved += done && move_node(w, v);
+            done = tm_fit_around_find(&w->a, v);
+            const bool moved = done && move_node(w, v, i);
+            w->missed[v]++;
+            r->moved += moved;
+            if (moved)
+                forget_misses(w);
         }
-        find_faults(w, r->after);
-        idle = (double)sum_of(r->after) < few * (double)before ? 0 : idle + 1;
     }
     return done;
 }
 
 tm_status tm_polyhedra_fit(const tm_poly_arrays *mesh, double (*xyz)[3],
-                           const bool *fixed, tm_fit_report *report, tm_error *error)
+                           const tm_fit_options *options, tm_fit_report *report,
+                           tm_error *error)
 {
-    fitter w = {.xyz = xyz, .fixed = fixed};
+    fitter w = {.o = options};
     *report = (tm_fit_report){0};
-    tm_status status = tm_poly_centroids_find(&w.m, mesh, error);
-    if (status == TM_OK && !list_facets_of_nodes(&w))
+    tm_status status = tm_fit_around_make(&w.a, mesh, xyz, options->convex, error);
+    w.tried = tm_new(mesh->nodes, sizeof *w.tried);
+    w.missed = calloc(mesh->nodes + 1, sizeof *w.missed);
+    if (status == TM_OK && (!w.tried || !w.missed))
         status = tm_fail_memory(error);
-    if (status == TM_OK) {
-        find_faults(&w, report->before);
+    if (status == TM_OK && w.tried && w.missed) {
+        const tm_fit_sum before = tm_fit_sum_up(&w.a);
+        memcpy(report->before, before.count, sizeof report->before);
         status = fit(&w, report) ? TM_OK : tm_fail_memory(error);
+        const tm_fit_sum after = tm_fit_sum_up(&w.a);
+        memcpy(report->after, after.count, sizeof report->after);
     }
-    free_fitter(&w);
+    tm_fit_around_free(&w.a);
+    free(w.tried);
+    free(w.missed);
     return status;
 }
 
 size_t tm_fit_faults_left(const tm_fit_report *report)
 {
-    return sum_of(report->after);
+    size_t sum = 0;
+    for (int k = 0; k < TM_FIT_FAULTS; k++)
+        sum += report->after[k];
+    return sum;
 }
 
 void tm_fit_faults_say(const tm_fit_report *report, char *text, size_t size)
 {
     static const char *const what[TM_FIT_FAULTS] = {
         [TM_FIT_PYRAMID] = "pyramids of no volume",
-        [TM_FIT_BENT] = "facets bent beyond a centroid",
         [TM_FIT_TETRAHEDRA] = "facets that do not divide into tetrahedra",
         [TM_FIT_CONCAVE] = "concave cells",
         [TM_FIT_OBLIQUE] = "facets above 70 degrees",

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Inner nodes of polyhedra moved until a finite volume method can use them: what
- * OpenFOAM's checkMesh -allGeometry minds, it no longer finds. */
+/* Nodes of polyhedra moved until a finite volume method can use them: what OpenFOAM's
+ * checkMesh -allGeometry minds, it no longer finds. */
 #ifndef TM_POLY_FIT_H
 #define TM_POLY_FIT_H
 
@@ -17,8 +17,6 @@ TM_EXTERN_C_BEGIN
 typedef enum tm_fit_fault {
     TM_FIT_PYRAMID,    /* a facet and the centroid of a cell beside it: its pyramid is not
                           of positive volume */
-    TM_FIT_BENT,       /* a centroid beside it is beyond the plane of its normal through
-                          one of its nodes */
     TM_FIT_TETRAHEDRA, /* a facet has no node from which its triangles make tetrahedra of
                           positive volume with both centroids */
     TM_FIT_CONCAVE,    /* a cell has facets with another's centroid beyond their plane */
@@ -33,16 +31,29 @@ typedef enum tm_fit_fault {
 
 typedef struct tm_fit_report {
     size_t before[TM_FIT_FAULTS], after[TM_FIT_FAULTS];
-    size_t moved; /* nodes */
+    size_t moved; /* nodes, as often as they were */
 } tm_fit_report;
 
-/* Moves nodes that are not fixed[nodes] of facets and cells with faults, by pattern
- * search. A step is taken only if around the node no fault of any kind becomes more, and
- * what is missing in all of them together becomes less. xyz is mesh->xyz. TM_ERROR_SYSTEM
- * where memory is out; xyz is then as good as it has become. O(facets), and some 0.2 ms
- * for each node that is tried. */
+typedef struct tm_fit_options {
+    const bool *fixed; /* [nodes]: these stay */
+    /* [nodes], or NULL: where a node moves: in the simplex of these points, those before
+     * TM_NONE, with barycentric coordinates of at least `least`; without one, anywhere.
+     */
+    const uint32_t (*corner)[4];
+    const double (*point)[3];
+    double least;
+    bool convex; /* concave cells are faults */
+    int rounds;  /* at most */
+} tm_fit_options;
+
+/* Moves nodes of facets and cells with faults, or nearly so, by pattern search. A step is
+ * taken only if around the node no fault of any kind becomes more, and what is missing in
+ * all of them together becomes less. xyz is mesh->xyz. TM_ERROR_SYSTEM where memory is
+ * out; xyz is then as good as it has become. O(facets), and for each node that is tried
+ * O(facets of its cells), some 0.1 ms. */
 tm_status tm_polyhedra_fit(const tm_poly_arrays *mesh, double (*xyz)[3],
-                           const bool *fixed, tm_fit_report *report, tm_error *error);
+                           const tm_fit_options *options, tm_fit_report *report,
+                           tm_error *error);
 
 /* How many faults there are still. */
 size_t tm_fit_faults_left(const tm_fit_report *report);

@@ -14,6 +14,8 @@
 
 enum { FIRST = 4, PAST };
 
+enum { FIT_ROUNDS = 18 };
+
 typedef struct {
     tm_stream *stream;
     tm_cell_faces faces;
@@ -161,7 +163,9 @@ tm_status tm_join_octants(tm_stream *stream, tm_octant_join *report, tm_error *e
     if (status == TM_OK) {
         const tm_poly_arrays arrays = tm_poly_arrays_of(stream);
         double(*xyz)[3] = (double(*)[3])tm_stream_find(stream, ".node")->real;
-        status = tm_polyhedra_fit(&arrays, xyz, j.outer, &report->fit, error);
+        const tm_fit_options options = {
+            .fixed = j.outer, .convex = true, .rounds = FIT_ROUNDS};
+        status = tm_polyhedra_fit(&arrays, xyz, &options, &report->fit, error);
     }
     free_joining(&j);
     return status;

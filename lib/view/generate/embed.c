@@ -125,5 +125,11 @@ int main(int argc, char **argv)
     if (cuts != 3)
         fail("has no @title, @header and @arrays, in this order", argv[2]);
     put_array(part[cuts], &out);
+    free(three.byte);
+    free(packed.byte);
+    free(page.byte);
+    free(style.byte);
+    free(script.byte);
+    free(out.byte);
     return fflush(stdout) == 0 && !ferror(stdout) ? 0 : 1;
 }

@@ -73,6 +73,8 @@ async function readMesh(head) {
     for (const m of head.marked || [])
         marked.push({size: await readArray(m.size), item: await readArray(m.item),
                      marker: await readArray(m.marker)});
+    mesh.lines = {node: array.edge || null, marker: array.edgeMarker || null,
+                  count: array.edge ? array.edge.length / 2 : 0};
     await pause();
     makeFacets(mesh, array, marked);
     findCentroids(mesh);

@@ -49,6 +49,7 @@ function makeMaterial(more) {
     return new THREE.ShaderMaterial({
         vertexShader: VERTEX, fragmentShader: FRAGMENT, side: THREE.DoubleSide,
         extensions: {derivatives: true},
+        polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
         uniforms: {plane: {value: new THREE.Vector4()}, clips: {value: 0}, edges: {value: 1},
                    edgeWidth: {value: 0.7}, fill: {value: 1}, pointSize: {value: 0},
                    edgeColour: {value: new THREE.Color(0x101418)}},
@@ -214,6 +215,7 @@ function updateMesh(mesh) {
     }
     updateGhost(mesh);
     updateMark(mesh);
+    updateLines(mesh);
 }
 
 function updateGhost(mesh) {
@@ -267,6 +269,7 @@ function makeRenderer(canvas) {
         throw new Error('This browser draws no WebGL 2.');
     const renderer = new THREE.WebGLRenderer({canvas, context});
     renderer.autoClear = false;
+    renderer.localClippingEnabled = true;
     return renderer;
 }
 

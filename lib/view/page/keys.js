@@ -36,6 +36,7 @@ const KEYS = [
     {keys: ['a'], what: 'all elements', run: selectAll},
     {keys: ['e'], what: 'edges', run: () => set({edges: !state.edges})},
     {keys: ['g'], what: 'ghost of the rest', run: () => set({ghost: !state.ghost})},
+    {keys: ['m'], what: 'marked edges', run: () => set({lines: !state.lines})},
     {keys: ['b'], what: 'the other mesh; with Shift both', run: () => nextMesh(['a', 'b'])},
     {keys: ['B'], run: () => nextMesh(['a', 'both'])},
     {keys: ['h'], what: 'hide what is picked', run: hidePicked},

@@ -56,12 +56,17 @@ async function start() {
     view.renderer = makeRenderer(view.canvas);
     view.camera = new THREE.PerspectiveCamera();
     view.meshes.forEach(makeScene);
+    const lines = edgeGroups(view.meshes);
+    for (const mesh of view.meshes)
+        makeLines(mesh, lines);
+    state.lines = view.linesFirst = areTold(lines);
     chooseField();
     state.show = view.meshes.length > 1 ? 'both' : 'a';
     state.camera.distance = fittingDistance();
     state.camera.target = [...view.middle];
     readHash(location.hash);
     fillPanel();
+    listLines(lines);
     fillSheet();
     listenToPanel();
     listenToKeys();

@@ -92,6 +92,7 @@ function listenToPanel() {
     on('explode', 'input', () => setExplode(Number(byId('explode').value)));
     on('edges', 'change', () => set({edges: byId('edges').checked}));
     on('ghost', 'change', () => set({ghost: byId('ghost').checked}));
+    on('lines', 'change', () => set({lines: byId('lines').checked}));
     on('fit', 'click', fit);
     on('hide', 'click', hidePicked);
     on('leave', 'click', () => pick(null, -1));
@@ -199,6 +200,7 @@ function showState() {
     byId('explode').value = state.explode;
     byId('edges').checked = state.edges;
     byId('ghost').checked = state.ghost;
+    byId('lines').checked = state.lines;
     byId('unhide').hidden = !view.meshes.some(m => m.hides);
     showLacking(field);
     showCategories(field);

@@ -15,6 +15,7 @@ const state = {
     explode: 0,
     edges: true,
     ghost: true,
+    lines: false,    /* the edges of the stream */
     show: 'a',       /* of two meshes: 'a', 'b', 'both' */
     camera: {turn: -0.9, lift: 0.5, distance: 4, target: [0, 0, 0]},
 };
@@ -54,6 +55,8 @@ function hashOfState() {
         add('x', round(state.explode));
     if (!state.edges || !state.ghost)
         add('o', (state.edges ? 'e' : '') + (state.ghost ? 'g' : '') || '-');
+    if (state.lines !== view.linesFirst)
+        add('l', Number(state.lines));
     if (state.show !== 'a')
         add('v', state.show);
     add('c', [camera.turn, camera.lift, camera.distance, ...camera.target].map(round));
@@ -87,6 +90,7 @@ function readHash(hash) {
             state.edges = t.includes('e');
             state.ghost = t.includes('g');
         },
+        l: t => { state.lines = t === '1'; },
         v: t => { if (view.meshes.length > 1 && ['a', 'b', 'both'].includes(t)) state.show = t; },
         c: t => {
             const c = numbers(t, 6);

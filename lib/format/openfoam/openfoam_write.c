@@ -1,26 +1,25 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "mesh_format.h"
+#include "openfoam.h"
 
-#include "../base/array.h"
-#include "../mesh/cell_faces.h"
-#include "../stream/group.h"
+#include "../../base/array.h"
+#include "../../mesh/cell_faces.h"
+#include "../../stream/group.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-enum { POINTS, FACES, OWNER, NEIGHBOUR, BOUNDARY, CELL_ZONES, FACE_ZONES };
-
 const char *const tm_openfoam_name[TM_OPENFOAM_FILES] = {
-    [POINTS] = "points",        [FACES] = "faces",       [OWNER] = "owner",
-    [NEIGHBOUR] = "neighbour",  [BOUNDARY] = "boundary", [CELL_ZONES] = "cellZones",
-    [FACE_ZONES] = "faceZones",
+    [TM_FOAM_POINTS] = "points",        [TM_FOAM_FACES] = "faces",
+    [TM_FOAM_OWNER] = "owner",          [TM_FOAM_NEIGHBOUR] = "neighbour",
+    [TM_FOAM_BOUNDARY] = "boundary",    [TM_FOAM_CELL_ZONES] = "cellZones",
+    [TM_FOAM_FACE_ZONES] = "faceZones",
 };
 
 static const char *const class_name[TM_OPENFOAM_FILES] = {
-    [POINTS] = "vectorField",        [FACES] = "faceList",
-    [OWNER] = "labelList",           [NEIGHBOUR] = "labelList",
-    [BOUNDARY] = "polyBoundaryMesh", [CELL_ZONES] = "regIOobject",
-    [FACE_ZONES] = "regIOobject",
+    [TM_FOAM_POINTS] = "vectorField",        [TM_FOAM_FACES] = "faceList",
+    [TM_FOAM_OWNER] = "labelList",           [TM_FOAM_NEIGHBOUR] = "labelList",
+    [TM_FOAM_BOUNDARY] = "polyBoundaryMesh", [TM_FOAM_CELL_ZONES] = "regIOobject",
+    [TM_FOAM_FACE_ZONES] = "regIOobject",
 };
 
 /* A cell, or a face by its place in the file, of a zone; and what zones are sorted by. */
@@ -161,7 +160,7 @@ static void begin_list(writer *w, int i, size_t count)
                    "FoamFile\n{\n    version     2.0;\n    format      ascii;\n"
                    "    class       %s;\n",
                    class_name[i]);
-    if (i == OWNER || i == NEIGHBOUR)
+    if (i == TM_FOAM_OWNER || i == TM_FOAM_NEIGHBOUR)
         tm_text_format(text,
                        "    note        \"nPoints: %zu nCells: %zu nFaces: %zu "
                        "nInternalFaces: %zu\";\n",
@@ -238,8 +237,8 @@ static void write_points(writer *w)
 {
     enum { COORDINATES = 3 };
     static const char *const before[COORDINATES] = {"(", " ", " "};
-    tm_text *text = &w->file[POINTS];
-    begin_list(w, POINTS, w->points);
+    tm_text *text = &w->file[TM_FOAM_POINTS];
+    begin_list(w, TM_FOAM_POINTS, w->points);
     for (size_t v = 0; v < w->node->count; v++) {
         if (w->number[v] == TM_NONE)
             continue;
@@ -249,7 +248,7 @@ static void write_points(writer *w)
         }
         tm_text_append(text, ")\n", 2);
     }
-    end_list(w, POINTS);
+    end_list(w, TM_FOAM_POINTS);
 }
 
 /* A face turns so that its normal points away from its owner. */
@@ -258,7 +257,7 @@ static void write_face(writer *w, size_t f)
     const tm_cell_faces *faces = &w->faces;
     size_t begin = faces->start[f], k = faces->start[f + 1] - begin;
     bool turn = faces->side[f][0] > faces->side[f][1];
-    tm_text *text = &w->file[FACES];
+    tm_text *text = &w->file[TM_FOAM_FACES];
     tm_text_integer(text, (int64_t)k);
     for (size_t i = 0; i < k; i++) {
         uint32_t v = faces->node[begin + (turn && i > 0 ? k - i : i)];
@@ -271,41 +270,41 @@ static void write_face(writer *w, size_t f)
 static void write_faces(writer *w)
 {
     const tm_cell_faces *faces = &w->faces;
-    begin_list(w, FACES, faces->facets);
-    begin_list(w, OWNER, faces->facets);
-    begin_list(w, NEIGHBOUR, w->inside);
+    begin_list(w, TM_FOAM_FACES, faces->facets);
+    begin_list(w, TM_FOAM_OWNER, faces->facets);
+    begin_list(w, TM_FOAM_NEIGHBOUR, w->inside);
     for (size_t i = 0; i < faces->facets; i++) {
         size_t f = w->order[i];
         write_face(w, f);
-        tm_text_integer(&w->file[OWNER], owner_of(faces, f));
-        tm_text_append(&w->file[OWNER], "\n", 1);
+        tm_text_integer(&w->file[TM_FOAM_OWNER], owner_of(faces, f));
+        tm_text_append(&w->file[TM_FOAM_OWNER], "\n", 1);
         if (i >= w->inside)
             continue;
-        tm_text_integer(&w->file[NEIGHBOUR], neighbour_of(faces, f));
-        tm_text_append(&w->file[NEIGHBOUR], "\n", 1);
+        tm_text_integer(&w->file[TM_FOAM_NEIGHBOUR], neighbour_of(faces, f));
+        tm_text_append(&w->file[TM_FOAM_NEIGHBOUR], "\n", 1);
     }
-    end_list(w, FACES);
-    end_list(w, OWNER);
-    end_list(w, NEIGHBOUR);
+    end_list(w, TM_FOAM_FACES);
+    end_list(w, TM_FOAM_OWNER);
+    end_list(w, TM_FOAM_NEIGHBOUR);
 }
 
 static void write_boundary(writer *w)
 {
     name_list names = {.dimension = TM_GROUP_FACES, .nameless = "marker"};
     size_t count = w->faces.facets - w->inside;
-    begin_list(w, BOUNDARY, w->patches);
+    begin_list(w, TM_FOAM_BOUNDARY, w->patches);
     for (size_t begin = 0, end; begin < count; begin = end) {
         int32_t marker = w->boundary[begin].marker;
         for (end = begin; end < count && w->boundary[end].marker == marker; end++)
             ;
-        tm_text_format(&w->file[BOUNDARY],
+        tm_text_format(&w->file[TM_FOAM_BOUNDARY],
                        "    %s\n    {\n        type            patch;\n"
                        "        nFaces          %zu;\n        startFace       %zu;\n"
                        "    }\n",
                        name_of(w, &names, marker), end - begin, w->inside + begin);
     }
-    end_list(w, BOUNDARY);
-    free_names(w, &names, BOUNDARY);
+    end_list(w, TM_FOAM_BOUNDARY);
+    free_names(w, &names, TM_FOAM_BOUNDARY);
 }
 
 /* Zones ---------------------------------------------------------------------------- */
@@ -377,7 +376,7 @@ static size_t write_zones(writer *w, int file, name_list *names, const char *typ
                        "    %s\n    {\n        type            %s;\n        %s      ",
                        name_of(w, names, member[begin].value), type, labels);
         write_labels(text, member + begin, end - begin);
-        if (file == FACE_ZONES)
+        if (file == TM_FOAM_FACE_ZONES)
             write_flips(text, end - begin);
         tm_text_string(text, "    }\n");
     }
@@ -394,10 +393,10 @@ static tm_status write_all_zones(writer *w)
     zone_member *member = tm_new(most, sizeof *member);
     if (!member)
         return tm_fail_memory(w->error);
-    w->cell_zones = write_zones(w, CELL_ZONES, &cells, "cellZone", "cellLabels", member,
-                                list_cells(w, member));
-    w->face_zones = write_zones(w, FACE_ZONES, &faces, "faceZone", "faceLabels", member,
-                                list_faces(w, member));
+    w->cell_zones = write_zones(w, TM_FOAM_CELL_ZONES, &cells, "cellZone", "cellLabels",
+                                member, list_cells(w, member));
+    w->face_zones = write_zones(w, TM_FOAM_FACE_ZONES, &faces, "faceZone", "faceLabels",
+                                member, list_faces(w, member));
     free(member);
     return TM_OK;
 }

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Where walls meet, octants are given to regions before all others: around a node for
+ * each corner, then along a line of edges for each curve. There each region has as many
+ * octants as it needs, however sharp the angle is in which it ends; what the leaves'
+ * centres say would only be right where the angles are those of octants. */
+#ifndef TM_INTERIOR_REGION_LAYOUT_H
+#define TM_INTERIOR_REGION_LAYOUT_H
+
+#include "interior_leaves.h"
+#include "node_lattice.h"
+#include "region_sets.h"
+#include "wall_sectors.h"
+
+typedef struct tm_region_layout {
+    tm_node_lattice lattice;
+    const tm_surface *surface;
+    tm_interior *interior;
+    tm_walls walls;
+    tm_wall_sectors sectors;
+    bool *fixed;           /* [leaves]: it has its label */
+    bool *taken;           /* [nodes]: it stands for a corner, or is on a line */
+    bool *sharp;           /* [nodes]: it is on a line where regions end sharply */
+    const float *history;  /* [nodes]: what it costs more to go by it */
+    size_t lost;           /* corners and curves that could not be laid out */
+    uint32_t *corner_node; /* [corners]: the node that stands for it, or TM_NONE */
+} tm_region_layout;
+
+/* Lays out all corners and curves that can be. The leaves of *interior have labels
+ * (region_leaves.h), and some of them get another. TM_ERROR_SYSTEM where memory is out;
+ * to be freed, after an error too. O(leaves), and O(n log n) in the nodes near curves. */
+tm_status tm_region_layout_make(tm_region_layout *layout, const tm_octree *octree,
+                                const tm_surface *surface, tm_interior *interior,
+                                tm_error *error);
+void tm_region_layout_free(tm_region_layout *layout);
+
+/* Its steps. region_corners.c: a node for each corner, the one that is cheapest by its
+ * distance and by how far octants and edges are from the regions and curves they are for;
+ * of those at which all curves at the corner can begin. */
+tm_status tm_region_lay_corners(tm_region_layout *layout, tm_error *error);
+
+/* region_lines.c: a line for each curve. */
+tm_status tm_region_lay_lines(tm_region_layout *layout, tm_error *error);
+
+/* region_layout.c. Gives a leaf a label, for good. */
+void tm_region_lay(tm_region_layout *layout, uint32_t leaf, uint32_t label);
+
+#endif

@@ -1,0 +1,506 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The line of a curve is the cheapest way through states: a node, and sectors for the
+ * octants around it (E. W. Dijkstra, 1959). A step goes along an edge, whose four leaves
+ * are around both of its ends. */
+#include "line_patterns.h"
+#include "region_layout.h"
+
+#include "../../base/array.h"
+#include "../../base/hash.h"
+#include "../../geom/vector.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { OCTANTS = 8, SIDES = 6 };
+
+/* In shortest edges there: how far from its curve a line may be, how far from the end of
+ * the curve one that has no node for its corner may end. */
+static const double tube = 2.5, loose_end = 2;
+
+/* What a step costs where octants and curve are as they should be; what the squares of
+ * distances cost, in shortest edges; and about what a line costs by the length of its
+ * curve, which leads the search (P. E. Hart, N. J. Nilsson and B. Raphael, A*, 1968). */
+static const double step_cost = 0.3, distance_weight = 0.25, octant_weight = 0.5,
+                    length_cost = 0.6;
+
+typedef struct {
+    uint32_t node;
+    tm_line_code code;
+    uint8_t to;
+    bool done;
+    uint32_t from; /* the state before, or TM_NONE */
+    double cost;
+} state;
+
+/* A node as the line of one curve sees it. */
+typedef struct {
+    uint32_t node;
+    bool near;
+    double distance, param; /* to the curve in shortest edges; along it */
+    double size;            /* shortest edge */
+    uint8_t may[OCTANTS];   /* bit s: octant may be in sector s */
+    uint8_t same[OCTANTS];  /* the first octant in the same leaf */
+    float beside[OCTANTS][TM_SECTORS];
+} view;
+
+typedef struct {
+    double cost;
+    uint32_t state;
+} entry;
+
+typedef struct {
+    tm_region_layout *layout;
+    tm_line_patterns patterns[2]; /* of 3 and of 4 sectors */
+    tm_error *error;
+    uint32_t *view_of; /* [nodes]: where view[view_of[n]].node is n */
+    size_t views, view_room;
+    view *view;
+    size_t states, state_room;
+    state *state;
+    tm_hash_table table; /* of states */
+    size_t entries, entry_room;
+    entry *heap;
+    double *length; /* along the curve up to each of its nodes */
+    size_t length_room;
+    /* of the curve */
+    uint32_t curve;
+    unsigned sectors;
+    double total;
+    bool closed;
+    /* of the search */
+    double middle, half; /* of the length where it may go */
+    uint32_t goal;       /* a node; or TM_NONE: near goal_param */
+    unsigned goal_side;  /* from which it is reached; SIDES: any */
+    double goal_param;
+} finder;
+
+static const tm_line_patterns *patterns_of(const finder *f)
+{
+    return &f->patterns[f->sectors - 3];
+}
+
+static bool before(entry a, entry b)
+{
+    return a.cost < b.cost || (a.cost == b.cost && a.state < b.state);
+}
+
+static tm_status push(finder *f, entry e)
+{
+    void *more = tm_grow(f->heap, &f->entry_room, f->entries + 1, sizeof *f->heap);
+    if (!more)
+        return tm_fail_memory(f->error);
+    f->heap = more;
+    size_t i = f->entries++;
+    for (; i > 0 && before(e, f->heap[(i - 1) / 2]); i = (i - 1) / 2)
+        f->heap[i] = f->heap[(i - 1) / 2];
+    f->heap[i] = e;
+    return TM_OK;
+}
+
+static entry pop(finder *f)
+{
+    const entry top = f->heap[0], last = f->heap[--f->entries];
+    size_t i = 0;
+    for (size_t child; (child = 2 * i + 1) < f->entries; i = child) {
+        if (child + 1 < f->entries && before(f->heap[child + 1], f->heap[child]))
+            child++;
+        if (!before(f->heap[child], last))
+            break;
+        f->heap[i] = f->heap[child];
+    }
+    f->heap[i] = last;
+    return top;
+}
+
+static uint64_t key_of(uint32_t node, tm_line_code code)
+{
+    return (uint64_t)node << 16 | code;
+}
+
+static uint32_t *slot_of(const finder *f, uint32_t node, tm_line_code code)
+{
+    uint32_t *slot = tm_hash_slot(&f->table, tm_hash(0, key_of(node, code)));
+    while (*slot != TM_HASH_FREE &&
+           (f->state[*slot].node != node || f->state[*slot].code != code))
+        slot = tm_hash_next(&f->table, slot);
+    return slot;
+}
+
+static tm_status make_table(finder *f, size_t count)
+{
+    tm_hash_free(&f->table);
+    if (!tm_hash_make(&f->table, count))
+        return tm_fail_memory(f->error);
+    for (uint32_t i = 0; i < f->states; i++)
+        *slot_of(f, f->state[i].node, f->state[i].code) = i;
+    return TM_OK;
+}
+
+static double along_curve(const finder *f, double a, double b)
+{
+    const double d = fabs(a - b);
+    return f->closed && d > f->total / 2 ? f->total - d : d;
+}
+
+/* Enters a state that costs so much, if none as cheap is there. */
+static tm_status reach(finder *f, const view *v, const tm_line_pattern *p, uint32_t from,
+                       double cost)
+{
+    const uint32_t node = v->node;
+    const double left = length_cost * along_curve(f, v->param, f->goal_param) / v->size;
+    if (2 * (f->states + 1) > f->table.mask && make_table(f, 2 * f->states + 2) != TM_OK)
+        return TM_ERROR_SYSTEM;
+    uint32_t *slot = slot_of(f, node, p->code);
+    if (*slot != TM_HASH_FREE && f->state[*slot].cost <= cost)
+        return TM_OK;
+    if (*slot == TM_HASH_FREE) {
+        void *more = tm_grow(f->state, &f->state_room, f->states + 1, sizeof *f->state);
+        if (!more)
+            return tm_fail_memory(f->error);
+        f->state = more;
+        *slot = (uint32_t)f->states++;
+    }
+    f->state[*slot] =
+        (state){.node = node, .code = p->code, .to = p->to, .from = from, .cost = cost};
+    return push(f, (entry){cost + left, *slot});
+}
+
+/* Which sectors the octants around a node may be in, and how far they are from each. */
+static void look_at_octants(const finder *f, view *v, const tm_sector_frame *frame,
+                            const double offset[3])
+{
+    const tm_region_layout *layout = f->layout;
+    const uint32_t *around = layout->lattice.leaf[v->node];
+    const uint32_t *label = layout->sectors.label[f->curve];
+    for (unsigned o = 0; o < OCTANTS; o++) {
+        const uint32_t leaf = around[o];
+        const bool given = leaf == TM_NONE || layout->fixed[leaf] ||
+                           tm_node_lattice_is_large(&layout->lattice, leaf, v->size);
+        const uint32_t own = leaf == TM_NONE ? 0 : layout->interior->label[leaf];
+        double direction[3];
+        for (int c = 0; c < 3; c++)
+            direction[c] = offset[c] / v->size + (o >> c & 1 ? 0.5 : -0.5);
+        v->may[o] = 0;
+        for (unsigned s = 0; s < f->sectors; s++) {
+            if (!given || own == label[s])
+                v->may[o] |= (uint8_t)(1u << s);
+            v->beside[o][s] = (float)tm_sector_beside(frame, f->sectors, s, direction);
+        }
+        v->same[o] = 0;
+        while (around[v->same[o]] != leaf)
+            v->same[o]++;
+    }
+}
+
+static tm_status view_node(finder *f, uint32_t node, const view **found)
+{
+    const tm_surface *s = f->layout->surface;
+    const tm_octree *octree = f->layout->lattice.octree;
+    if (f->view_of[node] < f->views && f->view[f->view_of[node]].node == node) {
+        *found = &f->view[f->view_of[node]];
+        return TM_OK;
+    }
+    void *more = tm_grow(f->view, &f->view_room, f->views + 1, sizeof *f->view);
+    if (!more)
+        return tm_fail_memory(f->error);
+    f->view = more;
+    f->view_of[node] = (uint32_t)f->views;
+    view *v = &f->view[f->views++];
+    *v = (view){.node = node, .size = tm_node_lattice_size(&f->layout->lattice, node)};
+    double at[3], closest[3];
+    size_t segment;
+    tm_octree_point(octree, octree->grid[node], at);
+    tm_surface_closest_on_curve(s, f->curve, at, closest, &segment);
+    const size_t first = s->curve_start[f->curve] + segment;
+    v->distance = sqrt(tm_distance2(at, closest)) / v->size;
+    v->param =
+        f->length[segment] + sqrt(tm_distance2(s->xyz[s->curve_node[first]], closest));
+    v->near = v->distance <= tube;
+    tm_subtract(at, at, closest);
+    if (v->near)
+        look_at_octants(f, v, &f->layout->sectors.frame[first], at);
+    *found = v;
+    return TM_OK;
+}
+
+/* What a pattern costs at a node; infinite where it cannot be. */
+static double cost_of(const finder *f, const view *v, tm_line_code code)
+{
+    double sum = 0;
+    for (unsigned o = 0; o < OCTANTS; o++) {
+        const unsigned sector = tm_code_at(code, o);
+        if (!(v->may[o] >> sector & 1) || tm_code_at(code, v->same[o]) != sector)
+            return INFINITY;
+        sum += v->beside[o][sector] * v->beside[o][sector];
+    }
+    return step_cost + (double)f->layout->history[v->node] +
+           distance_weight * v->distance * v->distance + octant_weight * sum;
+}
+
+/* Goes on from a node towards side `to`. */
+static tm_status step(finder *f, uint32_t node, tm_line_code code, unsigned to,
+                      uint32_t from, double cost, bool *arrived)
+{
+    const tm_region_layout *layout = f->layout;
+    const uint32_t next = layout->lattice.next[node][to];
+    const unsigned side = to ^ 1;
+    if (next == TM_NONE)
+        return TM_OK;
+    *arrived = next == f->goal && (f->goal_side == SIDES || f->goal_side == side);
+    if (*arrived || layout->taken[next])
+        return TM_OK;
+    const view *v;
+    if (view_node(f, next, &v) != TM_OK)
+        return TM_ERROR_SYSTEM;
+    if (!v->near || along_curve(f, v->param, f->middle) > f->half + tube * v->size)
+        return TM_OK;
+    unsigned around = 0;
+    for (unsigned i = 0; i < 4; i++)
+        around |= tm_code_at(code, tm_side_octants[side][i] ^ 1u << to / 2) << 2 * i;
+    const tm_line_patterns *p = patterns_of(f);
+    const unsigned bucket = TM_SIDE_CODES * side + around;
+    for (uint32_t i = p->start[bucket]; i < p->start[bucket + 1]; i++) {
+        const double more = cost_of(f, v, p->pattern[i].code);
+        if (more < INFINITY && reach(f, v, &p->pattern[i], from, cost + more) != TM_OK)
+            return TM_ERROR_SYSTEM;
+    }
+    return TM_OK;
+}
+
+/* Whether a line may end with a state where there is no goal. */
+static bool is_at_end(finder *f, const state *s)
+{
+    const view *v = &f->view[f->view_of[s->node]];
+    return f->goal == TM_NONE &&
+           along_curve(f, v->param, f->goal_param) <= loose_end * v->size;
+}
+
+/* Searches from the states that are there; *last becomes the one at the end, TM_NONE
+ * where the end is not reached. */
+static tm_status search(finder *f, uint32_t *last)
+{
+    *last = TM_NONE;
+    while (f->entries > 0) {
+        const uint32_t i = pop(f).state;
+        if (f->state[i].done)
+            continue;
+        f->state[i].done = true;
+        const state s = f->state[i];
+        bool arrived = is_at_end(f, &s);
+        if (!arrived && step(f, s.node, s.code, s.to, i, s.cost, &arrived) != TM_OK)
+            return TM_ERROR_SYSTEM;
+        if (arrived) {
+            *last = i;
+            return TM_OK;
+        }
+    }
+    return TM_OK;
+}
+
+static void clear(finder *f)
+{
+    f->states = f->views = f->entries = 0;
+    for (size_t i = 0; f->table.slot && i <= f->table.mask; i++)
+        f->table.slot[i] = TM_HASH_FREE;
+}
+
+/* Gives the leaves around the states up to the last one their labels. */
+static void lay_states(finder *f, uint32_t last)
+{
+    tm_region_layout *layout = f->layout;
+    const uint32_t *label = layout->sectors.label[f->curve];
+    for (uint32_t i = last; i != TM_NONE; i = f->state[i].from) {
+        const state *s = &f->state[i];
+        layout->taken[s->node] = true;
+        layout->sharp[s->node] = layout->sectors.sharp[f->curve];
+        for (unsigned o = 0; o < OCTANTS; o++) {
+            const uint32_t leaf = layout->lattice.leaf[s->node][o];
+            if (leaf != TM_NONE && !layout->fixed[leaf])
+                tm_region_lay(layout, leaf, label[tm_code_at(s->code, o)]);
+        }
+    }
+}
+
+/* Begins at a node that stands for a corner, on the side where its octants turn as the
+ * sectors do; false where there is none. */
+static bool find_side(const finder *f, uint32_t node, bool ends, unsigned *side,
+                      tm_line_code *code)
+{
+    const tm_region_layout *layout = f->layout;
+    for (*side = 0; *side < SIDES; ++*side) {
+        unsigned turn[4], k = 0;
+        *code = 0;
+        for (unsigned i = 0; i < 4 && k < f->sectors; i++) {
+            const unsigned o = tm_side_octants[*side][i];
+            const uint32_t own = layout->interior->octant[node][o];
+            for (k = 0; k < f->sectors; k++)
+                if (layout->sectors.label[f->curve][k] == own)
+                    break;
+            turn[ends ? 3 - i : i] = k;
+            *code = (tm_line_code)(*code | k << 2 * o);
+        }
+        if (k < f->sectors && tm_sectors_turn(turn, f->sectors))
+            return true;
+    }
+    return false;
+}
+
+/* Begins with all patterns at all nodes near a point of the curve. */
+static tm_status begin_near(finder *f, const double point[3])
+{
+    enum { STEPS = 2 };
+    uint32_t near[TM_NEAR_NODES];
+    const unsigned count = tm_node_lattice_near(&f->layout->lattice, point, STEPS, near);
+    const tm_line_patterns *p = patterns_of(f);
+    for (unsigned i = 0; i < count; i++) {
+        const view *v;
+        if (f->layout->taken[near[i]])
+            continue;
+        if (view_node(f, near[i], &v) != TM_OK)
+            return TM_ERROR_SYSTEM;
+        for (uint32_t k = 0; v->near && k < p->count; k++) {
+            const double cost = cost_of(f, v, p->pattern[k].code);
+            if (cost < INFINITY && reach(f, v, &p->pattern[k], TM_NONE, cost) != TM_OK)
+                return TM_ERROR_SYSTEM;
+        }
+    }
+    return TM_OK;
+}
+
+static tm_status measure(finder *f)
+{
+    const tm_surface *s = f->layout->surface;
+    const size_t begin = s->curve_start[f->curve];
+    const size_t count = s->curve_start[f->curve + 1] - begin;
+    void *room = tm_grow(f->length, &f->length_room, count, sizeof *f->length);
+    if (!room)
+        return tm_fail_memory(f->error);
+    f->length = room;
+    f->length[0] = 0;
+    for (size_t i = 1; i < count; i++)
+        f->length[i] =
+            f->length[i - 1] + sqrt(tm_distance2(s->xyz[s->curve_node[begin + i - 1]],
+                                                 s->xyz[s->curve_node[begin + i]]));
+    f->total = f->length[count - 1];
+    return TM_OK;
+}
+
+/* The line of a curve around: half of the way to a free end, and back to where it began.
+ */
+static tm_status go_around(finder *f, const double start[3])
+{
+    uint32_t last;
+    f->goal = TM_NONE;
+    f->goal_param = f->total / 2;
+    f->middle = f->half = f->total / 4;
+    if (begin_near(f, start) != TM_OK || search(f, &last) != TM_OK)
+        return TM_ERROR_SYSTEM;
+    if (last == TM_NONE)
+        return TM_OK;
+    lay_states(f, last);
+    uint32_t first = last;
+    while (f->state[first].from != TM_NONE)
+        first = f->state[first].from;
+    const state from = f->state[last], to = f->state[first];
+    bool arrived = false;
+    clear(f);
+    f->goal = to.node;
+    f->goal_param = 0;
+    f->middle = f->total * 3 / 4;
+    for (f->goal_side = 0; f->goal_side < SIDES; f->goal_side++) {
+        unsigned in[4];
+        for (unsigned i = 0; i < 4; i++)
+            in[3 - i] = tm_code_at(to.code, tm_side_octants[f->goal_side][i]);
+        if (tm_sectors_turn(in, f->sectors))
+            break;
+    }
+    if (step(f, from.node, from.code, from.to, TM_NONE, 0, &arrived) != TM_OK)
+        return TM_ERROR_SYSTEM;
+    if (!arrived && search(f, &last) != TM_OK)
+        return TM_ERROR_SYSTEM;
+    if (!arrived && last != TM_NONE)
+        lay_states(f, last);
+    return TM_OK;
+}
+
+/* The line of a curve from corner to corner, whose nodes may be TM_NONE. */
+static tm_status go_along(finder *f, const double start[3], uint32_t from, uint32_t to)
+{
+    tm_line_code code;
+    unsigned side;
+    uint32_t last;
+    bool arrived = false;
+    f->goal = to;
+    f->goal_side = SIDES;
+    f->goal_param = f->total;
+    f->middle = f->half = f->total / 2;
+    if (to != TM_NONE && !find_side(f, to, true, &f->goal_side, &code))
+        f->goal = TM_NONE;
+    const bool begins = from != TM_NONE && find_side(f, from, false, &side, &code);
+    if (begins ? step(f, from, code, side, TM_NONE, 0, &arrived) != TM_OK
+               : begin_near(f, start) != TM_OK)
+        return TM_ERROR_SYSTEM;
+    if (arrived)
+        return TM_OK;
+    if (search(f, &last) != TM_OK)
+        return TM_ERROR_SYSTEM;
+    f->layout->lost += last == TM_NONE;
+    lay_states(f, last);
+    return TM_OK;
+}
+
+static tm_status lay_line(finder *f, uint32_t curve, const uint32_t *corner_at)
+{
+    const tm_surface *s = f->layout->surface;
+    const uint32_t first = s->curve_node[s->curve_start[curve]];
+    const uint32_t end = s->curve_node[s->curve_start[curve + 1] - 1];
+    const uint32_t from = corner_at[first], to = corner_at[end];
+    f->curve = curve;
+    f->sectors = f->layout->sectors.count[curve];
+    f->closed = first == end;
+    clear(f);
+    if (measure(f) != TM_OK)
+        return TM_ERROR_SYSTEM;
+    if (f->closed && from == TM_NONE)
+        return go_around(f, s->xyz[first]);
+    f->closed = false;
+    return go_along(f, s->xyz[first],
+                    from == TM_NONE ? TM_NONE : f->layout->corner_node[from],
+                    to == TM_NONE ? TM_NONE : f->layout->corner_node[to]);
+}
+
+static void free_finder(finder *f)
+{
+    for (int i = 0; i < 2; i++)
+        tm_line_patterns_free(&f->patterns[i]);
+    tm_hash_free(&f->table);
+    free(f->view_of);
+    free(f->view);
+    free(f->state);
+    free(f->heap);
+    free(f->length);
+}
+
+tm_status tm_region_lay_lines(tm_region_layout *layout, tm_error *error)
+{
+    const tm_surface *s = layout->surface;
+    finder f = {.layout = layout,
+                .error = error,
+                .view_of = calloc(layout->lattice.octree->nodes + 1, sizeof(uint32_t))};
+    uint32_t *corner_at = tm_new(s->nodes, sizeof *corner_at);
+    tm_status status = f.view_of && corner_at ? TM_OK : tm_fail_memory(error);
+    for (unsigned i = 0; status == TM_OK && i < 2; i++)
+        status = tm_line_patterns_make(&f.patterns[i], 3 + i, error);
+    for (size_t v = 0; status == TM_OK && v < s->nodes; v++)
+        corner_at[v] = TM_NONE;
+    for (uint32_t k = 0; status == TM_OK && k < s->corners; k++)
+        corner_at[s->corner[k]] = k;
+    for (uint32_t c = 0; status == TM_OK && c < s->curves; c++)
+        if (layout->sectors.count[c] > 0)
+            status = lay_line(&f, c, corner_at);
+    free_finder(&f);
+    free(corner_at);
+    return status;
+}

@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "soup.h"
+
+#include "../../base/array.h"
+#include "../../geom/vector.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double diagonal_of(const double (*xyz)[3], size_t nodes)
+{
+    double low[3] = {0}, high[3] = {0}, size2 = 0;
+    for (size_t v = 0; v < nodes; v++)
+        for (int x = 0; x < 3; x++) {
+            low[x] = v == 0 || xyz[v][x] < low[x] ? xyz[v][x] : low[x];
+            high[x] = v == 0 || xyz[v][x] > high[x] ? xyz[v][x] : high[x];
+        }
+    for (int x = 0; x < 3; x++)
+        size2 += (high[x] - low[x]) * (high[x] - low[x]);
+    return sqrt(size2);
+}
+
+tm_status tm_soup_take(tm_soup *soup, tm_stream *stream, tm_error *error)
+{
+    tm_block *node = tm_stream_find(stream, ".node");
+    tm_block *face = tm_stream_find(stream, ".face");
+    *soup = (tm_soup){.nodes = node->count,
+                      .xyz = (const double(*)[3])node->real,
+                      .triangles = face->count,
+                      .room = face->count,
+                      .marker_room = face->count,
+                      .triangle = (uint32_t(*)[3])face->integer,
+                      .marker = face->marker};
+    soup->diagonal = diagonal_of(soup->xyz, soup->nodes);
+    face->integer = NULL;
+    face->marker = NULL;
+    face->count = 0;
+    return tm_soup_find_edges(soup, error);
+}
+
+void tm_soup_give(tm_soup *soup, tm_stream *stream)
+{
+    tm_block *face = tm_stream_find(stream, ".face");
+    face->count = soup->triangles;
+    face->integer = (uint32_t *)soup->triangle;
+    face->marker = soup->marker;
+    soup->triangle = NULL;
+    soup->marker = NULL;
+    tm_soup_free(soup);
+}
+
+void tm_soup_free(tm_soup *soup)
+{
+    free(soup->triangle);
+    free(soup->marker);
+    free(soup->start);
+    tm_polygon_edges_free(&soup->edges);
+    *soup = (tm_soup){0};
+}
+
+tm_status tm_soup_copy(tm_soup *copy, const tm_soup *soup, tm_error *error)
+{
+    const size_t n = soup->triangles;
+    *copy = *soup;
+    copy->start = NULL;
+    copy->start_room = 0;
+    copy->edges = (tm_polygon_edges){0};
+    copy->room = copy->marker_room = n;
+    copy->triangle = tm_new(n, sizeof *copy->triangle);
+    copy->marker = soup->marker ? tm_new(n, sizeof *copy->marker) : NULL;
+    if (!copy->triangle || (soup->marker && !copy->marker))
+        return tm_fail_memory(error);
+    memcpy(copy->triangle, soup->triangle, n * sizeof *copy->triangle);
+    if (soup->marker)
+        memcpy(copy->marker, soup->marker, n * sizeof *copy->marker);
+    return TM_OK;
+}
+
+tm_status tm_soup_find_edges(tm_soup *soup, tm_error *error)
+{
+    size_t *start =
+        tm_grow(soup->start, &soup->start_room, soup->triangles + 1, sizeof *start);
+    if (!start)
+        return tm_fail_memory(error);
+    soup->start = start;
+    for (size_t t = 0; t <= soup->triangles; t++)
+        start[t] = 3 * t;
+    tm_polygon_edges_free(&soup->edges);
+    const tm_status status = tm_polygon_edges_find(&soup->edges, soup->triangles, start,
+                                                   (const uint32_t *)soup->triangle,
+                                                   soup->nodes, NULL, 1, error);
+    soup->open = soup->crowded = 0;
+    for (size_t e = 0; status == TM_OK && e < soup->edges.edges; e++) {
+        const size_t count = soup->edges.start[e + 1] - soup->edges.start[e];
+        soup->open += count == 1;
+        soup->crowded += count > 2;
+    }
+    return status;
+}
+
+tm_status tm_soup_add(tm_soup *soup, const uint32_t node[3], int32_t marker,
+                      tm_error *error)
+{
+    void *more =
+        tm_grow(soup->triangle, &soup->room, soup->triangles + 1, sizeof *soup->triangle);
+    if (!more)
+        return tm_fail_memory(error);
+    soup->triangle = more;
+    memcpy(soup->triangle[soup->triangles], node, sizeof *soup->triangle);
+    if (soup->marker) {
+        more = tm_grow(soup->marker, &soup->marker_room, soup->triangles + 1,
+                       sizeof *soup->marker);
+        if (!more)
+            return tm_fail_memory(error);
+        soup->marker = more;
+        soup->marker[soup->triangles] = marker;
+    }
+    soup->triangles++;
+    return TM_OK;
+}
+
+void tm_soup_drop(tm_soup *soup, const bool *gone)
+{
+    size_t kept = 0;
+    for (size_t t = 0; t < soup->triangles; t++) {
+        if (gone[t])
+            continue;
+        memmove(soup->triangle[kept], soup->triangle[t], sizeof *soup->triangle);
+        if (soup->marker)
+            soup->marker[kept] = soup->marker[t];
+        kept++;
+    }
+    soup->triangles = kept;
+}
+
+bool tm_soup_open_nodes(const tm_soup *soup, uint32_t **list, size_t *count)
+{
+    bool *open = calloc(soup->nodes + 1, sizeof *open);
+    *list = tm_new(soup->nodes, sizeof **list);
+    *count = 0;
+    if (!open || !*list) {
+        free(open);
+        free(*list);
+        *list = NULL;
+        return false;
+    }
+    for (size_t t = 0; t < soup->triangles; t++)
+        for (unsigned i = 0; i < 3; i++)
+            if (tm_soup_is_open(soup, t, i))
+                open[soup->triangle[t][i]] = open[soup->triangle[t][(i + 1) % 3]] = true;
+    for (uint32_t v = 0; v < soup->nodes; v++)
+        if (open[v])
+            (*list)[(*count)++] = v;
+    free(open);
+    return true;
+}
