@@ -40,11 +40,13 @@ static tm_status clean(mender *m, tm_mend_report *report)
 
 typedef tm_status mend_step(mender *m, tm_mend_report *report, double size);
 
+/* Where nothing is joined the edges are as before. */
 static tm_status weld_all(mender *m, tm_mend_report *report, double size)
 {
-    const tm_status status =
-        tm_soup_weld(&m->soup, size, true, &report->step[TM_MEND_WELDED], m->error);
-    return status == TM_OK ? clean(m, report) : status;
+    tm_mended *welded = &report->step[TM_MEND_WELDED];
+    const size_t before = welded->count;
+    const tm_status status = tm_soup_weld(&m->soup, size, true, welded, m->error);
+    return status == TM_OK && welded->count > before ? clean(m, report) : status;
 }
 
 static tm_status weld_open(mender *m, tm_mend_report *report, double size)
