@@ -143,11 +143,24 @@ static bool is_real(const corner *c)
     return c->real[0] && c->real[1] && c->real[2] && c->real[3];
 }
 
+/* How far from the origin planes and ball are. */
+static double reach_of(const corner *c)
+{
+    return c->size + fabs(c->ball[0]) + fabs(c->ball[1]) + fabs(c->ball[2]);
+}
+
 /* Whether all planes are met but for rounding: the ball is the largest. */
 static bool is_best(const corner *c, double depth)
 {
-    const double reach = c->size + fabs(c->ball[0]) + fabs(c->ball[1]) + fabs(c->ball[2]);
-    return c->ball[3] - depth <= tolerance * DBL_EPSILON * reach;
+    return c->ball[3] - depth <= tolerance * DBL_EPSILON * reach_of(c);
+}
+
+/* Whether no ball can have the radius: from corner to corner that only becomes less, but
+ * for the lean and rounding. */
+static bool is_below(const corner *c, double least)
+{
+    const double margin = 1e-9;
+    return c->ball[3] + margin * reach_of(c) < least;
 }
 
 static double size_of(const double (*plane)[4], size_t count)
@@ -158,9 +171,9 @@ static double size_of(const double (*plane)[4], size_t count)
     return size;
 }
 
-/* Goes from corner to corner until the ball is the largest. The best ball that was met is
- * the result. */
-static bool find_ball(const double (*plane)[4], size_t count, result *best)
+/* Goes from corner to corner until the ball is the largest, or known to be less than
+ * `least`. The best ball that was met is the result. */
+static bool find_ball(const double (*plane)[4], size_t count, double least, result *best)
 {
     corner c = {.size = size_of(plane, count)};
     *best = (result){.radius = -HUGE_VAL};
@@ -168,6 +181,8 @@ static bool find_ball(const double (*plane)[4], size_t count, result *best)
     for (size_t round = 0; round < MOST_ROUNDS; round++) {
         double depth;
         set_ball(&c);
+        if (is_below(&c, least))
+            return false;
         const size_t cut = nearest(plane, count, c.ball, &depth);
         if (is_real(&c) && depth > best->radius) {
             best->radius = depth;
@@ -182,8 +197,14 @@ static bool find_ball(const double (*plane)[4], size_t count, result *best)
 bool tm_kernel_ball(const double (*plane)[4], size_t count, double center[3],
                     double *radius)
 {
+    return tm_kernel_ball_of(plane, count, -HUGE_VAL, center, radius);
+}
+
+bool tm_kernel_ball_of(const double (*plane)[4], size_t count, double least,
+                       double center[3], double *radius)
+{
     result best;
-    const bool found = find_ball(plane, count, &best);
+    const bool found = find_ball(plane, count, least, &best);
     for (size_t k = 0; k < 3; k++)
         center[k] = found ? best.center[k] : 0;
     *radius = found ? best.radius : 0;

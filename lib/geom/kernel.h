@@ -34,6 +34,10 @@
 bool tm_kernel_ball(const double (*plane)[4], size_t count, double center[3],
                     double *radius);
 
+/* The same, but false, and sooner, where it is known to be less than `least`. */
+bool tm_kernel_ball_of(const double (*plane)[4], size_t count, double least,
+                       double center[3], double *radius);
+
 /* Memory that is kept from one call to the next. {0} is empty. */
 typedef struct tm_kernel_memory {
     struct tm_kernel_plane *plane;

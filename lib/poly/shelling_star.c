@@ -159,7 +159,7 @@ static bool find_centre(tm_shelling *s, uint32_t t, double least, bool *memory)
     double centre[3], radius;
     size_t count;
     if (!collect_planes(s, t, &count, memory) ||
-        !tm_kernel_ball((const double(*)[4])s->plane, count, centre, &radius) ||
+        !tm_kernel_ball_of((const double(*)[4])s->plane, count, least, centre, &radius) ||
         radius < least)
         return false;
     memcpy(s->centre, centre, sizeof centre);

@@ -16,6 +16,7 @@ void tm_growth_free(tm_growth *g)
     free(g->queue);
     free(g->refused);
     free(g->box);
+    free(g->normal);
     free(g->new_nodes);
     free(g->new_edges);
     free(g->node_in);
@@ -46,7 +47,8 @@ tm_status tm_growth_start(tm_growth *g, const tm_cluster_mesh *mesh,
     g->refused = calloc(faces->cells + 1, sizeof *g->refused);
     g->edge_first = tm_new(g->edges.edges, sizeof *g->edge_first);
     if (!g->piece || !g->node_in || !g->node_shared || !g->edge_in || !g->edge_shared ||
-        !g->edge_first || !g->refused || (options->star && !tm_growth_find_boxes(g)))
+        !g->edge_first || !g->refused ||
+        (options->star && (!tm_growth_find_boxes(g) || !tm_growth_find_normals(g))))
         return tm_fail_memory(error);
     for (size_t c = 0; c < faces->cells; c++)
         g->piece[c] = TM_NONE;

@@ -32,6 +32,7 @@ typedef struct tm_growth {
     uint32_t *shared;     /* facets that a cell shares, then their trees */
     size_t shares, shared_room;
     double (*box)[2][3];    /* [cells]: star: each is between */
+    double (*normal)[3];    /* [facets]: outward from the first cell; or 0 */
     double low[3], high[3]; /* the piece is between */
     double origin[3];       /* of what follows */
     double centre[3];       /* star: a point that is so deep inside of all facets, or */
@@ -70,8 +71,10 @@ static inline bool tm_growth_has(const tm_growth *g, uint32_t c)
     return c != TM_NONE && g->piece[c] == g->id;
 }
 
-/* cluster_star.c: finds the boxes of all cells; false where memory is out. */
+/* cluster_star.c: finds the boxes of all cells, the normals of all facets; false where
+ * memory is out. */
 bool tm_growth_find_boxes(tm_growth *g);
+bool tm_growth_find_normals(tm_growth *g);
 
 /* Takes a cell into a box. */
 static inline void tm_growth_widen(const tm_growth *g, uint32_t c, double low[3],

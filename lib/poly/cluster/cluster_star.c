@@ -20,17 +20,17 @@ static bool plane_of(const tm_growth *g, uint32_t f, uint32_t c, const double or
     const tm_cell_faces *faces = g->mesh->faces;
     const uint32_t *node = faces->node + faces->start[f];
     const size_t count = faces->start[f + 1] - faces->start[f];
+    const double sign = tm_facet_is_outward(faces, f, c) ? 1 : -1;
     double to[3];
-    tm_polygon_area(g->mesh->xyz, node, count, plane);
-    const double length = tm_norm(plane);
     for (int x = 0; x < 3; x++)
-        plane[x] /= tm_facet_is_outward(faces, f, c) ? length : -length;
+        plane[x] = sign * g->normal[f][x];
     plane[3] = HUGE_VAL;
     for (size_t i = 0; i < count; i++) {
         tm_subtract(to, g->mesh->xyz[node[i]], origin);
-        plane[3] = fmin(plane[3], tm_dot(plane, to));
+        const double distance = tm_dot(plane, to);
+        plane[3] = distance < plane[3] ? distance : plane[3];
     }
-    return length > 0;
+    return tm_norm2(g->normal[f]) > 0;
 }
 
 /* Whether a facet of a cell is on the boundary of the piece with cell c. */
@@ -61,6 +61,21 @@ static bool collect_planes(tm_growth *g, uint32_t c, size_t *count, bool *memory
                 return false;
     }
     return true;
+}
+
+bool tm_growth_find_normals(tm_growth *g)
+{
+    const tm_cell_faces *faces = g->mesh->faces;
+    g->normal = tm_new(faces->facets, sizeof *g->normal);
+    for (size_t f = 0; f < faces->facets && g->normal; f++) {
+        double *normal = g->normal[f];
+        tm_polygon_area(g->mesh->xyz, faces->node + faces->start[f],
+                        faces->start[f + 1] - faces->start[f], normal);
+        const double length = tm_norm(normal);
+        for (int x = 0; x < 3; x++)
+            normal[x] = length > 0 ? normal[x] / length : 0;
+    }
+    return g->normal;
 }
 
 bool tm_growth_find_boxes(tm_growth *g)
@@ -115,7 +130,7 @@ bool tm_growth_stays_star(tm_growth *g, uint32_t c, bool *memory)
         return true;
     }
     if (!collect_planes(g, c, &count, memory) ||
-        !tm_kernel_ball((const double(*)[4])g->plane, count, centre, &radius) ||
+        !tm_kernel_ball_of((const double(*)[4])g->plane, count, least, centre, &radius) ||
         radius < least)
         return false;
     memcpy(g->centre, centre, sizeof centre);

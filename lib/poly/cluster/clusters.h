@@ -47,8 +47,8 @@ tm_status tm_cluster_blocks(const tm_cluster_mesh *mesh, const uint32_t *label,
  * more: level k as the blocks of the part `levelk`, with the nodes that its facets have.
  * The last attribute of each cell of the mesh and of all levels but the last one becomes
  * the number of its parent in the next one, after that for regions, which is 0 if there
- * was none. Levels that there were are forgotten. `options` are those of tm_cluster_cells(),
- * without sizes. *levels is how many there are. */
+ * was none. Levels that there were are forgotten. `options` are those of
+ * tm_cluster_cells(), without sizes. *levels is how many there are. */
 tm_status tm_cluster_levels(tm_stream *stream, size_t most,
                             const tm_poly_options *options, bool ignore_markers,
                             size_t *levels, tm_error *error);
