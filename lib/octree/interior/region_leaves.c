@@ -449,6 +449,7 @@ static tm_status lay_out(cleaner *c, tm_error *error)
     float *history = calloc(c->octree->nodes + 1, sizeof *history);
     tm_status status = TM_OK;
     size_t least = SIZE_MAX, wrong = 0;
+    int vain = 0;
     if (!start || !best || !history) {
         free(start);
         free(best);
@@ -457,11 +458,14 @@ static tm_status lay_out(cleaner *c, tm_error *error)
     }
     memcpy(start, c->interior->label, bytes);
     memcpy(best, start, bytes);
-    for (int i = 0; status == TM_OK && least > 0 && i < TRIES; i++) {
+    for (int i = 0; status == TM_OK && least > 0 && vain < VAIN_ROUNDS && i < TRIES;
+         i++) {
         tm_region_layout layout;
         put_all(c, start);
         status = lay_out_once(c, history, &layout, &wrong, error);
+        vain++;
         if (status == TM_OK && wrong < least) {
+            vain = 0;
             memcpy(best, c->interior->label, bytes);
             memcpy(c->laid, layout.fixed, leaves * sizeof *c->laid);
             least = wrong;

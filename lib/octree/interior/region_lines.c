@@ -23,7 +23,7 @@ static const double tube = 2.5, loose_end = 2;
  * distances cost, in shortest edges; and about what a line costs by the length of its
  * curve, which leads the search (P. E. Hart, N. J. Nilsson and B. Raphael, A*, 1968). */
 static const double step_cost = 0.3, distance_weight = 0.25, octant_weight = 0.5,
-                    length_cost = 0.6;
+                    length_cost = 0.7;
 
 typedef struct {
     uint32_t node;

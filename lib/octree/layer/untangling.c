@@ -313,8 +313,10 @@ tm_status tm_untangle_layer(tm_octree_mesh *mesh, const tm_octree *octree,
     if (!valid && surface->walls) {
         status = release(mesh, octree, rule, &boundary, progress, error);
         valid = status != TM_OK || count_invalid(&mesh->assembly.mesh) == 0;
-        if (status == TM_OK && valid)
+        if (status == TM_OK && valid) {
             status = improve(mesh, rule, &boundary, progress, &worst, error);
+            valid = status != TM_OK || count_invalid(&mesh->assembly.mesh) == 0;
+        }
     }
     free(rule);
     if (!valid)
