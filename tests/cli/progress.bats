@@ -34,9 +34,12 @@ most = data[:-20]
 master, slave = pty.openpty()
 size = struct.pack('HHHH', 24, int(os.environ.get('COLUMNS', 80)), 0, 0)
 fcntl.ioctl(slave, termios.TIOCSWINSZ, size)
+def begin():
+    fcntl.ioctl(2, termios.TIOCSCTTY, 0)
+    for number in (signal.SIGINT, signal.SIGHUP, signal.SIGTERM):
+        signal.signal(number, signal.SIG_DFL) # whatever these tests were started with
 child = subprocess.Popen(
-    command, stdin=subprocess.PIPE, stderr=slave, start_new_session=True,
-    preexec_fn=lambda: fcntl.ioctl(2, termios.TIOCSCTTY, 0))
+    command, stdin=subprocess.PIPE, stderr=slave, start_new_session=True, preexec_fn=begin)
 os.close(slave)
 child.stdin.write(most)
 child.stdin.flush()
