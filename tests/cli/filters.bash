@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # All filters, a good input for each, and a test run with each.
 # shellcheck shell=bash
-# shellcheck disable=SC2154 # run sets stderr
+# shellcheck disable=SC2016,SC2154 # names of sections; run sets stderr
 
 # Whether a filter is not built: there is no p4est, no three.js, or no libgmsh.
 is_left_out() {

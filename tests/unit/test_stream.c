@@ -149,7 +149,8 @@ typedef struct {
 
 static const wrong wrongs[] = {
     {"", 1, "", "looks like an empty file"},
-    {"OFF\n1 2 3\n", 1, "", "an OFF surface: use tetgen-mesh, octree-mesh or surface-import"},
+    {"OFF\n1 2 3\n", 1, "",
+     "an OFF surface: use tetgen-mesh, octree-mesh or surface-import"},
     {"solid x\n", 1, "", "an STL surface: use tetgen-mesh"},
     {"ply\n", 1, "", "a PLY surface: use tetgen-mesh"},
     {"# blender\nv 1 2 3\n", 1, "", "an OBJ surface: use tetgen-mesh"},

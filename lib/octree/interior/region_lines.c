@@ -283,7 +283,8 @@ static tm_status search(finder *f, uint32_t *last)
 {
     *last = TM_NONE;
     while (f->entries > 0) {
-        const uint32_t i = pop(f).state;
+        const entry next = pop(f);
+        const uint32_t i = next.state;
         if (f->state[i].done)
             continue;
         f->state[i].done = true;
