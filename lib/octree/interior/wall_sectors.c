@@ -187,10 +187,9 @@ tm_status tm_wall_sectors_find(tm_wall_sectors *sectors, const tm_surface *surfa
                                  calloc(surface->curves + 1, sizeof *sectors->count),
                                  tm_new(surface->curves, sizeof *sectors->label),
                                  tm_new(nodes, sizeof *sectors->frame)};
-    tm_status status =
-        sectors->sharp && sectors->count && sectors->label && sectors->frame
-            ? list_wings(&list, error)
-            : tm_fail_memory(error);
+    if (!sectors->sharp || !sectors->count || !sectors->label || !sectors->frame)
+        return tm_fail_memory(error);
+    const tm_status status = list_wings(&list, error);
     for (size_t c = 0; status == TM_OK && c < surface->curves; c++)
         if (tm_curve_is_of_walls(surface, c))
             find_sectors_of(sectors, &list, c);

@@ -265,32 +265,42 @@ static tm_status try_rings(releaser *r, const tm_boundary *boundary,
     return TM_OK;
 }
 
-/* Where walls meet at sharp angles: outer nodes around invalid elements leave the surface
- * until these are valid, and come back as far as they can. */
-static tm_status release(tm_octree_mesh *m, const tm_octree *octree, tm_node_rule *rule,
-                         const tm_boundary *boundary, const tm_progress *progress,
-                         tm_error *error)
+static tm_status release_and_return(releaser *r, const tm_octree *octree,
+                                    const tm_boundary *boundary,
+                                    const tm_progress *progress, tm_error *error)
 {
     const double valid = 0.05;
-    const size_t least = 500000, each = 2, nodes = m->assembly.mesh.nodes;
+    const size_t least = 500000, each = 2;
+    tm_octree_mesh *m = r->m;
     tm_optimise_options options = {.threshold = valid,
                                    .effort = 1,
                                    .most_measured =
                                        least + each * m->assembly.mesh.elements,
                                    .progress = progress};
     tm_optimise_report report;
-    releaser r = {m, rule, malloc(nodes + 1), tm_new(nodes, sizeof *r.base),
-                  tm_new(nodes, sizeof *r.kept)};
-    tm_status status = r.ring && r.base && r.kept ? TM_OK : tm_fail_memory(error);
+    if (!r->ring || !r->base || !r->kept)
+        return tm_fail_memory(error);
+    tm_status status = tm_lattice_points(&m->assembly, octree, m->part, m->parts,
+                                         &m->boundary, r->base, error);
     if (status == TM_OK)
-        status = tm_lattice_points(&m->assembly, octree, m->part, m->parts, &m->boundary,
-                                   r.base, error);
-    if (status == TM_OK)
-        status = try_rings(&r, boundary, &options, error);
+        status = try_rings(r, boundary, &options, error);
     options.off_surface_threshold = valid;
     if (status == TM_OK)
-        status = tm_mixed_optimise(&m->assembly.mesh, rule, boundary, &options, &report,
-                                   error);
+        status = tm_mixed_optimise(&m->assembly.mesh, r->rule, boundary, &options,
+                                   &report, error);
+    return status;
+}
+
+/* Where walls meet at sharp angles: outer nodes around invalid elements leave the surface
+ * until these are valid, and come back as far as they can. */
+static tm_status release(tm_octree_mesh *m, const tm_octree *octree, tm_node_rule *rule,
+                         const tm_boundary *boundary, const tm_progress *progress,
+                         tm_error *error)
+{
+    const size_t nodes = m->assembly.mesh.nodes;
+    releaser r = {m, rule, malloc(nodes + 1), tm_new(nodes, sizeof *r.base),
+                  tm_new(nodes, sizeof *r.kept)};
+    const tm_status status = release_and_return(&r, octree, boundary, progress, error);
     for (size_t s = 0; s < m->boundary.nodes; s++)
         m->off_surface[s] = rule[m->assembly.outer + s].off_surface;
     free(r.ring);
