@@ -11,8 +11,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool has_node_twice(const uint32_t v[3])
+/* `within` is for those below that need it. */
+typedef bool bad_triangle(const tm_soup *soup, const uint32_t v[3], double within);
+
+static bool has_node_twice(const tm_soup *soup, const uint32_t v[3], double within)
 {
+    (void)soup;
+    (void)within;
     return v[0] == v[1] || v[1] == v[2] || v[2] == v[0];
 }
 
@@ -27,19 +32,31 @@ static bool is_flat(const tm_soup *soup, const uint32_t v[3], double within)
            within * sqrt(longest2);
 }
 
-tm_status tm_soup_drop_degenerate(tm_soup *soup, tm_mended *dropped, tm_error *error)
+static tm_status drop_bad(tm_soup *soup, bad_triangle *is_bad, double within,
+                          tm_mended *dropped, tm_error *error)
 {
     bool *gone = calloc(soup->triangles + 1, sizeof *gone);
     if (!gone)
         return tm_fail_memory(error);
     for (size_t t = 0; t < soup->triangles; t++) {
-        gone[t] = has_node_twice(soup->triangle[t]);
+        gone[t] = is_bad(soup, soup->triangle[t], within);
         if (gone[t])
             tm_mend_count(dropped, soup->xyz[soup->triangle[t][0]]);
     }
-    tm_soup_drop(soup, gone);
+    tm_soup_drop(soup, gone, soup->triangles);
     free(gone);
     return TM_OK;
+}
+
+tm_status tm_soup_drop_degenerate(tm_soup *soup, tm_mended *dropped, tm_error *error)
+{
+    return drop_bad(soup, has_node_twice, 0, dropped, error);
+}
+
+tm_status tm_soup_drop_flat(tm_soup *soup, double within, tm_mended *dropped,
+                            tm_error *error)
+{
+    return drop_bad(soup, is_flat, within, dropped, error);
 }
 
 bool tm_soup_has_flat(const tm_soup *soup, double within)
@@ -48,22 +65,6 @@ bool tm_soup_has_flat(const tm_soup *soup, double within)
         if (is_flat(soup, soup->triangle[t], within))
             return true;
     return false;
-}
-
-tm_status tm_soup_drop_flat(tm_soup *soup, double within, tm_mended *dropped,
-                            tm_error *error)
-{
-    bool *gone = calloc(soup->triangles + 1, sizeof *gone);
-    if (!gone)
-        return tm_fail_memory(error);
-    for (size_t t = 0; t < soup->triangles; t++) {
-        gone[t] = is_flat(soup, soup->triangle[t], within);
-        if (gone[t])
-            tm_mend_count(dropped, soup->xyz[soup->triangle[t][0]]);
-    }
-    tm_soup_drop(soup, gone);
-    free(gone);
-    return TM_OK;
 }
 
 /* The nodes ascending; whether that turns the same way. */
@@ -120,31 +121,10 @@ tm_status tm_soup_drop_doubles(tm_soup *soup, bool all, tm_mended *dropped,
         if (all && sorted(soup->triangle[*slot], other) != even)
             gone[*slot] = true;
     }
-    tm_soup_drop(soup, gone);
+    tm_soup_drop(soup, gone, soup->triangles);
     tm_hash_free(&table);
     free(gone);
     return TM_OK;
-}
-
-/* The box of each set of triangles that edges join, at its root. */
-typedef struct {
-    double low[3], high[3];
-} box;
-
-static void put_in_box(box *b, const double place[3], bool first)
-{
-    for (int x = 0; x < 3; x++) {
-        b->low[x] = first ? place[x] : fmin(b->low[x], place[x]);
-        b->high[x] = first ? place[x] : fmax(b->high[x], place[x]);
-    }
-}
-
-static bool is_small(const box *b, double most)
-{
-    double size2 = 0;
-    for (int x = 0; x < 3; x++)
-        size2 += (b->high[x] - b->low[x]) * (b->high[x] - b->low[x]);
-    return sqrt(size2) <= most;
 }
 
 tm_status tm_soup_drop_islands(tm_soup *soup, double most, tm_mended *dropped,
@@ -152,7 +132,7 @@ tm_status tm_soup_drop_islands(tm_soup *soup, double most, tm_mended *dropped,
 {
     const tm_polygon_edges *edges = &soup->edges;
     uint32_t *set = tm_new(soup->triangles, sizeof *set);
-    box *boxes = tm_new(soup->triangles, sizeof *boxes);
+    tm_soup_box *boxes = tm_new(soup->triangles, sizeof *boxes); /* at roots */
     bool *gone = calloc(soup->triangles + 1, sizeof *gone);
     if (!set || !boxes || !gone) {
         free(set);
@@ -160,24 +140,25 @@ tm_status tm_soup_drop_islands(tm_soup *soup, double most, tm_mended *dropped,
         free(gone);
         return tm_fail_memory(error);
     }
-    for (uint32_t t = 0; t < soup->triangles; t++)
+    for (uint32_t t = 0; t < soup->triangles; t++) {
         set[t] = t;
+        boxes[t] = (tm_soup_box)TM_SOUP_NO_BOX;
+    }
     for (size_t e = 0; e < edges->edges; e++)
         for (size_t i = edges->start[e] + 1; i < edges->start[e + 1]; i++)
             tm_set_unite(set, edges->polygon[i], edges->polygon[i - 1]);
     for (uint32_t t = 0; t < soup->triangles; t++) {
         const uint32_t root = tm_set_root(set, t);
         for (int i = 0; i < 3; i++)
-            put_in_box(&boxes[root], soup->xyz[soup->triangle[t][i]],
-                       root == t && i == 0);
+            tm_soup_put_in_box(&boxes[root], soup->xyz[soup->triangle[t][i]]);
     }
     for (uint32_t t = 0; t < soup->triangles; t++) {
         const uint32_t root = tm_set_root(set, t);
-        gone[t] = is_small(&boxes[root], most);
+        gone[t] = tm_soup_box_diagonal(&boxes[root]) <= most;
         if (gone[t] && root == t)
             tm_mend_count(dropped, soup->xyz[soup->triangle[t][0]]);
     }
-    tm_soup_drop(soup, gone);
+    tm_soup_drop(soup, gone, soup->triangles);
     free(set);
     free(boxes);
     free(gone);

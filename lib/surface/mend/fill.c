@@ -21,7 +21,6 @@ typedef struct {
     tm_edge_map edges; /* all that there are */
     double most;
     tm_mended *filled;
-    size_t *triangles;
     tm_error *error;
 } filler;
 
@@ -84,16 +83,10 @@ static bool walk(filler *f, uint32_t side, bool *ok)
 
 static bool is_small(const filler *f)
 {
-    double size2 = 0;
-    for (int x = 0; x < 3; x++) {
-        double low = HUGE_VAL, high = -HUGE_VAL;
-        for (size_t i = 0; i < f->length; i++) {
-            low = fmin(low, f->soup->xyz[f->loop[i]][x]);
-            high = fmax(high, f->soup->xyz[f->loop[i]][x]);
-        }
-        size2 += (high - low) * (high - low);
-    }
-    return f->length > 2 && sqrt(size2) <= f->most;
+    tm_soup_box box = TM_SOUP_NO_BOX;
+    for (size_t i = 0; i < f->length; i++)
+        tm_soup_put_in_box(&box, f->soup->xyz[f->loop[i]]);
+    return f->length > 2 && tm_soup_box_diagonal(&box) <= f->most;
 }
 
 /* Whether an edge is one of the loop. */
@@ -136,7 +129,6 @@ static tm_status fill(filler *f, int32_t marker)
     if (!tm_edge_map_reserve(&f->edges, 3 * pieces))
         return tm_fail_memory(f->error);
     tm_mend_count(f->filled, f->soup->xyz[f->loop[0]]);
-    *f->triangles += pieces;
     tm_status status = TM_OK;
     for (size_t i = 0; i < pieces && status == TM_OK; i++) {
         for (int k = 0; k < 3; k++)
@@ -146,14 +138,9 @@ static tm_status fill(filler *f, int32_t marker)
     return status;
 }
 
-tm_status tm_soup_fill(tm_soup *soup, double most, tm_mended *filled, size_t *triangles,
-                       tm_error *error)
+tm_status tm_soup_fill(tm_soup *soup, double most, tm_mended *filled, tm_error *error)
 {
-    filler f = {.soup = soup,
-                .most = most,
-                .filled = filled,
-                .triangles = triangles,
-                .error = error};
+    filler f = {.soup = soup, .most = most, .filled = filled, .error = error};
     const size_t sides = 3 * soup->triangles;
     tm_status status = prepare(&f);
     for (uint32_t s = 0; s < sides && status == TM_OK; s++) {

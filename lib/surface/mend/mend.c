@@ -78,8 +78,8 @@ static tm_status flatten(mender *m, tm_mend_report *report, double size)
 
 static tm_status fill(mender *m, tm_mend_report *report, double size)
 {
-    const tm_status status = tm_soup_fill(&m->soup, size, &report->step[TM_MEND_FILLED],
-                                          &report->triangles_filled, m->error);
+    const tm_status status =
+        tm_soup_fill(&m->soup, size, &report->step[TM_MEND_FILLED], m->error);
     return status == TM_OK ? clean(m, report) : status;
 }
 
@@ -197,7 +197,6 @@ static tm_status mend(mender *m)
     tm_mend_report *r = m->report;
     bool better;
     r->open_before = m->soup.open;
-    r->crowded_before = m->soup.crowded;
     r->weld = m->options->weld >= 0 ? m->options->weld : hair(m);
     tm_status status =
         tm_soup_weld(&m->soup, 0, true, &r->step[TM_MEND_WELDED], m->error);
@@ -214,7 +213,6 @@ static tm_status mend(mender *m)
     if (status == TM_OK)
         status = tm_soup_turn(&m->soup, &r->step[TM_MEND_TURNED], m->error);
     r->open_edges = m->soup.open;
-    r->crowded_edges = m->soup.crowded;
     return status;
 }
 

@@ -43,10 +43,8 @@ typedef struct tm_mended {
 
 typedef struct tm_mend_report {
     tm_mended step[TM_MEND_STEPS];
-    double weld;                          /* the distance that was taken */
-    size_t open_before, open_edges;       /* edges of one triangle */
-    size_t crowded_before, crowded_edges; /* of three or more */
-    size_t triangles_filled;
+    double weld;                    /* the distance that was taken */
+    size_t open_before, open_edges; /* edges of one triangle */
 } tm_mend_report;
 
 /* Mends the triangles of .face, whose nodes are in .node. A step that leaves more open or

@@ -119,7 +119,7 @@ tm_status tm_soup_drop_quads(tm_soup *soup, double within, bool all, tm_mended *
         if (all && q->even != first->even)
             drop(soup, late ? first : q, gone, dropped);
     }
-    tm_soup_drop(soup, gone);
+    tm_soup_drop(soup, gone, soup->triangles);
     tm_hash_free(&table);
     free(list);
     free(gone);

@@ -8,17 +8,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-static double diagonal_of(const double (*xyz)[3], size_t nodes)
+void tm_soup_put_in_box(tm_soup_box *box, const double place[3])
 {
-    double low[3] = {0}, high[3] = {0}, size2 = 0;
-    for (size_t v = 0; v < nodes; v++)
-        for (int x = 0; x < 3; x++) {
-            low[x] = v == 0 || xyz[v][x] < low[x] ? xyz[v][x] : low[x];
-            high[x] = v == 0 || xyz[v][x] > high[x] ? xyz[v][x] : high[x];
-        }
-    for (int x = 0; x < 3; x++)
-        size2 += (high[x] - low[x]) * (high[x] - low[x]);
-    return sqrt(size2);
+    for (int x = 0; x < 3; x++) {
+        box->low[x] = fmin(box->low[x], place[x]);
+        box->high[x] = fmax(box->high[x], place[x]);
+    }
+}
+
+double tm_soup_box_diagonal(const tm_soup_box *box)
+{
+    return sqrt(tm_distance2(box->low, box->high));
 }
 
 tm_status tm_soup_take(tm_soup *soup, tm_stream *stream, tm_error *error)
@@ -32,7 +32,10 @@ tm_status tm_soup_take(tm_soup *soup, tm_stream *stream, tm_error *error)
                       .marker_room = face->count,
                       .triangle = (uint32_t(*)[3])face->integer,
                       .marker = face->marker};
-    soup->diagonal = diagonal_of(soup->xyz, soup->nodes);
+    tm_soup_box box = TM_SOUP_NO_BOX;
+    for (size_t v = 0; v < soup->nodes; v++)
+        tm_soup_put_in_box(&box, soup->xyz[v]);
+    soup->diagonal = soup->nodes > 0 ? tm_soup_box_diagonal(&box) : 0;
     face->integer = NULL;
     face->marker = NULL;
     face->count = 0;
@@ -120,11 +123,11 @@ tm_status tm_soup_add(tm_soup *soup, const uint32_t node[3], int32_t marker,
     return TM_OK;
 }
 
-void tm_soup_drop(tm_soup *soup, const bool *gone)
+void tm_soup_drop(tm_soup *soup, const bool *gone, size_t count)
 {
     size_t kept = 0;
     for (size_t t = 0; t < soup->triangles; t++) {
-        if (gone[t])
+        if (t < count && gone[t])
             continue;
         memmove(soup->triangle[kept], soup->triangle[t], sizeof *soup->triangle);
         if (soup->marker)

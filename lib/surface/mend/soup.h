@@ -6,6 +6,8 @@
 #include "../../mesh/polygon_edges.h"
 #include "mend.h"
 
+#include <math.h>
+
 typedef struct tm_soup {
     size_t nodes;
     const double (*xyz)[3];
@@ -34,8 +36,24 @@ tm_status tm_soup_find_edges(tm_soup *soup, tm_error *error);
 tm_status tm_soup_add(tm_soup *soup, const uint32_t node[3], int32_t marker,
                       tm_error *error);
 
-/* Drops the triangles that are marked; keeps the order. */
-void tm_soup_drop(tm_soup *soup, const bool *gone);
+/* Drops those of the first `count` triangles that are marked; keeps the order. */
+void tm_soup_drop(tm_soup *soup, const bool *gone, size_t count);
+
+/* Boxes around places; of none the diagonal is no number. */
+typedef struct tm_soup_box {
+    double low[3], high[3];
+} tm_soup_box;
+
+#define TM_SOUP_NO_BOX                                                                   \
+    {                                                                                    \
+        {HUGE_VAL, HUGE_VAL, HUGE_VAL},                                                  \
+        {                                                                                \
+            -HUGE_VAL, -HUGE_VAL, -HUGE_VAL                                              \
+        }                                                                                \
+    }
+
+void tm_soup_put_in_box(tm_soup_box *box, const double place[3]);
+double tm_soup_box_diagonal(const tm_soup_box *box);
 
 /* Whether side i, from corner i to i + 1, of triangle t is an open edge. */
 static inline bool tm_soup_is_open(const tm_soup *soup, size_t t, unsigned i)
@@ -66,8 +84,7 @@ tm_status tm_soup_drop_doubles(tm_soup *soup, bool all, tm_mended *dropped,
 tm_status tm_soup_drop_quads(tm_soup *soup, double within, bool all, tm_mended *dropped,
                              tm_error *error);
 tm_status tm_soup_split(tm_soup *soup, double within, tm_mended *split, tm_error *error);
-tm_status tm_soup_fill(tm_soup *soup, double most, tm_mended *filled, size_t *triangles,
-                       tm_error *error);
+tm_status tm_soup_fill(tm_soup *soup, double most, tm_mended *filled, tm_error *error);
 tm_status tm_soup_drop_islands(tm_soup *soup, double most, tm_mended *dropped,
                                tm_error *error);
 tm_status tm_soup_turn(tm_soup *soup, tm_mended *turned, tm_error *error);

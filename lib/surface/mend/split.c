@@ -136,18 +136,6 @@ static tm_status divide(splitter *s, size_t t, unsigned side)
     return status;
 }
 
-/* Whether each of so many triangles is gone; those added later are not. */
-static tm_status drop_divided(splitter *s, const bool *divided, size_t triangles)
-{
-    bool *gone = calloc(s->soup->triangles + 1, sizeof *gone);
-    if (!gone)
-        return tm_fail_memory(s->error);
-    memcpy(gone, divided, triangles * sizeof *gone);
-    tm_soup_drop(s->soup, gone);
-    free(gone);
-    return TM_OK;
-}
-
 static tm_status divide_all(splitter *s)
 {
     const size_t triangles = s->soup->triangles;
@@ -165,7 +153,7 @@ static tm_status divide_all(splitter *s)
             status = divide(s, t, side);
     }
     if (status == TM_OK)
-        status = drop_divided(s, divided, triangles);
+        tm_soup_drop(s->soup, divided, triangles);
     free(divided);
     return status;
 }

@@ -14,7 +14,8 @@ typedef struct {
     size_t first, end; /* its triangles: order[first … end) */
     size_t flips;
     bool closed, orientable;
-    double volume, low[3], high[3];
+    double volume;
+    tm_soup_box box;
 } piece;
 
 typedef struct {
@@ -63,26 +64,16 @@ static void flood(turner *w, piece *p, uint32_t t)
     }
 }
 
-static double corner_volume(const double o[3], const double a[3], const double b[3],
-                            const double c[3])
-{
-    return tm_tet_volume(a, b, c, o) * -1;
-}
-
 static void measure(const turner *w, piece *p)
 {
     const double(*xyz)[3] = w->soup->xyz;
     const double *origin = xyz[w->soup->triangle[w->order[p->first]][0]];
     for (size_t k = p->first; k < p->end; k++) {
         const uint32_t t = w->order[k], *v = w->soup->triangle[t];
-        const double volume = corner_volume(origin, xyz[v[0]], xyz[v[1]], xyz[v[2]]);
-        p->volume += w->flip[t] ? -volume : volume;
+        const double inward = tm_tet_volume(xyz[v[0]], xyz[v[1]], xyz[v[2]], origin);
+        p->volume += w->flip[t] ? inward : -inward;
         for (int i = 0; i < 3; i++)
-            for (int x = 0; x < 3; x++) {
-                const bool first = k == p->first && i == 0;
-                p->low[x] = first ? xyz[v[i]][x] : fmin(p->low[x], xyz[v[i]][x]);
-                p->high[x] = first ? xyz[v[i]][x] : fmax(p->high[x], xyz[v[i]][x]);
-            }
+            tm_soup_put_in_box(&p->box, xyz[v[i]]);
     }
 }
 
@@ -101,7 +92,7 @@ static bool is_in(const turner *w, const piece *p, const double place[3])
     const double two_pi = 6.28318530717958647693;
     double sum = 0;
     for (int x = 0; x < 3; x++)
-        if (place[x] < p->low[x] || place[x] > p->high[x])
+        if (place[x] < p->box.low[x] || place[x] > p->box.high[x])
             return false;
     for (size_t k = p->first; k < p->end; k++) {
         const uint32_t t = w->order[k], *v = w->soup->triangle[t];
@@ -154,7 +145,11 @@ static tm_status find_pieces(turner *w, tm_error *error)
             return tm_fail_memory(error);
         w->pieces = more;
         piece *p = &w->pieces[w->count++];
-        *p = (piece){.first = end, .end = end, .closed = true, .orientable = true};
+        *p = (piece){.first = end,
+                     .end = end,
+                     .closed = true,
+                     .orientable = true,
+                     .box = TM_SOUP_NO_BOX};
         flood(w, p, t);
         measure(w, p);
         if (2 * p->flips > p->end - p->first)
