@@ -53,12 +53,8 @@ function updateLines(mesh) {
 function listLines(groups) {
     byId('lining').hidden = groups.length === 0;
     byId('lineNames').replaceChildren(...groups.map(group => {
-        const item = document.createElement('li'), swatch = document.createElement('i');
-        const name = document.createElement('span'), count = document.createElement('small');
-        swatch.style.background = `rgb(${group.colour})`;
-        name.textContent = group.name;
-        count.textContent = thousands(group.count);
-        item.append(swatch, name, count);
+        const item = document.createElement('li');
+        item.append(...legendOf(group));
         return item;
     }));
 }

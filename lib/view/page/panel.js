@@ -215,6 +215,16 @@ function showLacking(field) {
         m => `${m.name} has no ${field.label}: it has the colours of outside and inside.`).join(' ');
 }
 
+/* The line of a legend: the parts behind what switches it. */
+function legendOf({colour, name, count}) {
+    const swatch = document.createElement('i'), text = document.createElement('span');
+    const number = document.createElement('small');
+    swatch.style.background = `rgb(${colour})`;
+    text.textContent = name;
+    number.textContent = thousands(count);
+    return [swatch, text, number];
+}
+
 /* The legend of a category; its values can be switched off. */
 function showCategories(field) {
     const list = byId('categories'), key = field.key + ' ' + [...state.off];
@@ -224,8 +234,7 @@ function showCategories(field) {
     list.dataset.key = key;
     list.replaceChildren(...field.categories.map(category => {
         const item = document.createElement('li'), label = document.createElement('label');
-        const box = document.createElement('input'), swatch = document.createElement('i');
-        const name = document.createElement('span'), count = document.createElement('small');
+        const box = document.createElement('input');
         box.type = 'checkbox';
         box.checked = !state.off.has(category.value);
         box.hidden = field.of !== 'element';
@@ -237,10 +246,7 @@ function showCategories(field) {
             changed();
             refresh();
         });
-        swatch.style.background = `rgb(${category.colour})`;
-        name.textContent = category.name;
-        count.textContent = thousands(category.count);
-        label.append(box, swatch, name, count);
+        label.append(box, ...legendOf(category));
         item.append(label);
         return item;
     }));
