@@ -78,12 +78,9 @@ static bool is_good(const filter *f, const tm_stream *stream, tm_error *error)
     tm_polygon_surface polygons;
     tm_surface surface;
     tm_polygon_surface_init(&polygons);
-    tm_status status =
-        surface_input_copy_nodes(tm_stream_find(stream, ".node"), &polygons, error);
-    polygons.base = stream->base;
-    if (status == TM_OK)
-        status = tm_polygon_surface_add_faces(&polygons, tm_stream_find(stream, ".face"),
-                                              error);
+    tm_status status = surface_input_of_blocks(tm_stream_find(stream, ".node"),
+                                               tm_stream_find(stream, ".face"),
+                                               stream->base, &polygons, error);
     if (status == TM_OK) {
         status = tm_surface_build(&surface, &polygons, &options, error);
         tm_surface_free(&surface);

@@ -37,6 +37,16 @@ const char *tm_group_find(const tm_block *group, tm_group_dimension dimension,
     return NULL;
 }
 
+const int32_t *tm_group_named(const tm_block *group, tm_group_dimension dimension,
+                              const char *name)
+{
+    for (size_t g = 0; group && g < group->count; g++)
+        if (tm_group_dimension_of(group, g) == dimension &&
+            strcmp(tm_group_name(group, g), name) == 0)
+            return &group->marker[g];
+    return NULL;
+}
+
 size_t tm_group_region_attribute(const tm_block *cells)
 {
     return cells->kind == TM_CELL ? 1 : 0;

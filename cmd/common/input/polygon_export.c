@@ -10,17 +10,13 @@
 
 enum { OPTION_ALL = FILTER_OWN, OPTION_REGIONS, OPTION_PART, OPTION_BINARY };
 
-/* The last one is of those that have --binary only. */
-static const struct option with_binary[] = {
+/* Formats that have no binary files begin with the second one. */
+static const struct option long_options[] = {
+    {"binary", no_argument, NULL, OPTION_BINARY},
     {"all", no_argument, NULL, OPTION_ALL},
     {"regions", no_argument, NULL, OPTION_REGIONS},
     {"part", required_argument, NULL, OPTION_PART},
-    {"binary", no_argument, NULL, OPTION_BINARY},
     FILTER_OPTIONS};
-static const struct option without[] = {{"all", no_argument, NULL, OPTION_ALL},
-                                        {"regions", no_argument, NULL, OPTION_REGIONS},
-                                        {"part", required_argument, NULL, OPTION_PART},
-                                        FILTER_OPTIONS};
 
 #define HELP                                                                             \
     "      --all           write the faces inside, too\n"                                \
@@ -121,7 +117,7 @@ int polygon_export(int argc, char **argv, const char *name, const char *purpose,
         .purpose = purpose,
         .help =
             binary ? HELP "      --binary        a binary file, little endian\n" : HELP,
-        .options = binary ? with_binary : without,
+        .options = binary ? long_options : long_options + 1,
         .letters = FILTER_LETTERS,
     };
     options o = {0};

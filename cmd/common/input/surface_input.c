@@ -68,8 +68,8 @@ static tm_status read_stream(const tm_text *bytes, const char *name, tm_stream *
     return status;
 }
 
-tm_status surface_input_copy_nodes(const tm_block *node, tm_polygon_surface *surface,
-                                   tm_error *error)
+static tm_status copy_nodes(const tm_block *node, tm_polygon_surface *surface,
+                            tm_error *error)
 {
     tm_stream copy;
     tm_stream_init(&copy);
@@ -109,6 +109,16 @@ static void rename_surface(tm_stream *stream)
         strcpy(group->name, "surface.group");
 }
 
+tm_status surface_input_of_blocks(const tm_block *node, const tm_block *face,
+                                  unsigned base, tm_polygon_surface *surface,
+                                  tm_error *error)
+{
+    surface->base = base;
+    const tm_status status = copy_nodes(node, surface, error);
+    return status == TM_OK && face ? tm_polygon_surface_add_faces(surface, face, error)
+                                   : status;
+}
+
 tm_status surface_input_of_stream(const tm_stream *stream, const char *name,
                                   tm_polygon_surface *surface, tm_error *error)
 {
@@ -118,10 +128,7 @@ tm_status surface_input_of_stream(const tm_stream *stream, const char *name,
         return tm_fail_at(error, TM_ERROR_INPUT, name, 0, "surface.node",
                           "the stream has no such block (the surface would be in it and "
                           "surface.face, or in .node and .face alone)");
-    surface->base = stream->base;
-    tm_status status = surface_input_copy_nodes(node, surface, error);
-    if (status == TM_OK && face)
-        status = tm_polygon_surface_add_faces(surface, face, error);
+    tm_status status = surface_input_of_blocks(node, face, stream->base, surface, error);
     const tm_block *group = tm_stream_find(stream, "surface.group");
     if (!group) /* the markers of a mesh are those of its surface */
         group = tm_stream_find(stream, ".group");

@@ -25,9 +25,11 @@ tm_format surface_input_read_any(const filter *f, tm_polygon_surface *surface,
 void surface_input_build(const filter *f, const tm_surface_options *options,
                          tm_surface *surface, tm_stream *history);
 
-/* Copies the nodes of a block to *surface, which is initialised and has none. */
-tm_status surface_input_copy_nodes(const tm_block *node, tm_polygon_surface *surface,
-                                   tm_error *error);
+/* Copies nodes and triangles of blocks, which are numbered from base, to *surface, which
+ * is initialised; face may be NULL. */
+tm_status surface_input_of_blocks(const tm_block *node, const tm_block *face,
+                                  unsigned base, tm_polygon_surface *surface,
+                                  tm_error *error);
 
 /* Copies surface.node and surface.face of a stream to *surface, which is initialised.
  * TM_ERROR_INPUT where there is no surface.node. */

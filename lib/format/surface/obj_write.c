@@ -22,35 +22,29 @@ static void write_polygon(tm_text *text, const tm_polygon_list *list, size_t p)
     tm_text_append(text, "\n", 1);
 }
 
-static void write(tm_text *text, const tm_polygon_list *list, tm_text *name)
+static void put(tm_text *text, tm_polygon_list *list, const tm_surface_file *file)
 {
+    tm_text name = {0};
+    (void)file;
+    tm_polygon_list_sort(list);
     for (size_t v = 0; v < list->nodes; v++)
         tm_polygon_point(list, v, "v ", text);
     for (size_t p = 0, end; p < list->polygons; p = end) {
         end = list->grouped ? tm_polygon_group_end(list, p) : list->polygons;
         if (list->grouped) {
-            tm_polygon_name(list, list->polygon[p].value, name);
-            write_group(text, name);
+            tm_polygon_name(list, list->polygon[p].value, &name);
+            write_group(text, &name);
         }
         for (size_t i = p; i < end; i++)
             write_polygon(text, list, i);
     }
+    text->failed |= name.failed;
+    tm_text_free(&name);
 }
 
 tm_status tm_obj_write(tm_text *text, const tm_stream *stream,
                        const tm_surface_file *file, tm_surface_written *written,
                        tm_error *error)
 {
-    tm_polygon_list list;
-    tm_text name = {0};
-    tm_status status = tm_polygon_list_make(&list, stream, file->of, error);
-    if (status == TM_OK) {
-        tm_polygon_list_sort(&list);
-        write(text, &list, &name);
-        *written = (tm_surface_written){.polygons = list.polygons};
-        status = text->failed || name.failed ? tm_fail_memory(error) : TM_OK;
-    }
-    tm_text_free(&name);
-    tm_polygon_list_free(&list);
-    return status;
+    return tm_polygon_write(text, stream, file, written, put, error);
 }

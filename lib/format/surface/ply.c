@@ -162,19 +162,11 @@ static tm_status read_property(reader *r)
     return TM_OK;
 }
 
-static bool has_name(const tm_block *group, int32_t value, const char *name)
-{
-    for (size_t g = 0; g < group->count; g++)
-        if (tm_group_value(group, g) == value ||
-            strcmp(tm_group_name(group, g), name) == 0)
-            return true;
-    return false;
-}
-
 /* "marker N NAME" is the name of a marker, where neither has one yet; all else is not for
  * us. */
 static tm_status read_comment(reader *r)
 {
+    tm_block *group = &r->surface->group;
     int64_t value = 0;
     if (!tm_word_is(tm_scan_word(&r->scan), "marker"))
         return TM_OK;
@@ -186,9 +178,9 @@ static tm_status read_comment(reader *r)
     tm_group_clean(&name, rest.begin, rest.size);
     tm_status status = name.failed ? tm_fail_memory(r->error) : TM_OK;
     if (status == TM_OK && name.size > 0 &&
-        !has_name(&r->surface->group, (int32_t)value, name.byte))
-        status = tm_group_add(&r->surface->group, TM_GROUP_FACES, (int32_t)value,
-                              name.byte, r->error);
+        !tm_group_find(group, TM_GROUP_FACES, (int32_t)value) &&
+        !tm_group_named(group, TM_GROUP_FACES, name.byte))
+        status = tm_group_add(group, TM_GROUP_FACES, (int32_t)value, name.byte, r->error);
     tm_text_free(&name);
     return status;
 }

@@ -81,21 +81,18 @@ static void write_binary(tm_text *text, const tm_polygon_list *list)
     }
 }
 
+static void put(tm_text *text, tm_polygon_list *list, const tm_surface_file *file)
+{
+    write_header(text, list, file->binary);
+    if (file->binary)
+        write_binary(text, list);
+    else
+        write_text(text, list);
+}
+
 tm_status tm_ply_write(tm_text *text, const tm_stream *stream,
                        const tm_surface_file *file, tm_surface_written *written,
                        tm_error *error)
 {
-    tm_polygon_list list;
-    tm_status status = tm_polygon_list_make(&list, stream, file->of, error);
-    if (status == TM_OK) {
-        write_header(text, &list, file->binary);
-        if (file->binary)
-            write_binary(text, &list);
-        else
-            write_text(text, &list);
-        *written = (tm_surface_written){.polygons = list.polygons};
-        status = text->failed ? tm_fail_memory(error) : TM_OK;
-    }
-    tm_polygon_list_free(&list);
-    return status;
+    return tm_polygon_write(text, stream, file, written, put, error);
 }

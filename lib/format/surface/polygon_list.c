@@ -124,6 +124,21 @@ void tm_polygon_list_free(tm_polygon_list *list)
     *list = (tm_polygon_list){0};
 }
 
+tm_status tm_polygon_write(tm_text *text, const tm_stream *stream,
+                           const tm_surface_file *file, tm_surface_written *written,
+                           tm_polygon_put *put, tm_error *error)
+{
+    tm_polygon_list list;
+    tm_status status = tm_polygon_list_make(&list, stream, file->of, error);
+    if (status == TM_OK) {
+        put(text, &list, file);
+        *written = (tm_surface_written){.polygons = list.polygons};
+        status = text->failed ? tm_fail_memory(error) : TM_OK;
+    }
+    tm_polygon_list_free(&list);
+    return status;
+}
+
 static int compare_polygons(const void *a, const void *b)
 {
     const tm_polygon *p = a, *q = b;
@@ -182,16 +197,6 @@ size_t tm_polygon_group_end(const tm_polygon_list *list, size_t p)
     return p;
 }
 
-static bool is_name(const tm_polygon_list *list, const char *name)
-{
-    const tm_block *group = tm_stream_find(list->stream, ".group");
-    for (size_t g = 0; group && g < group->count; g++)
-        if (tm_group_dimension_of(group, g) == list->dimension &&
-            strcmp(tm_group_name(group, g), name) == 0)
-            return true;
-    return false;
-}
-
 void tm_polygon_name(const tm_polygon_list *list, int32_t value, tm_text *name)
 {
     const char *given = find_name(list, value);
@@ -202,6 +207,7 @@ void tm_polygon_name(const tm_polygon_list *list, int32_t value, tm_text *name)
     }
     tm_text_format(name, list->dimension == TM_GROUP_REGIONS ? "region_%d" : "marker_%d",
                    value);
-    while (!name->failed && is_name(list, name->byte))
+    const tm_block *group = tm_stream_find(list->stream, ".group");
+    while (!name->failed && tm_group_named(group, list->dimension, name->byte))
         tm_text_append(name, "_", 1);
 }

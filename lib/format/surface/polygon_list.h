@@ -34,6 +34,14 @@ tm_status tm_polygon_list_make(tm_polygon_list *list, const tm_stream *stream,
                                tm_polygons_of of, tm_error *error);
 void tm_polygon_list_free(tm_polygon_list *list);
 
+/* Makes the list, lets `put` append the file to *text, and says what was written: all
+ * that a writer of whole polygons does. */
+typedef void tm_polygon_put(tm_text *text, tm_polygon_list *list,
+                            const tm_surface_file *file);
+tm_status tm_polygon_write(tm_text *text, const tm_stream *stream,
+                           const tm_surface_file *file, tm_surface_written *written,
+                           tm_polygon_put *put, tm_error *error);
+
 /* Sorts polygons by value, 0 first, if they are grouped; those of one keep their order.
  */
 void tm_polygon_list_sort(tm_polygon_list *list);
