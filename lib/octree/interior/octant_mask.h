@@ -20,6 +20,14 @@ enum { TM_ALL_OCTANTS = 0xff };
  * a corner, two at the middle of an edge, four at the centre of a face. */
 extern const tm_octant_mask tm_point_octants[26];
 
+/* Gives the octants that a leaf fills around the node at one of its points a value. */
+static inline void tm_octants_set(uint32_t octant[8], int point, uint32_t value)
+{
+    for (unsigned o = 0; o < 8; o++)
+        if (tm_point_octants[point] >> o & 1)
+            octant[o] = value;
+}
+
 /* The edges (0 … 11) of each face. */
 extern const uint8_t tm_face_edge[6][4];
 

@@ -7,15 +7,8 @@
 
 void tm_region_lay(tm_region_layout *layout, uint32_t leaf, uint32_t label)
 {
-    const tm_octree *octree = layout->lattice.octree;
     layout->fixed[leaf] = true;
-    layout->interior->label[leaf] = label;
-    for (int p = 0; p < TM_LEAF_NODES; p++) {
-        const uint32_t node = octree->node[leaf][p];
-        for (unsigned o = 0; node != TM_NONE && o < 8; o++)
-            if (tm_point_octants[p] >> o & 1)
-                layout->interior->octant[node][o] = label;
-    }
+    tm_interior_set_label(layout->interior, layout->lattice.octree, leaf, label);
 }
 
 tm_status tm_region_layout_make(tm_region_layout *layout, const tm_octree *octree,

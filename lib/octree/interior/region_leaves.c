@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "region_leaves.h"
 #include "contacts.h"
+#include "line_patterns.h"
 #include "region_layout.h"
 
 #include "../../base/array.h"
@@ -36,22 +37,6 @@ static unsigned count_bad(const uint32_t octant[OCTANTS])
         bad += !tm_octant_mask_is_good((tm_octant_mask)mask);
     }
     return bad;
-}
-
-/* Gives the octants of a point of a leaf that label. */
-static void set_octants(uint32_t octant[OCTANTS], int point, uint32_t label)
-{
-    for (unsigned o = 0; o < OCTANTS; o++)
-        if (tm_point_octants[point] >> o & 1)
-            octant[o] = label;
-}
-
-static void put(tm_interior *interior, const tm_octree *octree, size_t l, uint32_t label)
-{
-    interior->label[l] = label;
-    for (int p = 0; p < TM_LEAF_NODES; p++)
-        if (octree->node[l][p] != TM_NONE)
-            set_octants(interior->octant[octree->node[l][p]], p, label);
 }
 
 static const uint8_t all_octants[OCTANTS] = {0, 1, 2, 3, 4, 5, 6, 7};
@@ -95,8 +80,6 @@ static uint64_t set_of(const uint32_t *octant, const uint8_t *which, unsigned co
  * that the surface does not. */
 static unsigned count_strange(const cleaner *c, const uint32_t octant[OCTANTS])
 {
-    static const uint8_t around[6][4] = {{0, 2, 4, 6}, {1, 3, 5, 7}, {0, 1, 4, 5},
-                                         {2, 3, 6, 7}, {0, 1, 2, 3}, {4, 5, 6, 7}};
     unsigned labels, strange = 0;
     uint64_t set = set_of(octant, all_octants, OCTANTS, &labels);
     if (labels == 1)
@@ -104,7 +87,7 @@ static unsigned count_strange(const cleaner *c, const uint32_t octant[OCTANTS])
     strange += !tm_walls_have(&c->walls, set);
     for (int e = 0; labels > 1 && e < 6; e++) {
         unsigned few;
-        set = set_of(octant, around[e], 4, &few);
+        set = set_of(octant, tm_side_octants[e], 4, &few);
         strange += few > 1 && !tm_walls_have(&c->walls, set);
     }
     return strange;
@@ -215,9 +198,9 @@ static tm_status find_contacts(cleaner *c, tm_error *error)
 static unsigned badness_with(const cleaner *c, size_t l, uint32_t label)
 {
     const uint32_t now = c->interior->label[l];
-    put(c->interior, c->octree, l, label);
+    tm_interior_set_label(c->interior, c->octree, l, label);
     const unsigned bad = badness(c, l);
-    put(c->interior, c->octree, l, now);
+    tm_interior_set_label(c->interior, c->octree, l, now);
     return bad;
 }
 
@@ -294,7 +277,7 @@ static void make_change(cleaner *c, const change *made)
         c->interior->filled++;
     if (c->changes[made->leaf] < MOST_CHANGES)
         c->changes[made->leaf]++;
-    put(c->interior, c->octree, made->leaf, made->label);
+    tm_interior_set_label(c->interior, c->octree, made->leaf, made->label);
 }
 
 /* Gives one of the leaves around a node one of the other labels there. Where all masks
@@ -377,7 +360,7 @@ static void find_leaves(cleaner *c)
     for (size_t l = 0; l < octree->leaves; l++)
         for (int p = 0; p < TM_LEAF_NODES; p++)
             if (octree->node[l][p] != TM_NONE)
-                set_octants(c->leaf[octree->node[l][p]], p, (uint32_t)l);
+                tm_octants_set(c->leaf[octree->node[l][p]], p, (uint32_t)l);
 }
 
 static void label_leaves(cleaner *c)
@@ -392,7 +375,7 @@ static void label_leaves(cleaner *c)
         tm_leaf_centre(octree, leaf, centre);
         if (l == 0 || !tm_leaf_is_as_before(octree, l))
             label = tm_surface_region_at(c->surface, centre);
-        put(c->interior, octree, l, label);
+        tm_interior_set_label(c->interior, octree, l, label);
     }
 }
 
@@ -416,7 +399,7 @@ static void put_all(cleaner *c, const uint32_t *label)
 {
     for (size_t l = 0; l < c->octree->leaves; l++)
         if (c->interior->label[l] != label[l])
-            put(c->interior, c->octree, l, label[l]);
+            tm_interior_set_label(c->interior, c->octree, l, label[l]);
 }
 
 /* Lays out corners and curves and cleans what is around them; *wrong is what is left. */
