@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "line_patterns.h"
 #include "region_layout.h"
 
 #include "../../base/array.h"
@@ -311,13 +310,14 @@ static void lay_corner(finder *f, uint32_t corner, const end_of_curve *end, size
 }
 
 /* Lists the ends of curves where walls meet, corner by corner. */
-static size_t list_ends(const tm_surface *s, const uint32_t *corner_at, end_of_curve *end)
+static size_t list_ends(const tm_region_layout *layout, end_of_curve *end)
 {
+    const tm_surface *s = layout->surface;
     size_t count = 0;
     for (uint32_t c = 0; c < s->curves; c++)
         for (int ends = 0; tm_curve_is_of_walls(s, c) && ends < 2; ends++) {
             const size_t at = ends ? s->curve_start[c + 1] - 1 : s->curve_start[c];
-            const uint32_t corner = corner_at[s->curve_node[at]];
+            const uint32_t corner = layout->corner_at[s->curve_node[at]];
             if (corner != TM_NONE)
                 end[count++] = (end_of_curve){corner, c, ends == 1};
         }
@@ -329,16 +329,12 @@ static size_t list_ends(const tm_surface *s, const uint32_t *corner_at, end_of_c
 tm_status tm_region_lay_corners(tm_region_layout *layout, tm_error *error)
 {
     const tm_surface *s = layout->surface;
-    uint32_t *corner_at = tm_new(s->nodes, sizeof *corner_at);
     end_of_curve *end = tm_new(2 * s->curves, sizeof *end);
-    const bool ok = corner_at && end;
-    for (size_t v = 0; ok && v < s->nodes; v++)
-        corner_at[v] = TM_NONE;
-    for (uint32_t k = 0; ok && k < s->corners; k++) {
-        corner_at[s->corner[k]] = k;
+    if (!end)
+        return tm_fail_memory(error);
+    for (size_t k = 0; k < s->corners; k++)
         layout->corner_node[k] = TM_NONE;
-    }
-    const size_t count = ok ? list_ends(s, corner_at, end) : 0;
+    const size_t count = list_ends(layout, end);
     finder f = {.layout = layout};
     for (size_t i = 0, next; i < count; i = next) {
         next = i;
@@ -346,7 +342,6 @@ tm_status tm_region_lay_corners(tm_region_layout *layout, tm_error *error)
             next++;
         lay_corner(&f, end[i].corner, end + i, next - i);
     }
-    free(corner_at);
     free(end);
-    return ok ? TM_OK : tm_fail_memory(error);
+    return TM_OK;
 }
