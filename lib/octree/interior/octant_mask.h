@@ -36,6 +36,11 @@ extern const uint8_t tm_face_edge[6][4];
  * empty and the full mask, which have no boundary, are good. O(1). */
 bool tm_octant_mask_is_good(tm_octant_mask mask);
 
+/* Whether there are octants of each of the labels 0 … labels - 1, and they are a good
+ * mask.
+ */
+bool tm_octants_are_good(const unsigned label[8], unsigned labels);
+
 /* The sum of the directions in which the boundary faces look, each once: every component
  * is -1, 0 or 1. Of a good mask it looks away from all of them. */
 void tm_octant_mask_outward(tm_octant_mask mask, int direction[3]);
