@@ -277,7 +277,8 @@ static void join_edge(tm_surface *surface, const half_edge *edge, size_t count,
             memcpy(found->open_edge, nodes, sizeof nodes);
     } else if (!pair_wedges(surface, edge, count, low)) {
         found->odd += count % 2;
-        if (found->crowded++ == 0 || !found->overlaps) {
+        found->crowded++;
+        if (!found->overlaps) {
             memcpy(found->crowded_edge, nodes, sizeof nodes);
             found->overlaps =
                 count <= TM_WEDGES_MOST && is_overlapped(surface, edge, count, low);

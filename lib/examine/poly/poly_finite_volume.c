@@ -65,7 +65,7 @@ static void judge_inner(const tm_poly_centroids *m, size_t f, tm_poly_finite_vol
 
 static void judge_facets(const tm_poly_centroids *m, tm_poly_finite_volume *out)
 {
-    size_t inner = 0, outer = 0;
+    size_t facets = 0, inner = 0;
     out->min_pyramid = HUGE_VAL;
     for (size_t f = 0; f < m->mesh->facets; f++) {
         if (!tm_facet_fits(m->mesh, f))
@@ -83,12 +83,13 @@ static void judge_facets(const tm_poly_centroids *m, tm_poly_finite_volume *out)
         const double skew = tm_facet_skewness(m, f);
         out->max_skewness = fmax(out->max_skewness, skew);
         out->skew += skew > TM_FV_SKEWNESS;
-        outer += m->mesh->side[f][1] == TM_NONE;
-        inner += m->mesh->side[f][1] != TM_NONE;
-        if (m->mesh->side[f][1] != TM_NONE)
-            judge_inner(m, f, out);
+        facets++;
+        if (m->mesh->side[f][1] == TM_NONE)
+            continue;
+        inner++;
+        judge_inner(m, f, out);
     }
-    if (inner + outer == 0)
+    if (facets == 0)
         out->min_pyramid = 0;
     if (inner > 0)
         out->mean_non_orthogonality /= (double)inner;

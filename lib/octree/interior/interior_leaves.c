@@ -70,6 +70,15 @@ void tm_interior_flip(tm_interior *interior, const tm_octree *octree, size_t lea
     put_in_masks(interior, octree, leaf);
 }
 
+void tm_interior_set_label(tm_interior *interior, const tm_octree *octree, size_t leaf,
+                           uint32_t label)
+{
+    interior->label[leaf] = label;
+    for (int p = 0; p < TM_LEAF_NODES; p++)
+        if (octree->node[leaf][p] != TM_NONE)
+            tm_octants_set(interior->octant[octree->node[leaf][p]], p, label);
+}
+
 typedef struct {
     const tm_octree *octree;
     const tm_surface *surface;

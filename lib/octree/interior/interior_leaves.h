@@ -66,6 +66,10 @@ bool tm_leaf_is_as_before(const tm_octree *octree, size_t leaf);
 void tm_interior_flip(tm_interior *interior, const tm_octree *octree, size_t leaf);
 void tm_interior_find_used(tm_interior *interior, const tm_octree *octree);
 
+/* Gives a leaf that label, and its octants around its nodes. */
+void tm_interior_set_label(tm_interior *interior, const tm_octree *octree, size_t leaf,
+                           uint32_t label);
+
 /* Marks the leaves that the surface crosses but none of whose corners is on the boundary
  * of the chosen ones: there a thin part, or a gap, is lost. Returns how many. None where
  * the inside is by the winding number: there surface may be within the interior. */

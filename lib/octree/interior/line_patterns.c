@@ -34,14 +34,10 @@ static unsigned count_met(tm_line_code code, unsigned side)
 
 static bool has_good_masks(tm_line_code code, unsigned sectors)
 {
-    for (unsigned s = 0; s < sectors; s++) {
-        unsigned mask = 0;
-        for (unsigned o = 0; o < OCTANTS; o++)
-            mask |= (unsigned)(tm_code_at(code, o) == s) << o;
-        if (mask == 0 || !tm_octant_mask_is_good((tm_octant_mask)mask))
-            return false;
-    }
-    return true;
+    unsigned sector[OCTANTS];
+    for (unsigned o = 0; o < OCTANTS; o++)
+        sector[o] = tm_code_at(code, o);
+    return tm_octants_are_good(sector, sectors);
 }
 
 /* Whether no face is between sectors that are not neighbours. */

@@ -48,9 +48,8 @@ tm_status tm_node_lattice_make(tm_node_lattice *lattice, const tm_octree *octree
     for (size_t l = 0; l < octree->leaves; l++) {
         join_edges(lattice, octree->node[l]);
         for (int p = 0; p < TM_LEAF_NODES; p++)
-            for (unsigned o = 0; octree->node[l][p] != TM_NONE && o < OCTANTS; o++)
-                if (tm_point_octants[p] >> o & 1)
-                    lattice->leaf[octree->node[l][p]][o] = (uint32_t)l;
+            if (octree->node[l][p] != TM_NONE)
+                tm_octants_set(lattice->leaf[octree->node[l][p]], p, (uint32_t)l);
     }
     return tm_leaf_tree_make(&lattice->tree, octree, error);
 }

@@ -54,6 +54,18 @@ bool tm_octant_mask_is_good(tm_octant_mask mask)
     return is_connected(mask) && is_connected(~(unsigned)mask & TM_ALL_OCTANTS);
 }
 
+bool tm_octants_are_good(const unsigned label[8], unsigned labels)
+{
+    for (unsigned k = 0; k < labels; k++) {
+        unsigned mask = 0;
+        for (unsigned o = 0; o < 8; o++)
+            mask |= (unsigned)(label[o] == k) << o;
+        if (mask == 0 || !tm_octant_mask_is_good((tm_octant_mask)mask))
+            return false;
+    }
+    return true;
+}
+
 void tm_octant_mask_outward(tm_octant_mask mask, int direction[3])
 {
     for (int axis = 0; axis < 3; axis++) {

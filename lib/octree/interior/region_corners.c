@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "line_patterns.h"
 #include "region_layout.h"
 
 #include "../../base/array.h"
@@ -31,6 +30,7 @@ typedef struct {
 /* A corner and what the search for it has found. */
 typedef struct {
     tm_region_layout *layout;
+    double direction[SAMPLES][3]; /* all about as far from each other */
     const double *point;
     unsigned spokes;
     spoke spoke[SIDES];
@@ -65,14 +65,15 @@ static int compare_ends(const void *a, const void *b)
     return (int)p->ends - (int)q->ends;
 }
 
-/* Direction i of many, all about as far from each other. */
-static void sample(unsigned i, double direction[3])
+static void find_directions(finder *f)
 {
     const double golden = pi * (3 - sqrt(5));
-    const double z = 1 - (2 * i + 1) / (double)SAMPLES, r = sqrt(1 - z * z);
-    direction[0] = r * cos(golden * i);
-    direction[1] = r * sin(golden * i);
-    direction[2] = z;
+    for (unsigned i = 0; i < SAMPLES; i++) {
+        const double z = 1 - (2 * i + 1) / (double)SAMPLES, r = sqrt(1 - z * z);
+        f->direction[i][0] = r * cos(golden * i);
+        f->direction[i][1] = r * sin(golden * i);
+        f->direction[i][2] = z;
+    }
 }
 
 /* The regions around the corner, as far away as `reach`. False where there are too many.
@@ -81,10 +82,9 @@ static bool look_around(finder *f, double reach)
 {
     f->labels = 0;
     for (unsigned i = 0; i < SAMPLES; i++) {
-        double at[3], point[3];
-        sample(i, at);
+        double point[3];
         for (int c = 0; c < 3; c++)
-            point[c] = f->point[c] + reach * at[c];
+            point[c] = f->point[c] + reach * f->direction[i][c];
         const uint32_t label = tm_surface_region_at(f->layout->surface, point);
         unsigned k = 0;
         while (k < f->labels && f->label[k] != label)
@@ -117,11 +117,8 @@ static void look_at_octants(finder *f)
         const double far = tm_norm(out);
         for (unsigned k = 0; k < OCTANTS; k++)
             most[k] = -far;
-        for (unsigned i = 0; i < SAMPLES; i++) {
-            double at[3];
-            sample(i, at);
-            most[f->sampled[i]] = fmax(most[f->sampled[i]], tm_dot(at, out));
-        }
+        for (unsigned i = 0; i < SAMPLES; i++)
+            most[f->sampled[i]] = fmax(most[f->sampled[i]], tm_dot(f->direction[i], out));
         for (unsigned k = 0; k < OCTANTS; k++) {
             const double away = far > 0 ? far * acos(fmin(1, most[k] / far)) : 0;
             f->octant_cost[o][k] = away * away;
@@ -198,18 +195,6 @@ static double side_cost(const finder *f, unsigned side, unsigned *used)
     return INFINITY;
 }
 
-static bool has_good_masks(const finder *f)
-{
-    for (unsigned k = 0; k < f->labels; k++) {
-        unsigned mask = 0;
-        for (unsigned o = 0; o < OCTANTS; o++)
-            mask |= (unsigned)(f->given[o] == k) << o;
-        if (mask == 0 || !tm_octant_mask_is_good((tm_octant_mask)mask))
-            return false;
-    }
-    return true;
-}
-
 /* Whether octant o can have that label at the node that is tried. */
 static bool may_have(const finder *f, unsigned o, unsigned k)
 {
@@ -249,7 +234,8 @@ static void give(finder *f, unsigned o, double cost, unsigned used)
     }
     for (unsigned side = 1; side < SIDES; side += 2)
         cost += side_cost(f, side, &used);
-    if (!(cost < f->least) || used != (1u << f->spokes) - 1 || !has_good_masks(f))
+    if (!(cost < f->least) || used != (1u << f->spokes) - 1 ||
+        !tm_octants_are_good(f->given, f->labels))
         return;
     f->least = cost;
     f->best_node = f->node;
@@ -311,13 +297,14 @@ static void lay_corner(finder *f, uint32_t corner, const end_of_curve *end, size
 }
 
 /* Lists the ends of curves where walls meet, corner by corner. */
-static size_t list_ends(const tm_surface *s, const uint32_t *corner_at, end_of_curve *end)
+static size_t list_ends(const tm_region_layout *layout, end_of_curve *end)
 {
+    const tm_surface *s = layout->surface;
     size_t count = 0;
     for (uint32_t c = 0; c < s->curves; c++)
         for (int ends = 0; tm_curve_is_of_walls(s, c) && ends < 2; ends++) {
             const size_t at = ends ? s->curve_start[c + 1] - 1 : s->curve_start[c];
-            const uint32_t corner = corner_at[s->curve_node[at]];
+            const uint32_t corner = layout->corner_at[s->curve_node[at]];
             if (corner != TM_NONE)
                 end[count++] = (end_of_curve){corner, c, ends == 1};
         }
@@ -329,24 +316,20 @@ static size_t list_ends(const tm_surface *s, const uint32_t *corner_at, end_of_c
 tm_status tm_region_lay_corners(tm_region_layout *layout, tm_error *error)
 {
     const tm_surface *s = layout->surface;
-    uint32_t *corner_at = tm_new(s->nodes, sizeof *corner_at);
     end_of_curve *end = tm_new(2 * s->curves, sizeof *end);
-    const bool ok = corner_at && end;
-    for (size_t v = 0; ok && v < s->nodes; v++)
-        corner_at[v] = TM_NONE;
-    for (uint32_t k = 0; ok && k < s->corners; k++) {
-        corner_at[s->corner[k]] = k;
+    if (!end)
+        return tm_fail_memory(error);
+    for (size_t k = 0; k < s->corners; k++)
         layout->corner_node[k] = TM_NONE;
-    }
-    const size_t count = ok ? list_ends(s, corner_at, end) : 0;
+    const size_t count = list_ends(layout, end);
     finder f = {.layout = layout};
+    find_directions(&f);
     for (size_t i = 0, next; i < count; i = next) {
         next = i;
         while (next < count && end[next].corner == end[i].corner)
             next++;
         lay_corner(&f, end[i].corner, end + i, next - i);
     }
-    free(corner_at);
     free(end);
-    return ok ? TM_OK : tm_fail_memory(error);
+    return TM_OK;
 }

@@ -7,31 +7,40 @@
 #define TM_INTERIOR_REGION_LAYOUT_H
 
 #include "interior_leaves.h"
+#include "line_patterns.h"
 #include "node_lattice.h"
 #include "region_sets.h"
 #include "wall_sectors.h"
 
 typedef struct tm_region_layout {
-    tm_node_lattice lattice;
     const tm_surface *surface;
     tm_interior *interior;
+    tm_node_lattice lattice;
     tm_walls walls;
     tm_wall_sectors sectors;
+    tm_line_patterns patterns[2]; /* of 3 and of 4 sectors */
+    uint32_t *corner_at;          /* [nodes of the surface]: the corner, or TM_NONE */
+    float *history; /* [nodes]: what it costs more to go by it; 0 at first */
+    /* What is laid out: */
     bool *fixed;           /* [leaves]: it has its label */
     bool *taken;           /* [nodes]: it stands for a corner, or is on a line */
     bool *sharp;           /* [nodes]: it is on a line where regions end sharply */
-    const float *history;  /* [nodes]: what it costs more to go by it */
     size_t lost;           /* corners and curves that could not be laid out */
     uint32_t *corner_node; /* [corners]: the node that stands for it, or TM_NONE */
 } tm_region_layout;
 
-/* Lays out all corners and curves that can be. The leaves of *interior have labels
- * (region_leaves.h), and some of them get another. TM_ERROR_SYSTEM where memory is out;
- * to be freed, after an error too. O(leaves), and O(n log n) in the nodes near curves. */
+/* Finds what does not depend on labels: nothing is laid out yet. TM_ERROR_SYSTEM where
+ * memory is out; to be freed, after an error too. O(leaves), O(n log n) in the surface.
+ */
 tm_status tm_region_layout_make(tm_region_layout *layout, const tm_octree *octree,
                                 const tm_surface *surface, tm_interior *interior,
                                 tm_error *error);
 void tm_region_layout_free(tm_region_layout *layout);
+
+/* Lays out all corners and curves that can be, anew. The leaves of *interior have labels
+ * (region_leaves.h), and some of them get another. TM_ERROR_SYSTEM where memory is out.
+ * O(leaves), and O(n log n) in the nodes near curves. */
+tm_status tm_region_lay_out(tm_region_layout *layout, tm_error *error);
 
 /* Its steps. region_corners.c: a node for each corner, the one that is cheapest by its
  * distance and by how far octants and edges are from the regions and curves they are for;

@@ -38,31 +38,14 @@ static unsigned count_bad(const uint32_t octant[OCTANTS])
     return bad;
 }
 
-/* Gives the octants of a point of a leaf that label. */
-static void set_octants(uint32_t octant[OCTANTS], int point, uint32_t label)
-{
-    for (unsigned o = 0; o < OCTANTS; o++)
-        if (tm_point_octants[point] >> o & 1)
-            octant[o] = label;
-}
-
-static void put(tm_interior *interior, const tm_octree *octree, size_t l, uint32_t label)
-{
-    interior->label[l] = label;
-    for (int p = 0; p < TM_LEAF_NODES; p++)
-        if (octree->node[l][p] != TM_NONE)
-            set_octants(interior->octant[octree->node[l][p]], p, label);
-}
-
 static const uint8_t all_octants[OCTANTS] = {0, 1, 2, 3, 4, 5, 6, 7};
 
 typedef struct {
     const tm_octree *octree;
     const tm_surface *surface;
     tm_interior *interior;
-    tm_walls walls;
-    uint32_t (*leaf)[OCTANTS]; /* [nodes]: those around it */
-    unsigned finest;           /* level of the smallest leaf with surface */
+    tm_region_layout layout;
+    unsigned finest;   /* level of the smallest leaf with surface */
     bool strict;       /* not only masks count, but what the surface does not have */
     bool *bad;         /* [nodes] */
     const bool *sharp; /* [nodes]: faces there may be flat; NULL: nowhere */
@@ -95,17 +78,15 @@ static uint64_t set_of(const uint32_t *octant, const uint8_t *which, unsigned co
  * that the surface does not. */
 static unsigned count_strange(const cleaner *c, const uint32_t octant[OCTANTS])
 {
-    static const uint8_t around[6][4] = {{0, 2, 4, 6}, {1, 3, 5, 7}, {0, 1, 4, 5},
-                                         {2, 3, 6, 7}, {0, 1, 2, 3}, {4, 5, 6, 7}};
     unsigned labels, strange = 0;
     uint64_t set = set_of(octant, all_octants, OCTANTS, &labels);
     if (labels == 1)
         return 0;
-    strange += !tm_walls_have(&c->walls, set);
+    strange += !tm_walls_have(&c->layout.walls, set);
     for (int e = 0; labels > 1 && e < 6; e++) {
         unsigned few;
-        set = set_of(octant, around[e], 4, &few);
-        strange += few > 1 && !tm_walls_have(&c->walls, set);
+        set = set_of(octant, tm_side_octants[e], 4, &few);
+        strange += few > 1 && !tm_walls_have(&c->layout.walls, set);
     }
     return strange;
 }
@@ -180,7 +161,7 @@ static unsigned badness(const cleaner *c, size_t l)
             continue;
         bad += node_badness(c, node);
         for (unsigned o = 0; c->strict && o < OCTANTS; o++) {
-            const uint32_t leaf = c->leaf[node][o];
+            const uint32_t leaf = c->layout.lattice.leaf[node][o];
             unsigned k = 0;
             while (k < count && met[k] != leaf)
                 k++;
@@ -215,9 +196,9 @@ static tm_status find_contacts(cleaner *c, tm_error *error)
 static unsigned badness_with(const cleaner *c, size_t l, uint32_t label)
 {
     const uint32_t now = c->interior->label[l];
-    put(c->interior, c->octree, l, label);
+    tm_interior_set_label(c->interior, c->octree, l, label);
     const unsigned bad = badness(c, l);
-    put(c->interior, c->octree, l, now);
+    tm_interior_set_label(c->interior, c->octree, l, now);
     return bad;
 }
 
@@ -294,7 +275,7 @@ static void make_change(cleaner *c, const change *made)
         c->interior->filled++;
     if (c->changes[made->leaf] < MOST_CHANGES)
         c->changes[made->leaf]++;
-    put(c->interior, c->octree, made->leaf, made->label);
+    tm_interior_set_label(c->interior, c->octree, made->leaf, made->label);
 }
 
 /* Gives one of the leaves around a node one of the other labels there. Where all masks
@@ -369,17 +350,6 @@ static tm_status clean_masks(cleaner *c, tm_error *error)
     return TM_OK;
 }
 
-/* Fills `leaf` of the cleaner. */
-static void find_leaves(cleaner *c)
-{
-    const tm_octree *octree = c->octree;
-    memset(c->leaf, 0xff, octree->nodes * sizeof *c->leaf);
-    for (size_t l = 0; l < octree->leaves; l++)
-        for (int p = 0; p < TM_LEAF_NODES; p++)
-            if (octree->node[l][p] != TM_NONE)
-                set_octants(c->leaf[octree->node[l][p]], p, (uint32_t)l);
-}
-
 static void label_leaves(cleaner *c)
 {
     const tm_octree *octree = c->octree;
@@ -392,13 +362,15 @@ static void label_leaves(cleaner *c)
         tm_leaf_centre(octree, leaf, centre);
         if (l == 0 || !tm_leaf_is_as_before(octree, l))
             label = tm_surface_region_at(c->surface, centre);
-        put(c->interior, octree, l, label);
+        tm_interior_set_label(c->interior, octree, l, label);
     }
 }
 
 /* Counts what is wrong at nodes, faces aside, and makes it cost more to go by there. */
-static size_t remember(const cleaner *c, const tm_region_layout *layout, float *history)
+static size_t remember(const cleaner *c)
 {
+    const tm_node_lattice *lattice = &c->layout.lattice;
+    float *history = c->layout.history;
     size_t wrong = 0;
     for (uint32_t n = 0; n < c->octree->nodes; n++) {
         if (node_badness(c, n) == 0)
@@ -406,8 +378,8 @@ static size_t remember(const cleaner *c, const tm_region_layout *layout, float *
         wrong++;
         history[n] += 1;
         for (int side = 0; side < 6; side++)
-            if (layout->lattice.next[n][side] != TM_NONE)
-                history[layout->lattice.next[n][side]] += 1;
+            if (lattice->next[n][side] != TM_NONE)
+                history[lattice->next[n][side]] += 1;
     }
     return wrong;
 }
@@ -416,23 +388,20 @@ static void put_all(cleaner *c, const uint32_t *label)
 {
     for (size_t l = 0; l < c->octree->leaves; l++)
         if (c->interior->label[l] != label[l])
-            put(c->interior, c->octree, l, label[l]);
+            tm_interior_set_label(c->interior, c->octree, l, label[l]);
 }
 
 /* Lays out corners and curves and cleans what is around them; *wrong is what is left. */
-static tm_status lay_out_once(cleaner *c, float *history, tm_region_layout *layout,
-                              size_t *wrong, tm_error *error)
+static tm_status lay_out_once(cleaner *c, size_t *wrong, tm_error *error)
 {
     const size_t lost_weight = 10;
-    *layout = (tm_region_layout){.history = history};
-    tm_status status =
-        tm_region_layout_make(layout, c->octree, c->surface, c->interior, error);
-    c->fixed = layout->fixed;
-    c->sharp = layout->sharp;
+    tm_status status = tm_region_lay_out(&c->layout, error);
+    c->fixed = c->layout.fixed;
+    c->sharp = c->layout.sharp;
     if (status == TM_OK)
         status = clean_all(c, error);
     if (status == TM_OK)
-        *wrong = remember(c, layout, history) + lost_weight * layout->lost;
+        *wrong = remember(c) + lost_weight * c->layout.lost;
     c->fixed = c->laid;
     c->sharp = NULL;
     return status;
@@ -446,36 +415,31 @@ static tm_status lay_out(cleaner *c, tm_error *error)
     const size_t leaves = c->octree->leaves, bytes = leaves * sizeof(uint32_t);
     uint32_t *start = tm_new(leaves, sizeof *start);
     uint32_t *best = tm_new(leaves, sizeof *best);
-    float *history = calloc(c->octree->nodes + 1, sizeof *history);
     tm_status status = TM_OK;
     size_t least = SIZE_MAX, wrong = 0;
     int vain = 0;
-    if (!start || !best || !history) {
+    if (!start || !best) {
         free(start);
         free(best);
-        free(history);
         return tm_fail_memory(error);
     }
     memcpy(start, c->interior->label, bytes);
     memcpy(best, start, bytes);
     for (int i = 0; status == TM_OK && least > 0 && vain < VAIN_ROUNDS && i < TRIES;
          i++) {
-        tm_region_layout layout;
         put_all(c, start);
-        status = lay_out_once(c, history, &layout, &wrong, error);
+        status = lay_out_once(c, &wrong, error);
         vain++;
         if (status == TM_OK && wrong < least) {
             vain = 0;
             memcpy(best, c->interior->label, bytes);
-            memcpy(c->laid, layout.fixed, leaves * sizeof *c->laid);
+            memcpy(c->laid, c->layout.fixed, leaves * sizeof *c->laid);
             least = wrong;
         }
-        tm_region_layout_free(&layout);
     }
     put_all(c, best);
     free(start);
     free(best);
-    free(history);
     return status;
 }
 
@@ -487,18 +451,15 @@ tm_status tm_interior_label(tm_interior *interior, const tm_octree *octree,
     cleaner c = {.octree = octree,
                  .surface = surface,
                  .interior = interior,
-                 .leaf = tm_new(octree->nodes, sizeof *c.leaf),
                  .strict = true,
                  .laid = calloc(octree->leaves + 1, 1),
                  .bad = malloc(octree->nodes + 1),
                  .changes = calloc(octree->leaves + 1, 1)};
-    const bool ok =
-        interior->label && interior->octant && c.leaf && c.laid && c.bad && c.changes;
-    tm_status status = tm_walls_find(&c.walls, surface, error);
+    const bool ok = interior->label && interior->octant && c.laid && c.bad && c.changes;
+    tm_status status = tm_region_layout_make(&c.layout, octree, surface, interior, error);
     if (status == TM_OK && !ok)
         status = tm_fail_memory(error);
     if (ok && status == TM_OK) {
-        find_leaves(&c);
         label_leaves(&c);
         status = lay_out(&c, error);
         if (status == TM_OK)
@@ -506,8 +467,7 @@ tm_status tm_interior_label(tm_interior *interior, const tm_octree *octree,
     }
     for (size_t l = 0; l < octree->leaves && ok && status == TM_OK; l++)
         interior->chosen[l] = interior->label[l] != 0;
-    tm_walls_free(&c.walls);
-    free(c.leaf);
+    tm_region_layout_free(&c.layout);
     free(c.laid);
     free(c.bad);
     free(c.changes);

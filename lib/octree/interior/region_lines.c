@@ -2,7 +2,6 @@
 /* The line of a curve is the cheapest way through states: a node, and sectors for the
  * octants around it (E. W. Dijkstra, 1959). A step goes along an edge, whose four leaves
  * are around both of its ends. */
-#include "line_patterns.h"
 #include "region_layout.h"
 
 #include "../../base/array.h"
@@ -52,7 +51,6 @@ typedef struct {
 
 typedef struct {
     tm_region_layout *layout;
-    tm_line_patterns patterns[2]; /* of 3 and of 4 sectors */
     tm_error *error;
     uint32_t *view_of; /* [nodes]: where view[view_of[n]].node is n */
     size_t views, view_room;
@@ -78,7 +76,7 @@ typedef struct {
 
 static const tm_line_patterns *patterns_of(const finder *f)
 {
-    return &f->patterns[f->sectors - 3];
+    return &f->layout->patterns[f->sectors - 3];
 }
 
 static bool before(entry a, entry b)
@@ -452,12 +450,12 @@ static tm_status go_along(finder *f, const double start[3], uint32_t from, uint3
     return TM_OK;
 }
 
-static tm_status lay_line(finder *f, uint32_t curve, const uint32_t *corner_at)
+static tm_status lay_line(finder *f, uint32_t curve)
 {
     const tm_surface *s = f->layout->surface;
     const uint32_t first = s->curve_node[s->curve_start[curve]];
     const uint32_t end = s->curve_node[s->curve_start[curve + 1] - 1];
-    const uint32_t from = corner_at[first], to = corner_at[end];
+    const uint32_t from = f->layout->corner_at[first], to = f->layout->corner_at[end];
     f->curve = curve;
     f->sectors = f->layout->sectors.count[curve];
     f->closed = first == end;
@@ -474,8 +472,6 @@ static tm_status lay_line(finder *f, uint32_t curve, const uint32_t *corner_at)
 
 static void free_finder(finder *f)
 {
-    for (int i = 0; i < 2; i++)
-        tm_line_patterns_free(&f->patterns[i]);
     tm_hash_free(&f->table);
     free(f->view_of);
     free(f->view);
@@ -490,18 +486,10 @@ tm_status tm_region_lay_lines(tm_region_layout *layout, tm_error *error)
     finder f = {.layout = layout,
                 .error = error,
                 .view_of = calloc(layout->lattice.octree->nodes + 1, sizeof(uint32_t))};
-    uint32_t *corner_at = tm_new(s->nodes, sizeof *corner_at);
-    tm_status status = f.view_of && corner_at ? TM_OK : tm_fail_memory(error);
-    for (unsigned i = 0; status == TM_OK && i < 2; i++)
-        status = tm_line_patterns_make(&f.patterns[i], 3 + i, error);
-    for (size_t v = 0; status == TM_OK && v < s->nodes; v++)
-        corner_at[v] = TM_NONE;
-    for (uint32_t k = 0; status == TM_OK && k < s->corners; k++)
-        corner_at[s->corner[k]] = k;
+    tm_status status = f.view_of ? TM_OK : tm_fail_memory(error);
     for (uint32_t c = 0; status == TM_OK && c < s->curves; c++)
         if (layout->sectors.count[c] > 0)
-            status = lay_line(&f, c, corner_at);
+            status = lay_line(&f, c);
     free_finder(&f);
-    free(corner_at);
     return status;
 }

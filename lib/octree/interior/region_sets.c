@@ -2,6 +2,7 @@
 #include "region_sets.h"
 
 #include "../../base/array.h"
+#include "../../mesh/edge_map.h"
 
 #include <stdlib.h>
 
@@ -54,11 +55,6 @@ static uint64_t set_of(const member_list *list, uint64_t key)
     return set;
 }
 
-static uint64_t edge_key(uint32_t a, uint32_t b)
-{
-    return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
-}
-
 static void find_nodes(member_list *list, const tm_interior_boundary *boundary,
                        uint64_t *node)
 {
@@ -94,7 +90,8 @@ static void list_edges(member_list *list, const tm_surface *s)
     for (size_t t = 0; t < s->triangles; t++)
         for (int i = 0; i < 3; i++)
             if (s->across[t][i] == TM_NONE)
-                add_both(list, edge_key(s->triangle[t][i], s->triangle[t][(i + 1) % 3]),
+                add_both(list,
+                         tm_edge_key(s->triangle[t][i], s->triangle[t][(i + 1) % 3]),
                          s->side[t]);
     sort_members(list);
 }
@@ -108,8 +105,9 @@ static void find_curves(member_list *list, const tm_surface *s, uint64_t *patch,
     list_edges(list, s);
     for (size_t c = 0; c < s->curves; c++) {
         const uint32_t *node = s->curve_node + s->curve_start[c];
-        curve[c] = tm_curve_is_of_walls(s, c) ? set_of(list, edge_key(node[0], node[1]))
-                                              : patch[s->curve_patch[c][0]];
+        curve[c] = tm_curve_is_of_walls(s, c)
+                       ? set_of(list, tm_edge_key(node[0], node[1]))
+                       : patch[s->curve_patch[c][0]];
     }
 }
 

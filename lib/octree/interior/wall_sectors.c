@@ -4,6 +4,7 @@
 
 #include "../../base/array.h"
 #include "../../geom/vector.h"
+#include "../../mesh/edge_map.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -29,11 +30,6 @@ typedef struct {
     wing *wing; /* sorted by edge */
 } wing_list;
 
-static uint64_t edge_key(uint32_t a, uint32_t b)
-{
-    return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
-}
-
 static int compare_wings(const void *a, const void *b)
 {
     const wing *p = a, *q = b;
@@ -52,7 +48,7 @@ static tm_status list_wings(wing_list *list, tm_error *error)
         for (int i = 0; i < 3; i++)
             if (s->across[t][i] == TM_NONE)
                 list->wing[list->count++] =
-                    (wing){edge_key(s->triangle[t][i], s->triangle[t][(i + 1) % 3]), t,
+                    (wing){tm_edge_key(s->triangle[t][i], s->triangle[t][(i + 1) % 3]), t,
                            s->triangle[t][(i + 2) % 3]};
     if (list->count > 0)
         qsort(list->wing, list->count, sizeof *list->wing, compare_wings);
@@ -122,7 +118,7 @@ static unsigned look_at(const wing_list *list, const uint32_t *node,
                         tm_sector_frame *frame, uint32_t label[TM_SECTORS], bool *sharp)
 {
     const tm_surface *s = list->surface;
-    const uint64_t edge = edge_key(node[0], node[1]);
+    const uint64_t edge = tm_edge_key(node[0], node[1]);
     double along[3];
     ray rays[TM_SECTORS];
     unsigned count = 0, first = 0;

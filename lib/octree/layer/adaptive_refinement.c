@@ -91,15 +91,14 @@ static tm_status make_without_loss(tm_octree_mesh *mesh, tm_octree *octree,
     tm_interior interior = {0};
     tm_status status = TM_OK;
     for (bool more = true; status == TM_OK && more;) {
-        uint8_t *lost = tm_new(octree->leaves, sizeof *lost);
+        uint8_t *lost = calloc(octree->leaves + 1, sizeof *lost);
         tm_interior_free(&interior);
         tm_progress_stage(progress, "choosing octants");
         status = lost ? tm_interior_choose(&interior, octree, surface, error)
                       : tm_fail_memory(error);
         if (status == TM_OK) {
-            tm_interior_find_lost(&interior, octree, surface, lost);
-            for (size_t l = 0; deepest == level && l < octree->leaves; l++)
-                lost[l] = 0;
+            if (deepest > level)
+                tm_interior_find_lost(&interior, octree, surface, lost);
             status = mark_behind_boundary(&interior, octree, level, lost, error);
             more = keep_shallow(octree, deepest, lost) > 0;
         }

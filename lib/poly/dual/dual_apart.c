@@ -19,22 +19,14 @@ typedef struct {
     bool stays;
 } border_side;
 
-/* How a vertex is reached: through which side, from where. */
-typedef struct {
-    double cost;
-    uint32_t triangle;
-    int side;
-    uint32_t from;
-} way;
-
 typedef struct {
     tm_dual *d;
     tm_dual_link *link;
     border_side *side;
     size_t sides, side_room;
-    bool *walked; /* [3 triangles] */
-    way *way;     /* [vertices] */
-    bool *goal;   /* [vertices] */
+    bool *walked;     /* [3 triangles] */
+    tm_dual_way *way; /* [vertices] */
+    bool *goal;       /* [vertices] */
     double middle[3];
 } apart;
 
@@ -129,58 +121,28 @@ static bool find_arcs(apart *c, size_t *arc, size_t *other, size_t *last)
     return *arc > 0 && *other<c->sides && * other> * arc && *last < c->sides;
 }
 
-/* How far a vertex is from the middle between the arcs, and a little for the step. */
-static double cost_of(const apart *c, uint32_t vertex)
-{
-    const double step = 0.05;
-    return step + fabs(tm_dot(c->middle, c->link->vertex[vertex].to));
-}
-
-/* Reaches vertices until no path is shorter; those of the border end it. */
-static void reach_all(apart *c)
-{
-    const tm_dual_link *link = c->link;
-    for (bool again = true; again;) {
-        again = false;
-        for (uint32_t a = 0; a < link->triangles; a++)
-            for (int k = 0; k < 6; k++) {
-                const tm_dual_link_triangle *here = &link->triangle[a];
-                const int side = k / 2;
-                const uint32_t from = here->vertex[(side + 1 + k % 2) % 3];
-                const uint32_t to = here->vertex[(side + 2 - k % 2) % 3];
-                const bool starts = c->way[from].from == TM_NONE;
-                if (here->beyond[side] == TM_NONE ||
-                    (link->vertex[from].border && !starts) ||
-                    (link->vertex[to].border && !c->goal[to]))
-                    continue;
-                const double cost = c->way[from].cost + cost_of(c, to);
-                if (!(cost < c->way[to].cost))
-                    continue;
-                c->way[to] = (way){cost, a, side, from};
-                again = true;
-            }
-    }
-}
-
 /* Cuts the region whose border is listed; whether it was. */
 static bool cut_region(apart *c)
 {
     size_t arc, other, last;
     if (!find_arcs(c, &arc, &other, &last))
         return false;
-    for (size_t v = 0; v < c->link->vertices; v++) {
-        c->way[v] = (way){HUGE_VAL, TM_NONE, 0, TM_NONE};
+    tm_dual_ways_begin(c->way, c->link);
+    for (size_t v = 0; v < c->link->vertices; v++)
         c->goal[v] = false;
-    }
     for (size_t k = last; k < c->sides; k++)
         c->goal[from_of(c, &c->side[k])] = c->goal[to_of(c, &c->side[k])] = true;
     for (size_t k = arc; k < other; k++)
         for (int e = 0; e < 2; e++) {
             const uint32_t v = e ? to_of(c, &c->side[k]) : from_of(c, &c->side[k]);
-            if (!c->goal[v])
-                c->way[v].cost = cost_of(c, v);
+            if (c->goal[v])
+                continue;
+            c->way[v].cost = tm_dual_way_cost(c->link, c->middle, v);
+            c->way[v].leaves = true;
         }
-    reach_all(c);
+    for (size_t v = 0; v < c->link->vertices; v++)
+        c->way[v].enters = !c->link->vertex[v].border || c->goal[v];
+    tm_dual_ways_find(c->way, c->link, c->middle);
     uint32_t end = TM_NONE;
     for (uint32_t v = 0; v < c->link->vertices; v++)
         if (c->goal[v] && c->way[v].cost < HUGE_VAL &&
@@ -188,11 +150,7 @@ static bool cut_region(apart *c)
             end = v;
     if (end == TM_NONE)
         return false;
-    while (c->way[end].from != TM_NONE) {
-        const way at = c->way[end];
-        tm_dual_link_cut(c->link, c->d, at.triangle, at.side);
-        end = at.from;
-    }
+    tm_dual_way_cut(c->way, c->link, c->d, end);
     return true;
 }
 

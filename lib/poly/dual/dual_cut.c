@@ -27,21 +27,13 @@ typedef struct {
     int half;
 } sector;
 
-/* A path to a vertex: from which one, through which side. */
-typedef struct {
-    double cost;
-    uint32_t triangle; /* TM_NONE: none yet, or the first vertex */
-    int side;
-    uint32_t from;
-} reached;
-
 typedef struct {
     tm_dual *d;
     tm_dual_link link;
     double most; /* of a turn */
     sector *sector;
     size_t sectors, sector_room;
-    reached *reached;
+    tm_dual_way *reached; /* [vertices] */
     size_t reached_room;
     double normal[3];
 } cutter;
@@ -115,19 +107,12 @@ static bool find_sectors(cutter *c)
 
 /* Paths ---------------------------------------------------------------------------- */
 
-/* How far a vertex is from the plane, as a sine, and a little for the step. */
-static double step_cost(const cutter *c, uint32_t vertex)
-{
-    const double step = 0.05;
-    return step + fabs(tm_dot(c->normal, c->link.vertex[vertex].to));
-}
-
 /* What it costs to end at a vertex of the border, by a side: little where a sector wants
  * to be cut there, most near to where the path began. */
 static double end_cost(const cutter *c, uint32_t vertex, uint32_t first)
 {
     const double wanted = 0.2, unwanted = 0.4, near = 0.5;
-    const reached *last = &c->reached[vertex];
+    const tm_dual_way *last = &c->reached[vertex];
     for (size_t k = 0; k < c->sectors; k++) {
         const sector *s = &c->sector[k];
         if (s->vertex != vertex)
@@ -139,30 +124,6 @@ static double end_cost(const cutter *c, uint32_t vertex, uint32_t first)
     }
     const double along = tm_dot(c->link.vertex[vertex].to, c->link.vertex[first].to);
     return unwanted + near * fmax(0, along);
-}
-
-/* Reaches vertices from the far end of the sector's half, until no path is shorter. */
-static void reach_all(cutter *c, uint32_t first)
-{
-    const tm_dual_link *link = &c->link;
-    for (bool again = true; again;) {
-        again = false;
-        for (uint32_t a = 0; a < link->triangles; a++)
-            for (int k = 0; k < 6; k++) {
-                const tm_dual_link_triangle *here = &link->triangle[a];
-                const int side = k / 2;
-                const uint32_t from = here->vertex[(side + 1 + k % 2) % 3];
-                const uint32_t to = here->vertex[(side + 2 - k % 2) % 3];
-                if (here->beyond[side] == TM_NONE || link->vertex[from].border ||
-                    to == first)
-                    continue;
-                const double cost = c->reached[from].cost + step_cost(c, to);
-                if (!(cost < c->reached[to].cost))
-                    continue;
-                c->reached[to] = (reached){cost, a, side, from};
-                again = true;
-            }
-    }
 }
 
 static uint32_t find_end(const cutter *c, uint32_t first)
@@ -193,18 +154,14 @@ static bool cut_sector(cutter *c, const sector *s)
     const double length = tm_norm(c->normal);
     for (int x = 0; x < 3; x++)
         c->normal[x] /= length;
-    for (size_t w = 0; w < link->vertices; w++)
-        c->reached[w] = (reached){HUGE_VAL, TM_NONE, 0, TM_NONE};
+    tm_dual_ways_begin(c->reached, link);
+    c->reached[first].enters = false;
     c->reached[second].cost = 0;
-    reach_all(c, first);
-    uint32_t end = find_end(c, first);
+    tm_dual_ways_find(c->reached, link, c->normal);
+    const uint32_t end = find_end(c, first);
     if (end == TM_NONE)
         return false;
-    while (c->reached[end].from != TM_NONE) {
-        const reached last = c->reached[end];
-        tm_dual_link_cut(link, c->d, last.triangle, last.side);
-        end = last.from;
-    }
+    tm_dual_way_cut(c->reached, link, c->d, end);
     tm_dual_link_cut(link, c->d, s->triangle, s->half);
     return true;
 }
@@ -235,7 +192,7 @@ static bool cut_node(cutter *c, const uint32_t *piece, size_t pieces, bool apart
         return true;
     if (!tm_dual_link_fill(&c->link, c->d, piece, pieces))
         return false;
-    reached *grown =
+    tm_dual_way *grown =
         tm_grow(c->reached, &c->reached_room, c->link.vertices, sizeof *grown);
     if (!grown)
         return false;

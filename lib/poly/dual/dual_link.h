@@ -40,6 +40,32 @@ double tm_dual_link_angle(const tm_dual_link *link, uint32_t triangle, int i);
 /* Cuts side j of a triangle. */
 void tm_dual_link_cut(tm_dual_link *link, tm_dual *d, uint32_t triangle, int j);
 
+/* How a path comes to a vertex: through a side of a triangle, from another one. */
+typedef struct tm_dual_way {
+    double cost;         /* HUGE_VAL: not yet */
+    uint32_t triangle;   /* TM_NONE: none yet, or a path begins there */
+    int side;            /* of it */
+    uint32_t from;       /* TM_NONE: the same */
+    bool enters, leaves; /* whether paths may come to the vertex, and go on from it */
+} tm_dual_way;
+
+/* Begins with no paths: way[vertices] may be entered, and left but for the border. */
+void tm_dual_ways_begin(tm_dual_way *way, const tm_dual_link *link);
+
+/* What a vertex costs: how far it is from a plane, as a sine, and a little for the step.
+ */
+double tm_dual_way_cost(const tm_dual_link *link, const double normal[3],
+                        uint32_t vertex);
+
+/* dual_path.c. Reaches vertices from those that have a cost until no path is cheaper: the
+ * vertices that it enters cost. O(triangles) for each step of the longest path. */
+void tm_dual_ways_find(tm_dual_way *way, const tm_dual_link *link,
+                       const double normal[3]);
+
+/* Cuts the sides of the path to a vertex. */
+void tm_dual_way_cut(const tm_dual_way *way, tm_dual_link *link, tm_dual *d,
+                     uint32_t end);
+
 /* Cuts regions of a link until each has sides that stay in one place of its border only,
  * if it can be; *any becomes true where one was cut. False where memory is out. O(k²) for
  * each. */
