@@ -2,6 +2,7 @@
 #include "gmsh_stream.h"
 
 #include "../../../lib/base/array.h"
+#include "../../../lib/element/shape.h"
 #include "../../../lib/examine/mixed_volume.h"
 #include "../../../lib/format/tetgen.h"
 #include "../../../lib/geom/vector.h"
@@ -104,23 +105,6 @@ static tm_status make_tetrahedra(maker *make)
     return TM_OK;
 }
 
-static void exchange(uint32_t *node, size_t a, size_t b)
-{
-    const uint32_t other = node[a];
-    node[a] = node[b];
-    node[b] = other;
-}
-
-/* The mirrored element. */
-static void mirror(uint32_t *node, size_t count)
-{
-    exchange(node, 1, count == TM_WEDGE_NODES || count == TM_TET_NODES ? 2 : 3);
-    if (count == TM_WEDGE_NODES)
-        exchange(node, 4, 5);
-    else if (count == TM_HEX_NODES)
-        exchange(node, 5, 7);
-}
-
 /* The triangle 0 1 2 of a wedge turns the other way in Gmsh, see shape.h. */
 static void set_cell(maker *make, const tm_block *mix, size_t c, size_t at)
 {
@@ -129,12 +113,12 @@ static void set_cell(maker *make, const tm_block *mix, size_t c, size_t at)
     uint32_t *node = mix->item + at;
     memcpy(node, cells->node + c * cells->width, count * sizeof *node);
     if (count == TM_WEDGE_NODES)
-        mirror(node, count);
+        tm_mixed_mirror(node, count);
     const double volume =
         tm_mixed_volume((const double(*)[3])make->mesh.xyz, node, count);
     make->done->flat += volume == 0;
     if (volume < 0) {
-        mirror(node, count);
+        tm_mixed_mirror(node, count);
         make->done->turned++;
     }
 }

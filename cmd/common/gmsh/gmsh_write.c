@@ -109,7 +109,7 @@ static tm_status add_nodes(const gmsh_plan *plan, tm_error *error)
  * other way, see shape.h. */
 static void set_nodes(const gmsh_item *item, size_t count, size_t *to)
 {
-    static const uint8_t wedge[TM_WEDGE_NODES] = {0, 2, 1, 3, 5, 4};
+    const uint8_t *wedge = tm_element_shapes[TM_WEDGE_NODES].mirror;
     size_t nodes;
     if (item->block->kind == TM_NODE) {
         to[0] = item->row + 1;

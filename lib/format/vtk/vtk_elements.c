@@ -30,30 +30,16 @@ static tm_content find_content(const tm_vtk_maker *m)
 
 /* Elements -------------------------------------------------------------------------- */
 
-static void exchange(uint32_t *node, size_t i, size_t j)
-{
-    const uint32_t swapped = node[i];
-    node[i] = node[j];
-    node[j] = swapped;
-}
-
+/* A tetrahedron as tm_tetgen_orient() turns it. */
 static void turn(uint32_t *node, size_t k)
 {
-    switch (k) {
-    case TM_TET_NODES:
-        exchange(node, 2, 3);
-        break;
-    case TM_PYRAMID_NODES:
-        exchange(node, 1, 3);
-        break;
-    case TM_WEDGE_NODES:
-        exchange(node, 1, 2);
-        exchange(node, 4, 5);
-        break;
-    default: /* TM_HEX_NODES */
-        exchange(node, 1, 3);
-        exchange(node, 5, 7);
+    if (k != TM_TET_NODES) {
+        tm_mixed_mirror(node, k);
+        return;
     }
+    const uint32_t third = node[2];
+    node[2] = node[3];
+    node[3] = third;
 }
 
 static void copy_elements(const tm_vtk_maker *m, uint32_t *to, size_t *start)
