@@ -107,11 +107,7 @@ static bool describe(const maker *m, size_t c, size_t nodes, size_t base, uint32
         else
             v[k] = above;
     }
-    for (size_t i = 0; i < nodes; i++)
-        for (size_t j = 0; j <= i; j++)
-            if (v[i] == TM_NONE || (j < i && v[i] == v[j]))
-                return false;
-    return has_faces(m, c, v, nodes);
+    return !tm_has_node_twice(v, nodes) && has_faces(m, c, v, nodes);
 }
 
 static size_t find_elements(maker *m)
