@@ -96,33 +96,20 @@ static tm_status copy_polygons(tm_vtk_maker *m)
     return status;
 }
 
-static void reverse(uint32_t *node, size_t k)
-{
-    for (size_t i = 1, j = k - 1; i < j; i++, j--) {
-        const uint32_t swapped = node[i];
-        node[i] = node[j];
-        node[j] = swapped;
-    }
-}
-
 /* The sides of a row that is the face of half and of its mate: the first is that which
  * the row is outward for, or on the boundary the row is turned. */
-static void set_sides(const tm_block *mix, tm_block *facet, size_t row, uint32_t half,
-                      uint32_t mate)
+static void set_sides(const tm_mesh_view *view, tm_block *facet, size_t row,
+                      uint32_t half, uint32_t mate)
 {
-    const uint32_t e = half / TM_ELEMENT_NODES, i = half % TM_ELEMENT_NODES;
-    const size_t begin = mix->start[e], k = facet->start[row + 1] - facet->start[row];
-    const uint8_t *shape = tm_element_shapes[mix->start[e + 1] - begin].face[i];
     uint32_t face[4], *side = facet->integer + 2 * row;
-    for (size_t j = 0; j < 4; j++)
-        face[j] = mix->item[begin + shape[j]];
-    const bool inward = tm_polygon_compare(facet->item + facet->start[row], face, k) < 0;
+    const size_t k = tm_half_face_nodes(view, half, face);
+    const uint32_t e = half / TM_ELEMENT_NODES;
     side[0] = e;
     side[1] = mate == half || mate == TM_NONE ? TM_NONE : mate / TM_ELEMENT_NODES;
-    if (!inward)
+    if (tm_polygon_compare(facet->item + facet->start[row], face, k) >= 0)
         return;
     if (side[1] == TM_NONE) {
-        reverse(facet->item + facet->start[row], k);
+        tm_polygon_turn(facet->item + facet->start[row], k);
         return;
     }
     side[0] = side[1];
@@ -157,7 +144,6 @@ static tm_status make_facets(tm_vtk_maker *m)
     if (status != TM_OK)
         return status;
     const tm_mesh_view view = tm_mesh_view_of_mixed(m->stream);
-    const tm_block *mix = tm_stream_find(m->stream, ".mix");
     tm_block *facet = tm_stream_find(m->stream, ".facet");
     const size_t halves = tm_half_faces(&view);
     uint32_t *mate = NULL;
@@ -165,7 +151,7 @@ static tm_status make_facets(tm_vtk_maker *m)
     for (size_t row = 0; status == TM_OK && row < facet->count; row++) {
         const uint32_t half = mate[halves + row];
         if (half != TM_NONE)
-            set_sides(mix, facet, row, half, mate[half]);
+            set_sides(&view, facet, row, half, mate[half]);
     }
     if (status == TM_OK)
         drop_loose(m, facet, mate + halves);
