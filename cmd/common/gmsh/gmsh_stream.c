@@ -154,13 +154,7 @@ static const uint8_t halves[2][2][TRIANGLE] = {{{0, 1, 2}, {0, 2, 3}},
 static unsigned diagonal(const maker *make, const uint32_t *node)
 {
     const double(*x)[3] = (const double(*)[3])make->mesh.xyz;
-    double first = 0, second = 0;
-    for (size_t i = 0; i < 3; i++) {
-        const double p = x[node[2]][i] - x[node[0]][i], q = x[node[3]][i] - x[node[1]][i];
-        first += p * p;
-        second += q * q;
-    }
-    return second < first;
+    return tm_distance2(x[node[1]], x[node[3]]) < tm_distance2(x[node[0]], x[node[2]]);
 }
 
 static tm_status make_triangles(maker *make)
@@ -212,12 +206,11 @@ static tm_mesh_view view_faces(const maker *make, size_t *start, uint32_t *node)
 static void set_facet(tm_block *facet, const tm_mesh_view *view, uint32_t half,
                       uint32_t mate)
 {
-    enum { SHIFT = 3 };
     uint32_t node[QUADRILATERAL];
     const size_t count = tm_half_face_nodes(view, half, node), row = facet->count++;
-    facet->integer[2 * row] = half >> SHIFT;
+    facet->integer[2 * row] = half / TM_ELEMENT_NODES;
     facet->integer[2 * row + 1] =
-        mate == half || mate == TM_NONE ? TM_NONE : mate >> SHIFT;
+        mate == half || mate == TM_NONE ? TM_NONE : mate / TM_ELEMENT_NODES;
     facet->start[row + 1] = facet->start[row] + count;
     memcpy(facet->item + facet->start[row], node, count * sizeof *node);
 }
