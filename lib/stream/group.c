@@ -37,6 +37,20 @@ const char *tm_group_find(const tm_block *group, tm_group_dimension dimension,
     return NULL;
 }
 
+bool tm_group_named(const tm_block *group, tm_group_dimension dimension, const char *name,
+                    size_t size, int32_t *value)
+{
+    for (size_t g = 0; group && g < group->count; g++) {
+        const char *known = tm_group_name(group, g);
+        if (tm_group_dimension_of(group, g) != dimension || strlen(known) != size ||
+            memcmp(known, name, size) != 0)
+            continue;
+        *value = tm_group_value(group, g);
+        return true;
+    }
+    return false;
+}
+
 size_t tm_group_region_attribute(const tm_block *cells)
 {
     return cells->kind == TM_CELL ? 1 : 0;

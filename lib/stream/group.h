@@ -27,6 +27,11 @@ const char *tm_group_name(const tm_block *group, size_t g);
 const char *tm_group_find(const tm_block *group, tm_group_dimension dimension,
                           int32_t value);
 
+/* The value that has that name of so many bytes; false where none has. `group` may be
+ * NULL. O(groups). */
+bool tm_group_named(const tm_block *group, tm_group_dimension dimension, const char *name,
+                    size_t size, int32_t *value);
+
 /* Which attribute of .ele, .mix or .cell is the region: the first, of polyhedra the
  * second (the first is how many tetrahedra they were). There may be fewer. */
 size_t tm_group_region_attribute(const tm_block *cells);

@@ -187,10 +187,9 @@ static double value_of(const filter *f, const tet_set_rule *rule, const tm_strea
     const tm_block *group = tm_stream_find(stream, ".group");
     if (!rule->name)
         return rule->value;
-    for (size_t g = 0; group && g < group->count; g++)
-        if (tm_group_dimension_of(group, g) == TM_GROUP_REGIONS &&
-            strcmp(tm_group_name(group, g), rule->name) == 0)
-            return tm_group_value(group, g);
+    int32_t region;
+    if (tm_group_named(group, TM_GROUP_REGIONS, rule->name, strlen(rule->name), &region))
+        return region;
     snprintf(why, sizeof why, "no region has the name '%s'", rule->name);
     fail(f, ".group", why);
 }
