@@ -124,8 +124,8 @@ static tm_status mark_vertices(tm_vtk_maker *m, tm_block *node)
         if (!node->marker)
             return tm_fail_memory(m->error);
         node->markers = true;
-        for (size_t i = cells->start[c]; i < cells->start[c + 1]; i++)
-            node->marker[cells->node[i]] = marker;
+        for (size_t i = cells->nodes.start[c]; i < cells->nodes.start[c + 1]; i++)
+            node->marker[cells->nodes.item[i]] = marker;
     }
     return TM_OK;
 }

@@ -13,7 +13,7 @@ enum { TRIANGLE = 3, LINE = 2 };
 
 static size_t nodes_of(const tm_vtk_mesh *cells, size_t c)
 {
-    return cells->start[c + 1] - cells->start[c];
+    return cells->nodes.start[c + 1] - cells->nodes.start[c];
 }
 
 /* A block of so many rows and items, with markers where cells have them. */
@@ -43,7 +43,7 @@ static size_t rows_of(const tm_vtk_maker *m, size_t c)
 static void set_triangle(const tm_vtk_maker *m, tm_block *face, size_t row, size_t c,
                          size_t i)
 {
-    const uint32_t *v = m->cells->node + m->cells->start[c];
+    const uint32_t *v = m->cells->nodes.item + m->cells->nodes.start[c];
     uint32_t *to = face->integer + TRIANGLE * row;
     const bool strip = m->cells->type[c] == TM_VTK_STRIP;
     const size_t odd = strip ? i % 2 : 0;
@@ -88,7 +88,8 @@ static tm_status copy_polygons(tm_vtk_maker *m)
         if (tm_vtk_kept(m, c) != 2)
             continue;
         const size_t k = nodes_of(cells, c), at = facet->start[row];
-        memcpy(facet->item + at, cells->node + cells->start[c], k * sizeof *facet->item);
+        memcpy(facet->item + at, cells->nodes.item + cells->nodes.start[c],
+               k * sizeof *facet->item);
         if (facet->marker)
             facet->marker[row] = tm_vtk_marker(m, c);
         facet->start[++row] = at + k;
@@ -179,9 +180,9 @@ static tm_status mark_facets(tm_vtk_maker *m)
     for (size_t c = 0; c < cells->cells && done; c++) {
         if (tm_vtk_kept(m, c) != 2)
             continue;
-        const uint32_t f =
-            tm_polygon_table_find(&table, facet->start, facet->item,
-                                  cells->node + cells->start[c], nodes_of(cells, c));
+        const uint32_t f = tm_polygon_table_find(
+            &table, facet->start, facet->item, cells->nodes.item + cells->nodes.start[c],
+            nodes_of(cells, c));
         m->report->loose += f == UINT32_MAX;
         if (f != UINT32_MAX && facet->marker)
             facet->marker[f] = tm_vtk_marker(m, c);
@@ -214,7 +215,7 @@ tm_status tm_vtk_make_lines(tm_vtk_maker *m)
     const tm_status status = add_block(m, ".edge", rows, 0, &edge);
     for (size_t c = 0; c < cells->cells && status == TM_OK; c++)
         for (size_t i = 1; tm_vtk_kept(m, c) == 1 && i < nodes_of(cells, c); i++, row++) {
-            const uint32_t *v = cells->node + cells->start[c] + i - 1;
+            const uint32_t *v = cells->nodes.item + cells->nodes.start[c] + i - 1;
             memcpy(edge->integer + LINE * row, v, LINE * sizeof *v);
             if (edge->marker)
                 edge->marker[row] = tm_vtk_marker(m, c);
