@@ -81,11 +81,10 @@ static void read_operands(void)
 static void refuse_cells(const gmsh_plan *plan)
 {
     const unsigned shapes = gmsh_output_formats[format].shapes;
-    enum { CELLS = 3 };
     size_t wrong[TM_ELEMENT_NODES + 1] = {0};
     tm_error error;
-    for (size_t i = 0, k; i < plan->items[CELLS]; i++) {
-        tm_row_nodes(plan->item[CELLS][i].block, plan->item[CELLS][i].row, &k);
+    for (size_t i = 0, k; i < plan->items[GMSH_CELLS]; i++) {
+        tm_row_nodes(plan->item[GMSH_CELLS][i].block, plan->item[GMSH_CELLS][i].row, &k);
         wrong[k] += !(shapes & 1u << k);
     }
     for (size_t k = 0; k <= TM_ELEMENT_NODES; k++)

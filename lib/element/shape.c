@@ -22,6 +22,7 @@ const tm_element_shape tm_element_shapes[TM_ELEMENT_NODES + 1] =
                 .edge_face = {{0, 3}, {1, 3}, {2, 3}, {0, 2}, {0, 1}, {1, 2}},
                 .corner = {{0, 1, 2, 3}, {1, 2, 0, 3}, {2, 0, 1, 3}, {3, 2, 1, 0}},
                 .corner_edge = {{0, 2, 3}, {0, 1, 4}, {2, 1, 5}, {4, 5, 3}},
+                .mirror = {0, 2, 1, 3},
                 .k = {ALL_4(TM_K_TETRAHEDRON)},
             },
         [TM_PYRAMID_NODES] =
@@ -58,6 +59,7 @@ const tm_element_shape tm_element_shapes[TM_ELEMENT_NODES + 1] =
                                 {6, 7, 5},
                                 {7, 4, 6},
                                 {4, 5, 7}},
+                .mirror = {0, 3, 2, 1, 4},
                 .k = {ALL_4(TM_K_PYRAMID_BASE), ALL_4(TM_K_PYRAMID_APEX)},
             },
         [TM_WEDGE_NODES] =
@@ -101,6 +103,7 @@ const tm_element_shape tm_element_shapes[TM_ELEMENT_NODES + 1] =
                            {5, 3, 4, 2}},
                 .corner_edge =
                     {{2, 0, 6}, {1, 0, 7}, {1, 2, 8}, {5, 3, 6}, {4, 3, 7}, {4, 5, 8}},
+                .mirror = {0, 2, 1, 3, 5, 4},
                 .k = {ALL_4(TM_K_WEDGE), TM_K_WEDGE, TM_K_WEDGE},
             },
         [TM_HEX_NODES] =
@@ -159,6 +162,7 @@ const tm_element_shape tm_element_shapes[TM_ELEMENT_NODES + 1] =
                                 {4, 5, 9},
                                 {5, 6, 10},
                                 {7, 6, 11}},
+                .mirror = {0, 3, 2, 1, 4, 7, 6, 5},
                 .k = {ALL_4(TM_K_HEXAHEDRON), ALL_4(TM_K_HEXAHEDRON)},
             },
 };

@@ -11,6 +11,7 @@
 
 #include "../base/extern_c.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -93,6 +94,8 @@ typedef struct tm_element_shape {
     /* The three edges of a corner, in such an order that their determinant, each taken in
      * its own direction, is positive where that of the edges that leave the corner is. */
     uint8_t corner_edge[TM_ELEMENT_CORNERS][3];
+    /* The nodes of the mirrored element: its base, and its top, turn the other way. */
+    uint8_t mirror[TM_ELEMENT_NODES];
     double k[TM_ELEMENT_CORNERS];
 } tm_element_shape;
 
@@ -122,6 +125,26 @@ static inline uint8_t tm_vtk_cell_type(size_t nodes)
 static inline size_t tm_mixed_face_nodes(const uint8_t face[4])
 {
     return face[3] == face[0] ? 3 : 4;
+}
+
+/* Whether an element or a face names a node twice. */
+static inline bool tm_has_node_twice(const uint32_t *node, size_t k)
+{
+    for (size_t i = 1; i < k; i++)
+        for (size_t j = 0; j < i; j++)
+            if (node[i] == node[j])
+                return true;
+    return false;
+}
+
+/* Turns an element of k nodes into the mirrored one. */
+static inline void tm_mixed_mirror(uint32_t *node, size_t k)
+{
+    uint32_t old[TM_ELEMENT_NODES];
+    for (size_t i = 0; i < k; i++)
+        old[i] = node[i];
+    for (size_t i = 0; i < k; i++)
+        node[i] = old[tm_element_shapes[k].mirror[i]];
 }
 
 /* least[i] = the smallest node of face i of an element with the nodes n. */

@@ -8,6 +8,15 @@
 #include <stdint.h>
 #include <string.h>
 
+/* Whether this machine has the highest byte first. */
+static inline bool tm_binary_is_big(void)
+{
+    static const uint16_t one = 1;
+    unsigned char first;
+    memcpy(&first, &one, 1);
+    return first == 0;
+}
+
 /* The unsigned number in `size` (1…8) bytes. */
 static inline uint64_t tm_binary_unsigned(const char *bytes, size_t size, bool big)
 {

@@ -2,6 +2,7 @@
 #include "mesh_format.h"
 
 #include "../base/array.h"
+#include "../element/shape.h"
 #include "../mesh/cell_faces.h"
 #include "scan.h"
 #include "text_rows.h"
@@ -18,8 +19,12 @@ static const double constant[CONSTANTS] = {1000, 0.45, 1};
 static const char letter_of[NODES_MAX + 1] = {
     [4] = 'T', [5] = 'P', [WEDGE] = 'R', [NODES_MAX] = 'H'};
 
-/* From the place of a node in a wedge here to that in .mix, and back. */
-static const unsigned char wedge_corner[WEDGE] = {0, 2, 1, 3, 5, 4};
+/* The node i of an element of k nodes is this one in .mix, and back: wedges turn the
+ * other way here. */
+static size_t node_of(size_t k, size_t i)
+{
+    return k == WEDGE ? tm_element_shapes[WEDGE].mirror[i] : i;
+}
 
 /* Reading -------------------------------------------------------------------------- */
 
@@ -116,7 +121,7 @@ static tm_status read_element(reader *r)
             tm_scan_next_integer(&r->scan, "node", 0, UINT32_MAX - 1, &node, r->error);
         if (status != TM_OK)
             return status;
-        item[begin + (k == WEDGE ? wedge_corner[i] : i)] = (uint32_t)node;
+        item[begin + node_of(k, i)] = (uint32_t)node;
     }
     start[e + 1] = begin + k;
     r->elements++;
@@ -268,7 +273,7 @@ static char *put_element(const void *context, size_t row, char *to)
     const uint32_t *node = tm_row_nodes(all->block, row, &k);
     *to++ = letter_of[k];
     for (size_t i = 0; i < k; i++)
-        to = tm_put_number(to, node[k == WEDGE ? wedge_corner[i] : i]);
+        to = tm_put_number(to, node[node_of(k, i)]);
     memcpy(to, all->after, length);
     to += length;
     *to++ = '\n';

@@ -28,12 +28,10 @@ static int64_t signed_of(uint64_t bits, size_t size)
 
 static uint64_t bits_of(const tm_numbers *n, size_t i)
 {
-    static const uint16_t one = 1;
     const size_t size = tm_number_size(n->type);
     const char *at = n->bytes + i * size;
-    unsigned char first;
-    memcpy(&first, &one, 1);
-    if (n->big == (first == 1) || (size != sizeof(uint32_t) && size != sizeof(uint64_t)))
+    if (n->big != tm_binary_is_big() ||
+        (size != sizeof(uint32_t) && size != sizeof(uint64_t)))
         return tm_binary_unsigned(at, size, n->big);
     uint32_t half;
     uint64_t whole;
@@ -89,6 +87,19 @@ bool tm_numbers_whole(const tm_numbers *n, size_t i, int64_t lo, int64_t hi,
 
 /* Text ----------------------------------------------------------------------------- */
 
+tm_status tm_numbers_room(tm_numbers *numbers, tm_number_type type, size_t count,
+                          tm_error *error)
+{
+    if (!tm_text_room(&numbers->own, count * TM_NUMBER_ROOM))
+        return tm_fail_memory(error);
+    numbers->own.size = count * TM_NUMBER_ROOM;
+    numbers->bytes = numbers->own.byte;
+    numbers->count = count;
+    numbers->type = tm_number_is_whole(type) ? TM_INT64 : TM_FLOAT64;
+    numbers->big = tm_binary_is_big();
+    return TM_OK;
+}
+
 /* What printf() writes for a real that is no number or infinite. */
 static bool is_not_finite(tm_word word)
 {
@@ -127,25 +138,16 @@ static tm_status scan_whole(tm_scan *scan, const char *what, char *to, tm_error 
 tm_status tm_numbers_scan(tm_numbers *numbers, tm_scan *scan, tm_number_type type,
                           size_t count, const char *what, tm_error *error)
 {
-    static const uint16_t one = 1;
     const bool whole = tm_number_is_whole(type);
-    const size_t size = sizeof(int64_t);
-    unsigned char first;
-    memcpy(&first, &one, 1);
     if (count > ((size_t)(scan->end - scan->at) + 1) / 2)
         return tm_scan_fail(
             scan, error, "there are not %zu numbers in the rest of it (%s)", count, what);
-    if (!tm_text_room(&numbers->own, count * size))
-        return tm_fail_memory(error);
-    numbers->own.size = count * size;
-    tm_status status = TM_OK;
-    for (size_t i = 0; i < count && status == TM_OK; i++)
-        status = whole ? scan_whole(scan, what, numbers->own.byte + i * size, error)
-                       : scan_real(scan, what, numbers->own.byte + i * size, error);
-    numbers->bytes = numbers->own.byte;
-    numbers->count = count;
-    numbers->type = whole ? TM_INT64 : TM_FLOAT64;
-    numbers->big = first == 0;
+    tm_status status = tm_numbers_room(numbers, type, count, error);
+    for (size_t i = 0; i < count && status == TM_OK; i++) {
+        char *to = numbers->own.byte + i * TM_NUMBER_ROOM;
+        status =
+            whole ? scan_whole(scan, what, to, error) : scan_real(scan, what, to, error);
+    }
     return status;
 }
 

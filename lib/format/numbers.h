@@ -49,6 +49,12 @@ double tm_numbers_real(const tm_numbers *numbers, size_t i);
 bool tm_numbers_whole(const tm_numbers *numbers, size_t i, int64_t lo, int64_t hi,
                       int64_t *value);
 
+/* Makes room for `count` numbers in `own`, each int64_t where the type is whole, else
+ * double: whoever calls this writes them there. TM_ERROR_SYSTEM where memory is out. */
+enum { TM_NUMBER_ROOM = 8 };
+tm_status tm_numbers_room(tm_numbers *numbers, tm_number_type type, size_t count,
+                          tm_error *error);
+
 /* Reads `count` numbers from a text, from word to word across lines; of reals also "nan"
  * and "inf" as printf() writes them, and what is too large is infinite. *numbers, which
  * is {0}, then has them as TM_INT64 or TM_FLOAT64. `what` is for messages: "a

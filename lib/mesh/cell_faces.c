@@ -87,15 +87,6 @@ static int sign_of(const finder *find, size_t e)
     return (volume > 0) - (volume < 0);
 }
 
-static bool has_node_twice(const uint32_t *v, size_t k)
-{
-    for (size_t i = 1; i < k; i++)
-        for (size_t j = 0; j < i; j++)
-            if (v[i] == v[j])
-                return true;
-    return false;
-}
-
 static tm_status make_room(finder *find, size_t facets, size_t nodes, tm_error *error)
 {
     tm_cell_faces *faces = find->faces;
@@ -173,7 +164,7 @@ static tm_status add_element(finder *find, size_t e, tm_error *error)
     const uint32_t *v = tm_mesh_view_nodes(&find->mesh, e, &k);
     const size_t count = tm_element_shapes[k].faces;
     tm_cell_faces *faces = find->faces;
-    if (has_node_twice(v, k))
+    if (tm_has_node_twice(v, k))
         return FAIL(find->block, "element %zu has a node twice", e + find->base);
     bool turn = sign_of(find, e) < 0;
     size_t begin = faces->cell_start[e];

@@ -107,11 +107,7 @@ static bool describe(const maker *m, size_t c, size_t nodes, size_t base, uint32
         else
             v[k] = above;
     }
-    for (size_t i = 0; i < nodes; i++)
-        for (size_t j = 0; j <= i; j++)
-            if (v[i] == TM_NONE || (j < i && v[i] == v[j]))
-                return false;
-    return has_faces(m, c, v, nodes);
+    return !tm_has_node_twice(v, nodes) && has_faces(m, c, v, nodes);
 }
 
 static size_t find_elements(maker *m)
@@ -176,25 +172,15 @@ static tm_status copy_facets(const tm_block *facet, tm_block *to, tm_error *erro
     return status;
 }
 
-/* All attributes but the first. */
-static tm_status copy_attributes(const tm_block *cell, tm_block *to, tm_error *error)
+/* With all attributes of .cell but the first. */
+static void give_elements(maker *m, tm_block *cell, tm_block *to)
 {
-    if (cell->attributes < 2)
-        return TM_OK;
-    const size_t rest = cell->attributes - 1;
-    to->attribute = tm_new(cell->count * rest, sizeof *to->attribute);
-    if (!to->attribute)
-        return tm_fail_memory(error);
-    to->attributes = rest;
-    for (size_t c = 0; c < cell->count; c++)
-        memcpy(to->attribute + c * rest, cell->attribute + c * (rest + 1) + 1,
-               rest * sizeof *to->attribute);
-    return TM_OK;
-}
-
-static void give_elements(maker *m, tm_block *to)
-{
-    to->count = m->cell->count;
+    if (cell->attributes > 0)
+        tm_block_drop_attribute(cell, 0);
+    to->attributes = cell->attributes;
+    to->attribute = cell->attribute;
+    cell->attribute = NULL;
+    to->count = cell->count;
     if (to->kind == TM_ELE) {
         to->integer = m->item;
     } else {
@@ -221,11 +207,9 @@ static tm_status replace(maker *m, tm_stream *stream, tm_error *error)
         elements = (tm_block){.name = ".ele", .kind = TM_ELE};
         faces = (tm_block){.name = ".face", .kind = TM_FACE};
     }
-    tm_status status = copy_facets(m->facet, &faces, error);
-    if (status == TM_OK)
-        status = copy_attributes(m->cell, &elements, error);
+    const tm_status status = copy_facets(m->facet, &faces, error);
     if (status == TM_OK) {
-        give_elements(m, &elements);
+        give_elements(m, tm_stream_find(stream, ".cell"), &elements);
         put(stream, ".facet", &faces);
         put(stream, ".cell", &elements);
     }

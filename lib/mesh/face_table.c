@@ -40,16 +40,7 @@ size_t tm_half_face_nodes(const tm_mesh_view *mesh, uint32_t half, uint32_t node
     return tm_mixed_face_nodes(face);
 }
 
-static inline bool has_node_twice(const uint32_t *n, size_t k)
-{
-    for (size_t i = 1; i < k; i++)
-        for (size_t j = 0; j < i; j++)
-            if (n[i] == n[j])
-                return true;
-    return false;
-}
-
-/* The same, soon said where no two are the same modulo 64. */
+/* tm_has_node_twice(), soon said where no two are the same modulo 64. */
 static bool may_have_node_twice(const uint32_t *n, size_t k)
 {
     enum { BITS = 64 };
@@ -59,7 +50,7 @@ static bool may_have_node_twice(const uint32_t *n, size_t k)
         again |= seen & bit;
         seen |= bit;
     }
-    return again != 0 && has_node_twice(n, k);
+    return again != 0 && tm_has_node_twice(n, k);
 }
 
 /* The nodes of a row, counted through .face and .facet; how many. */
@@ -78,7 +69,7 @@ bool tm_row_is_face(const tm_mesh_view *mesh, size_t row)
 {
     const uint32_t *n;
     const size_t k = row_nodes(mesh, row, &n);
-    return (k == TRIANGLE || k == QUADRILATERAL) && !has_node_twice(n, k);
+    return (k == TRIANGLE || k == QUADRILATERAL) && !tm_has_node_twice(n, k);
 }
 
 /* Lists --------------------------------------------------------------------------- */
@@ -129,7 +120,7 @@ static void list_elements(const tm_mesh_view *mesh, size_t *next, bool twice,
     for (size_t e = 0; e < mesh->elements; e++) {
         size_t k;
         const uint32_t *n = tm_mesh_view_nodes(mesh, e, &k);
-        if (twice && has_node_twice(n, k))
+        if (twice && tm_has_node_twice(n, k))
             continue;
         for (size_t i = list_element(mesh, e, n, k, node, &first); i-- > 0;)
             item[next[node[i]]++] = first + (uint32_t)i * step;

@@ -9,13 +9,11 @@
 /* No element has a node twice. */
 static tm_status check(const tm_mixed_mesh *mesh, unsigned base, tm_error *error)
 {
-    for (size_t e = 0; e < mesh->elements; e++) {
-        for (size_t i = mesh->start[e]; i < mesh->start[e + 1]; i++)
-            for (size_t j = mesh->start[e]; j < i; j++)
-                if (mesh->item[i] == mesh->item[j])
-                    return tm_fail_at(error, TM_ERROR_INPUT, NULL, 0, ".mix",
-                                      "element %zu names a node twice", e + base);
-    }
+    for (size_t e = 0; e < mesh->elements; e++)
+        if (tm_has_node_twice(mesh->item + mesh->start[e],
+                              mesh->start[e + 1] - mesh->start[e]))
+            return tm_fail_at(error, TM_ERROR_INPUT, NULL, 0, ".mix",
+                              "element %zu names a node twice", e + base);
     return TM_OK;
 }
 

@@ -21,6 +21,16 @@ typedef struct tm_polygon_table {
  * opposite senses, 0 if they are not. */
 int tm_polygon_compare(const uint32_t *a, const uint32_t *b, size_t k);
 
+/* Turns a polygon of k nodes the other way, from the same first node. */
+static inline void tm_polygon_turn(uint32_t *node, size_t k)
+{
+    for (size_t i = 1, j = k - 1; i < j; i++, j--) {
+        const uint32_t other = node[i];
+        node[i] = node[j];
+        node[j] = other;
+    }
+}
+
 /* The number of the first polygon that is the same as number id, which is id itself where
  * there was none: it is put in. The arrays may have moved since the last call. False
  * where memory is out. */

@@ -143,15 +143,6 @@ static tm_status check_uses(const maker *m, tm_block *facet)
     return TM_OK;
 }
 
-static void reverse(uint32_t *node, size_t k)
-{
-    for (size_t i = 1, j = k - 1; i < j; i++, j--) {
-        uint32_t swapped = node[i];
-        node[i] = node[j];
-        node[j] = swapped;
-    }
-}
-
 /* Side 0 becomes the cell that the facet is outward for; where there is one cell and the
  * facet is inward, the facet is turned. */
 static void set_sides(const maker *m, tm_block *facet, const bool *inward)
@@ -167,7 +158,8 @@ static void set_sides(const maker *m, tm_block *facet, const bool *inward)
             continue;
         side[0] = side[1];
         side[1] = TM_NONE;
-        reverse(facet->item + facet->start[f], facet->start[f + 1] - facet->start[f]);
+        tm_polygon_turn(facet->item + facet->start[f],
+                        facet->start[f + 1] - facet->start[f]);
         m->repairs->turned++;
     }
 }

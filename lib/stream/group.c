@@ -38,12 +38,14 @@ const char *tm_group_find(const tm_block *group, tm_group_dimension dimension,
 }
 
 const int32_t *tm_group_named(const tm_block *group, tm_group_dimension dimension,
-                              const char *name)
+                              const char *name, size_t size)
 {
-    for (size_t g = 0; group && g < group->count; g++)
-        if (tm_group_dimension_of(group, g) == dimension &&
-            strcmp(tm_group_name(group, g), name) == 0)
+    for (size_t g = 0; group && g < group->count; g++) {
+        const char *known = tm_group_name(group, g);
+        if (tm_group_dimension_of(group, g) == dimension && strlen(known) == size &&
+            memcmp(known, name, size) == 0)
             return &group->marker[g];
+    }
     return NULL;
 }
 

@@ -27,10 +27,10 @@ const char *tm_group_name(const tm_block *group, size_t g);
 const char *tm_group_find(const tm_block *group, tm_group_dimension dimension,
                           int32_t value);
 
-/* The first row of that name, or NULL where there is none: its value. `group` may be
+/* The value that has that name of so many bytes; NULL where none has. `group` may be
  * NULL. O(groups). */
 const int32_t *tm_group_named(const tm_block *group, tm_group_dimension dimension,
-                              const char *name);
+                              const char *name, size_t size);
 
 /* Which attribute of .ele, .mix or .cell is the region: the first, of polyhedra the
  * second (the first is how many tetrahedra they were). There may be fewer. */

@@ -14,9 +14,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* More attributes per row than this are taken for a damaged header. */
-enum { ATTRIBUTES_MAX = 1000 };
-
 static const char magic[] = "termesh 1\n";
 
 typedef struct {
@@ -150,9 +147,9 @@ static tm_status read_header(reader *r, tm_block *block, size_t *rows)
         if (i == 0 && (number < 0 || number >= TM_NONE))
             return FAIL(r, block->name, "a count of %lld (0…%lld)", (long long)number,
                         (long long)TM_NONE - 1);
-        if (is == TM_HEADER_ATTRIBUTES && (number < 0 || number > ATTRIBUTES_MAX))
+        if (is == TM_HEADER_ATTRIBUTES && (number < 0 || number > TM_ATTRIBUTES_MAX))
             return FAIL(r, block->name, "%lld attributes (0…%d)", (long long)number,
-                        ATTRIBUTES_MAX);
+                        TM_ATTRIBUTES_MAX);
         if (is == TM_HEADER_MARKERS && number != 0 && number != 1)
             return FAIL(r, block->name, "the header says %lld for markers (0 or 1)",
                         (long long)number);

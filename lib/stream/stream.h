@@ -32,6 +32,9 @@ typedef enum tm_block_kind {
 
 enum { TM_BLOCK_NAME = 64 };
 
+/* The most attributes of a row: more are taken for a damaged header. */
+enum { TM_ATTRIBUTES_MAX = 1000 };
+
 /* An index that refers to nothing. */
 #define TM_NONE UINT32_MAX
 

@@ -105,6 +105,12 @@ print('\n'.join(out + ['.end']))
 END
 }
 
+# Prints a stream of polyhedra of many facets, with regions, markers and names.
+dual() {
+    meshes tetrahedra | awk '/^\.ele/ { ele = 1 } /^\.face/ { ele = 0 }
+        ele && $1 == "162" { $3 = 1 } ele && NF == 8 { NF = 6 } 1' | poly-dual -q
+}
+
 # same_mesh A B: whether two streams are the same mesh, however facets are numbered: the same
 # nodes, elements, regions, markers, attributes and names, bit for bit and in the same
 # order. Rows of .face, .facet and .edge without a marker are not looked at, nor is what is

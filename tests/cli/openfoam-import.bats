@@ -54,12 +54,6 @@ cells() {
     openfoam-import -q cells.folder
 }
 
-# Prints a stream of polyhedra of many facets.
-dual() {
-    meshes tetrahedra | awk '/^\.ele/ { ele = 1 } /^\.face/ { ele = 0 }
-        ele && $1 == "162" { $3 = 1 } ele && NF == 8 { NF = 6 } 1' | poly-dual -q
-}
-
 @test "what openfoam-export writes comes back: nodes, cells, patches, zones, names" {
     local kind
     for kind in tetrahedra mixed hexahedra; do

@@ -11,12 +11,6 @@ setup() {
     cd "$BATS_TEST_TMPDIR" || exit
 }
 
-# Prints a stream of polyhedra of many facets, with regions, markers and names.
-dual() {
-    meshes tetrahedra | awk '/^\.ele/ { ele = 1 } /^\.face/ { ele = 0 }
-        ele && $1 == "162" { $3 = 1 } ele && NF == 8 { NF = 6 } 1' | poly-dual -q
-}
-
 # Prints a legacy file of text: legacy SECTIONS.
 legacy() {
     printf '# vtk DataFile Version 3.0\nby hand\nASCII\nDATASET UNSTRUCTURED_GRID\n%s\n' "$1"

@@ -53,6 +53,20 @@ static void test_constants(void **state)
     assert_near(TM_K_PYRAMID_APEX, 2 * sqrt(6) / 9, 1e-16);
 }
 
+static void test_mirror(void **state)
+{
+    (void)state;
+    for (size_t k = 0; k < KINDS; k++) {
+        const size_t nodes = kinds[k];
+        uint32_t node[8];
+        memcpy(node, item, sizeof item);
+        tm_mixed_mirror(node, nodes);
+        assert_near(tm_jens(nodes, regular[nodes], node), -1, 1e-14);
+        tm_mixed_mirror(node, nodes);
+        assert_memory_equal(node, item, sizeof item);
+    }
+}
+
 static void test_regular(void **state)
 {
     (void)state;
@@ -273,11 +287,11 @@ int main(void)
 {
     random_start();
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_constants),     cmocka_unit_test(test_regular),
-        cmocka_unit_test(test_normalisation), cmocka_unit_test(test_inverted),
-        cmocka_unit_test(test_degenerate),    cmocka_unit_test(test_range),
-        cmocka_unit_test(test_random),        cmocka_unit_test(test_last_bit),
-        cmocka_unit_test(test_slope),
+        cmocka_unit_test(test_constants), cmocka_unit_test(test_mirror),
+        cmocka_unit_test(test_regular),   cmocka_unit_test(test_normalisation),
+        cmocka_unit_test(test_inverted),  cmocka_unit_test(test_degenerate),
+        cmocka_unit_test(test_range),     cmocka_unit_test(test_random),
+        cmocka_unit_test(test_last_bit),  cmocka_unit_test(test_slope),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,6 +3,7 @@
 
 #include "../../../lib/base/array.h"
 #include "../../../lib/base/hash.h"
+#include "../../../lib/element/shape.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -273,16 +274,6 @@ static tm_status sort_elements(gmsh_elements *elements, tm_error *error)
     return TM_OK;
 }
 
-/* Whether an element names a corner twice. */
-static bool is_degenerate(const uint32_t *node, size_t count)
-{
-    for (size_t i = 1; i < count; i++)
-        for (size_t k = 0; k < i; k++)
-            if (node[i] == node[k])
-                return true;
-    return false;
-}
-
 /* Whether two elements have the same nodes, in any order; none is degenerate. */
 static bool are_same(const uint32_t *a, const uint32_t *b, size_t count)
 {
@@ -335,7 +326,7 @@ static tm_status keep_each_once(gmsh_mesh *mesh, gmsh_elements *elements, gmsh_s
         const uint32_t *node = elements->node + e * elements->width;
         if (e + AHEAD < elements->elements)
             __builtin_prefetch(tm_hash_slot(&table, hash_of(elements, e + AHEAD)));
-        if (is_degenerate(node, elements->count[e])) {
+        if (tm_has_node_twice(node, elements->count[e])) {
             mesh->degenerate++;
             continue;
         }

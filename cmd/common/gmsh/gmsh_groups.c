@@ -183,15 +183,6 @@ static const gmsh_name *find_name(const gmsh_name *list, size_t count, int dimen
     return NULL;
 }
 
-static bool has_name(const tm_block *group, int dimension, const char *name)
-{
-    for (size_t g = 0; g < group->count; g++)
-        if ((int)tm_group_dimension_of(group, g) == dimension &&
-            strcmp(tm_group_name(group, g), name) == 0)
-            return true;
-    return false;
-}
-
 /* Adds a name, or nothing where nothing is left of it; one that is there already gets the
  * value behind it. */
 static tm_status add_name(tm_block *group, int dimension, int32_t value,
@@ -200,7 +191,8 @@ static tm_status add_name(tm_block *group, int dimension, int32_t value,
     tm_text name = {0};
     tm_group_clean(&name, bytes, size);
     tm_status status = TM_OK;
-    if (name.size > 0 && has_name(group, dimension, name.byte))
+    if (name.size > 0 &&
+        tm_group_named(group, (tm_group_dimension)dimension, name.byte, name.size))
         tm_text_format(&name, " (%d)", (int)value);
     if (name.failed)
         status = tm_fail_memory(error);

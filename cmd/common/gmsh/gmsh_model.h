@@ -9,8 +9,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Points, lines, faces and cells, and the model itself. */
-enum { GMSH_DIMENSIONS = 4 };
+/* Dimensions, as tm_group_dimension has them. */
+enum { GMSH_POINTS, GMSH_LINES, GMSH_FACES, GMSH_CELLS, GMSH_DIMENSIONS };
 
 /* Elements of one type of one entity. Element i has the nodes node[nodes i …], of which
  * the first `corners` are corners. */

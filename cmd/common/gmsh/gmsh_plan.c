@@ -9,8 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { POINTS, LINES, FACES, CELLS };
-
 /* Items ---------------------------------------------------------------------------- */
 
 /* The marker or region of a row; 0 where it has none. */
@@ -71,17 +69,19 @@ static tm_status find_items(gmsh_plan *plan, tm_error *error)
     const tm_content content = tm_content_of(plan->stream);
     tm_status status = TM_OK;
     if (content == TM_CONTENT_TETRAHEDRA)
-        status = add_rows(plan, CELLS, ".ele", true, error);
+        status = add_rows(plan, GMSH_CELLS, ".ele", true, error);
     else if (content == TM_CONTENT_MIXED)
-        status = add_rows(plan, CELLS, ".mix", true, error);
+        status = add_rows(plan, GMSH_CELLS, ".mix", true, error);
     if (status == TM_OK)
-        status = add_rows(plan, FACES, ".face", content == TM_CONTENT_SURFACE, error);
+        status =
+            add_rows(plan, GMSH_FACES, ".face", content == TM_CONTENT_SURFACE, error);
     if (status == TM_OK && content == TM_CONTENT_MIXED)
-        status = add_rows(plan, FACES, ".facet", false, error);
+        status = add_rows(plan, GMSH_FACES, ".facet", false, error);
     if (status == TM_OK)
-        status = add_rows(plan, LINES, ".edge", false, error);
+        status = add_rows(plan, GMSH_LINES, ".edge", false, error);
     if (status == TM_OK && (plan->points || content == TM_CONTENT_POINTS))
-        status = add_rows(plan, POINTS, ".node", content == TM_CONTENT_POINTS, error);
+        status =
+            add_rows(plan, GMSH_POINTS, ".node", content == TM_CONTENT_POINTS, error);
     return status;
 }
 
@@ -178,12 +178,9 @@ static bool find_group(const gmsh_plan *plan, int d, const char *name, size_t si
                        int32_t *group)
 {
     int64_t number;
-    for (size_t g = 0; g < plan->names->count; g++) {
-        const char *known = tm_group_name(plan->names, g);
-        if ((int)tm_group_dimension_of(plan->names, g) != d || strlen(known) != size ||
-            memcmp(known, name, size) != 0)
-            continue;
-        *group = tm_group_value(plan->names, g);
+    const int32_t *named = tm_group_named(plan->names, (tm_group_dimension)d, name, size);
+    if (named) {
+        *group = *named;
         return *group > 0;
     }
     if (tm_read_int64(name, name + size, &number) != name + size || number < 1 ||

@@ -2,6 +2,7 @@
 #include "gmsh_stream.h"
 
 #include "../../../lib/base/array.h"
+#include "../../../lib/element/shape.h"
 #include "../../../lib/examine/mixed_volume.h"
 #include "../../../lib/format/tetgen.h"
 #include "../../../lib/geom/vector.h"
@@ -11,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { POINTS, LINES, FACES, CELLS, TRIANGLE = 3, QUADRILATERAL = 4 };
+enum { TRIANGLE = 3, QUADRILATERAL = 4 };
 
 typedef struct maker {
     tm_stream *stream;
@@ -38,12 +39,12 @@ static int32_t value_of(const maker *make, const gmsh_elements *elements, size_t
  * has a corner. */
 static bool is_marked(const maker *make, size_t point)
 {
-    return make->sets.set[make->mesh.of[POINTS].set[point]].groups > 0;
+    return make->sets.set[make->mesh.of[GMSH_POINTS].set[point]].groups > 0;
 }
 
 static tm_status make_nodes(maker *make)
 {
-    const gmsh_elements *points = &make->mesh.of[POINTS];
+    const gmsh_elements *points = &make->mesh.of[GMSH_POINTS];
     tm_block *node;
     tm_status status = add_block(make, ".node", &node);
     if (status != TM_OK)
@@ -82,12 +83,12 @@ static bool has_only_tetrahedra(const gmsh_elements *cells)
 static void set_regions(const maker *make, tm_block *block)
 {
     for (size_t c = 0; c < block->count; c++)
-        block->attribute[c] = value_of(make, &make->mesh.of[CELLS], c);
+        block->attribute[c] = value_of(make, &make->mesh.of[GMSH_CELLS], c);
 }
 
 static tm_status make_tetrahedra(maker *make)
 {
-    const gmsh_elements *cells = &make->mesh.of[CELLS];
+    const gmsh_elements *cells = &make->mesh.of[GMSH_CELLS];
     tm_block *ele;
     tm_status status = add_block(make, ".ele", &ele);
     if (status != TM_OK)
@@ -104,44 +105,27 @@ static tm_status make_tetrahedra(maker *make)
     return TM_OK;
 }
 
-static void exchange(uint32_t *node, size_t a, size_t b)
-{
-    const uint32_t other = node[a];
-    node[a] = node[b];
-    node[b] = other;
-}
-
-/* The mirrored element. */
-static void mirror(uint32_t *node, size_t count)
-{
-    exchange(node, 1, count == TM_WEDGE_NODES || count == TM_TET_NODES ? 2 : 3);
-    if (count == TM_WEDGE_NODES)
-        exchange(node, 4, 5);
-    else if (count == TM_HEX_NODES)
-        exchange(node, 5, 7);
-}
-
 /* The triangle 0 1 2 of a wedge turns the other way in Gmsh, see shape.h. */
 static void set_cell(maker *make, const tm_block *mix, size_t c, size_t at)
 {
-    const gmsh_elements *cells = &make->mesh.of[CELLS];
+    const gmsh_elements *cells = &make->mesh.of[GMSH_CELLS];
     const size_t count = cells->count[c];
     uint32_t *node = mix->item + at;
     memcpy(node, cells->node + c * cells->width, count * sizeof *node);
     if (count == TM_WEDGE_NODES)
-        mirror(node, count);
+        tm_mixed_mirror(node, count);
     const double volume =
         tm_mixed_volume((const double(*)[3])make->mesh.xyz, node, count);
     make->done->flat += volume == 0;
     if (volume < 0) {
-        mirror(node, count);
+        tm_mixed_mirror(node, count);
         make->done->turned++;
     }
 }
 
 static tm_status make_mixed(maker *make)
 {
-    const gmsh_elements *cells = &make->mesh.of[CELLS];
+    const gmsh_elements *cells = &make->mesh.of[GMSH_CELLS];
     tm_block *mix;
     size_t items = 0;
     for (size_t c = 0; c < cells->elements; c++)
@@ -170,18 +154,12 @@ static const uint8_t halves[2][2][TRIANGLE] = {{{0, 1, 2}, {0, 2, 3}},
 static unsigned diagonal(const maker *make, const uint32_t *node)
 {
     const double(*x)[3] = (const double(*)[3])make->mesh.xyz;
-    double first = 0, second = 0;
-    for (size_t i = 0; i < 3; i++) {
-        const double p = x[node[2]][i] - x[node[0]][i], q = x[node[3]][i] - x[node[1]][i];
-        first += p * p;
-        second += q * q;
-    }
-    return second < first;
+    return tm_distance2(x[node[1]], x[node[3]]) < tm_distance2(x[node[0]], x[node[2]]);
 }
 
 static tm_status make_triangles(maker *make)
 {
-    const gmsh_elements *faces = &make->mesh.of[FACES];
+    const gmsh_elements *faces = &make->mesh.of[GMSH_FACES];
     tm_block *face;
     for (size_t f = 0; f < faces->elements; f++)
         make->done->halved += faces->count[f] == QUADRILATERAL;
@@ -210,7 +188,7 @@ static tm_status make_triangles(maker *make)
 /* The faces as the facets of a view of the cells. */
 static tm_mesh_view view_faces(const maker *make, size_t *start, uint32_t *node)
 {
-    const gmsh_elements *faces = &make->mesh.of[FACES];
+    const gmsh_elements *faces = &make->mesh.of[GMSH_FACES];
     tm_mesh_view view = tm_mesh_view_of_mixed(make->stream);
     start[0] = 0;
     for (size_t f = 0; f < faces->elements; f++) {
@@ -228,19 +206,18 @@ static tm_mesh_view view_faces(const maker *make, size_t *start, uint32_t *node)
 static void set_facet(tm_block *facet, const tm_mesh_view *view, uint32_t half,
                       uint32_t mate)
 {
-    enum { SHIFT = 3 };
     uint32_t node[QUADRILATERAL];
     const size_t count = tm_half_face_nodes(view, half, node), row = facet->count++;
-    facet->integer[2 * row] = half >> SHIFT;
+    facet->integer[2 * row] = half / TM_ELEMENT_NODES;
     facet->integer[2 * row + 1] =
-        mate == half || mate == TM_NONE ? TM_NONE : mate >> SHIFT;
+        mate == half || mate == TM_NONE ? TM_NONE : mate / TM_ELEMENT_NODES;
     facet->start[row + 1] = facet->start[row] + count;
     memcpy(facet->item + facet->start[row], node, count * sizeof *node);
 }
 
 static tm_status make_facets_of(maker *make, const tm_mesh_view *view)
 {
-    const gmsh_elements *faces = &make->mesh.of[FACES];
+    const gmsh_elements *faces = &make->mesh.of[GMSH_FACES];
     uint32_t *mate = NULL;
     tm_block *facet = NULL;
     tm_status status = tm_face_mates(&mate, view, make->error);
@@ -269,7 +246,7 @@ static tm_status make_facets_of(maker *make, const tm_mesh_view *view)
 
 static tm_status make_facets(maker *make)
 {
-    const gmsh_elements *faces = &make->mesh.of[FACES];
+    const gmsh_elements *faces = &make->mesh.of[GMSH_FACES];
     size_t *start = tm_new(faces->elements + 1, sizeof *start);
     uint32_t *node = tm_new(faces->elements * faces->width, sizeof *node);
     tm_status status = tm_fail_memory(make->error);
@@ -286,7 +263,7 @@ static tm_status make_facets(maker *make)
 
 static tm_status make_edges(maker *make)
 {
-    const gmsh_elements *lines = &make->mesh.of[LINES];
+    const gmsh_elements *lines = &make->mesh.of[GMSH_LINES];
     tm_block *edge;
     tm_status status = add_block(make, ".edge", &edge);
     if (status != TM_OK)
@@ -322,12 +299,12 @@ static tm_status make_blocks(maker *make, const tm_block *group)
 {
     const gmsh_mesh *mesh = &make->mesh;
     tm_status status = make_nodes(make);
-    const bool is_mixed = !has_only_tetrahedra(&mesh->of[CELLS]);
-    if (status == TM_OK && mesh->of[CELLS].elements > 0)
+    const bool is_mixed = !has_only_tetrahedra(&mesh->of[GMSH_CELLS]);
+    if (status == TM_OK && mesh->of[GMSH_CELLS].elements > 0)
         status = is_mixed ? make_mixed(make) : make_tetrahedra(make);
-    if (status == TM_OK && mesh->of[FACES].elements > 0)
+    if (status == TM_OK && mesh->of[GMSH_FACES].elements > 0)
         status = is_mixed ? make_facets(make) : make_triangles(make);
-    if (status == TM_OK && mesh->of[LINES].elements > 0)
+    if (status == TM_OK && mesh->of[GMSH_LINES].elements > 0)
         status = make_edges(make);
     if (status == TM_OK)
         status = tm_group_to_stream(group, make->stream, ".group", make->error);
@@ -348,9 +325,9 @@ tm_status gmsh_to_stream(tm_stream *stream, const gmsh_model *model,
         status = give_values(&make, &group);
     if (status == TM_OK)
         status = make_blocks(&make, &group);
-    done->cells = make.mesh.of[CELLS].elements;
-    done->faces = make.mesh.of[FACES].elements;
-    done->edges = make.mesh.of[LINES].elements;
+    done->cells = make.mesh.of[GMSH_CELLS].elements;
+    done->faces = make.mesh.of[GMSH_FACES].elements;
+    done->edges = make.mesh.of[GMSH_LINES].elements;
     done->repeated = make.mesh.repeated;
     done->degenerate = make.mesh.degenerate;
     done->high_order = make.mesh.high_order;

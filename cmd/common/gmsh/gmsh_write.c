@@ -17,8 +17,6 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-enum { POINTS, LINES, FACES, CELLS };
-
 /* Bits for cells of 4, 5, 6 and 8 nodes. */
 enum {
     TET = 1 << TM_TET_NODES,
@@ -69,11 +67,11 @@ static int type_of(int dimension, size_t nodes)
                                [TM_WEDGE_NODES] = 6,
                                [TM_HEX_NODES] = 5};
     enum { POINT = 15, LINE = 1, TRIANGLE = 2, QUADRILATERAL = 3 };
-    if (dimension == CELLS)
+    if (dimension == GMSH_CELLS)
         return cell[nodes];
-    if (dimension == FACES)
+    if (dimension == GMSH_FACES)
         return nodes == 3 ? TRIANGLE : QUADRILATERAL;
-    return dimension == LINES ? LINE : POINT;
+    return dimension == GMSH_LINES ? LINE : POINT;
 }
 
 /* The model ------------------------------------------------------------------------ */
@@ -89,8 +87,8 @@ typedef struct writer {
 /* All nodes, in their order, of one entity of the highest dimension that there is. */
 static tm_status add_nodes(const gmsh_plan *plan, tm_error *error)
 {
-    int failed, d = CELLS;
-    while (d > POINTS && plan->items[d] == 0)
+    int failed, d = GMSH_CELLS;
+    while (d > GMSH_POINTS && plan->items[d] == 0)
         d--;
     const size_t count = plan->items[d] > 0 ? plan->node->count : 0;
     size_t *tag = tm_new(count, sizeof *tag);
@@ -109,7 +107,7 @@ static tm_status add_nodes(const gmsh_plan *plan, tm_error *error)
  * other way, see shape.h. */
 static void set_nodes(const gmsh_item *item, size_t count, size_t *to)
 {
-    static const uint8_t wedge[TM_WEDGE_NODES] = {0, 2, 1, 3, 5, 4};
+    const uint8_t *wedge = tm_element_shapes[TM_WEDGE_NODES].mirror;
     size_t nodes;
     if (item->block->kind == TM_NODE) {
         to[0] = item->row + 1;

@@ -187,7 +187,8 @@ static double value_of(const filter *f, const tet_set_rule *rule, const tm_strea
     const tm_block *group = tm_stream_find(stream, ".group");
     if (!rule->name)
         return rule->value;
-    const int32_t *region = tm_group_named(group, TM_GROUP_REGIONS, rule->name);
+    const int32_t *region =
+        tm_group_named(group, TM_GROUP_REGIONS, rule->name, strlen(rule->name));
     if (region)
         return *region;
     snprintf(why, sizeof why, "no region has the name '%s'", rule->name);

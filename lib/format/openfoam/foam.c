@@ -255,16 +255,7 @@ typedef struct list {
     tm_number_type type; /* of binary numbers */
     size_t components;
     const char *what;
-    bool real;
 } list;
-
-static bool is_big_machine(void)
-{
-    static const uint16_t one = 1;
-    unsigned char first;
-    memcpy(&first, &one, 1);
-    return first == 0;
-}
 
 /* The bytes between the brackets. */
 static tm_status take_bytes(tm_foam *foam, const list *of, size_t count,
@@ -284,32 +275,17 @@ static tm_status take_bytes(tm_foam *foam, const list *of, size_t count,
     return tm_foam_expect(foam, ')', error);
 }
 
-/* Room for numbers that are 8 bytes each. */
-static tm_status make_room(const list *of, size_t count, tm_numbers *numbers,
-                           tm_error *error)
-{
-    const size_t all = count * of->components;
-    if (!tm_text_room(&numbers->own, all * sizeof(int64_t)))
-        return tm_fail_memory(error);
-    numbers->own.size = all * sizeof(int64_t);
-    numbers->bytes = numbers->own.byte;
-    numbers->count = all;
-    numbers->type = of->real ? TM_FLOAT64 : TM_INT64;
-    numbers->big = is_big_machine();
-    return TM_OK;
-}
-
 static tm_status take_number(tm_foam *foam, const list *of, char *to, tm_error *error)
 {
     double real = 0;
     int64_t integer = 0;
     tm_status status;
-    if (of->real) {
-        status = take_real(foam, of->what, &real, error);
-        memcpy(to, &real, sizeof real);
-    } else {
+    if (tm_number_is_whole(of->type)) {
         status = take_integer(foam, of->what, &integer, error);
         memcpy(to, &integer, sizeof integer);
+    } else {
+        status = take_real(foam, of->what, &real, error);
+        memcpy(to, &real, sizeof real);
     }
     return status;
 }
@@ -323,7 +299,7 @@ static tm_status take_item(tm_foam *foam, const list *of, size_t i, tm_numbers *
         status = tm_foam_expect(foam, '(', error);
     for (size_t c = 0; c < of->components && status == TM_OK; c++)
         status = take_number(
-            foam, of, numbers->own.byte + (i * of->components + c) * sizeof(int64_t),
+            foam, of, numbers->own.byte + (i * of->components + c) * TM_NUMBER_ROOM,
             error);
     if (of->components > 1 && status == TM_OK)
         status = tm_foam_expect(foam, ')', error);
@@ -337,7 +313,7 @@ static tm_status take_text(tm_foam *foam, const list *of, size_t count,
     if (count > left / (2 * of->components))
         return tm_scan_fail(&foam->scan, error, "the file ends in a list of %zu %s",
                             count, of->what);
-    tm_status status = make_room(of, count, numbers, error);
+    tm_status status = tm_numbers_room(numbers, of->type, count * of->components, error);
     for (size_t i = 0; i < count && status == TM_OK; i++)
         status = take_item(foam, of, i, numbers, error);
     return status == TM_OK ? tm_foam_expect(foam, ')', error) : status;
@@ -347,8 +323,9 @@ static tm_status take_text(tm_foam *foam, const list *of, size_t count,
 static tm_status take_alike(tm_foam *foam, const list *of, size_t count,
                             tm_numbers *numbers, tm_error *error)
 {
-    const size_t size = of->components * sizeof(int64_t);
-    tm_status status = make_room(of, count + 1, numbers, error);
+    const size_t size = of->components * TM_NUMBER_ROOM;
+    tm_status status =
+        tm_numbers_room(numbers, of->type, (count + 1) * of->components, error);
     if (status == TM_OK)
         status = take_item(foam, of, 0, numbers, error);
     for (size_t i = 1; i < count && status == TM_OK; i++)
@@ -375,19 +352,19 @@ static tm_status take_list(tm_foam *foam, const list *of, size_t most, bool alik
 tm_status tm_foam_labels(tm_foam *foam, const char *what, size_t most,
                          tm_numbers *numbers, tm_error *error)
 {
-    const list labels = {foam->label, 1, what, false};
+    const list labels = {foam->label, 1, what};
     return take_list(foam, &labels, most, true, numbers, error);
 }
 
 tm_status tm_foam_points(tm_foam *foam, tm_numbers *numbers, tm_error *error)
 {
-    const list points = {foam->scalar, COORDINATES, "coordinates", true};
+    const list points = {foam->scalar, COORDINATES, "coordinates"};
     return take_list(foam, &points, UINT32_MAX - 1, false, numbers, error);
 }
 
 tm_status tm_foam_bits(tm_foam *foam, const char *what, size_t most, tm_numbers *numbers,
                        tm_error *error)
 {
-    const list bits = {TM_UINT8, 1, what, false};
+    const list bits = {TM_UINT8, 1, what};
     return take_list(foam, &bits, most, true, numbers, error);
 }

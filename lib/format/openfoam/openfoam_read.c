@@ -4,6 +4,7 @@
 #include "../../base/array.h"
 #include "../../mesh/elements_of_cells.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,11 +17,10 @@ typedef struct reader {
     size_t points, faces, inside, cells;
 } reader;
 
-static tm_status begin(const reader *r, tm_openfoam_kind kind, tm_foam *foam)
+tm_status tm_openfoam_begin(tm_foam *foam, const tm_openfoam_file *file, tm_error *error)
 {
-    const tm_openfoam_file *file = &r->file[kind];
     const char *bytes = file->bytes.byte ? file->bytes.byte : "";
-    return tm_foam_begin(foam, bytes, file->bytes.size, file->path, r->error);
+    return tm_foam_begin(foam, bytes, file->bytes.size, file->path, error);
 }
 
 /* Points ---------------------------------------------------------------------------- */
@@ -32,7 +32,7 @@ static tm_status read_points(reader *r)
     tm_block *node = tm_stream_add(r->stream, ".node");
     if (!node)
         return tm_fail_memory(r->error);
-    tm_status status = begin(r, TM_FOAM_POINTS, &foam);
+    tm_status status = tm_openfoam_begin(&foam, &r->file[TM_FOAM_POINTS], r->error);
     if (status == TM_OK)
         status = tm_foam_points(&foam, &xyz, r->error);
     if (status == TM_OK)
@@ -42,7 +42,7 @@ static tm_status read_points(reader *r)
         status = tm_block_allocate(node, r->points, 0, r->error);
     for (size_t i = 0; i < xyz.count && status == TM_OK; i++) {
         node->real[i] = tm_numbers_real(&xyz, i);
-        if (!(node->real[i] - node->real[i] == 0))
+        if (!isfinite(node->real[i]))
             status = tm_fail_at(r->error, TM_ERROR_INPUT, foam.scan.name, 0, NULL,
                                 "point %zu: a coordinate is no finite number",
                                 i / COORDINATES);
@@ -140,7 +140,7 @@ static tm_status read_faces(reader *r)
 {
     tm_foam foam;
     tm_lists faces = {0};
-    tm_status status = begin(r, TM_FOAM_FACES, &foam);
+    tm_status status = tm_openfoam_begin(&foam, &r->file[TM_FOAM_FACES], r->error);
     if (status == TM_OK && !tm_lists_begin(&faces))
         status = tm_fail_memory(r->error);
     if (status == TM_OK)
@@ -165,7 +165,7 @@ static tm_status read_side(reader *r, tm_openfoam_kind kind, size_t *count)
     uint32_t *integer = tm_stream_find(r->stream, ".facet")->integer;
     tm_foam foam;
     tm_numbers cells = {0};
-    tm_status status = begin(r, kind, &foam);
+    tm_status status = tm_openfoam_begin(&foam, &r->file[kind], r->error);
     if (status == TM_OK)
         status = tm_foam_labels(&foam, "labels of cells", r->faces, &cells, r->error);
     if (status == TM_OK)

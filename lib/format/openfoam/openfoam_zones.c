@@ -112,13 +112,6 @@ static tm_status give_values(reader *r, zones *all, tm_group_dimension dimension
 /* Dictionaries ------------------------------------------------------------------------
  */
 
-static tm_status begin(const reader *r, tm_openfoam_kind kind, tm_foam *foam)
-{
-    const tm_openfoam_file *file = &r->file[kind];
-    const char *bytes = file->bytes.byte ? file->bytes.byte : "";
-    return tm_foam_begin(foam, bytes, file->bytes.size, file->path, r->error);
-}
-
 /* Takes the entry `key` of a dictionary, up to its end. */
 typedef tm_status entry_reader(reader *r, tm_foam *foam, tm_word key, zone *z);
 
@@ -154,7 +147,7 @@ static tm_status read_all(reader *r, tm_openfoam_kind kind, zones *all,
 {
     tm_foam foam;
     size_t count = 0;
-    tm_status status = begin(r, kind, &foam);
+    tm_status status = tm_openfoam_begin(&foam, &r->file[kind], r->error);
     if (status == TM_OK)
         status = tm_foam_count(&foam, "the size of the list", UINT32_MAX - 1, &count,
                                r->error);

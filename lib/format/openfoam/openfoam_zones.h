@@ -7,6 +7,9 @@
 #include "foam.h"
 #include "openfoam.h"
 
+/* openfoam_read.c: tm_foam_begin() of a file. */
+tm_status tm_openfoam_begin(tm_foam *foam, const tm_openfoam_file *file, tm_error *error);
+
 /* Gives .facet, of which the first `inside` rows have two cells, markers, and .cell
  * regions: see tm_openfoam_read(). TM_ERROR_INPUT where patches are not the faces of the
  * boundary one after another, or a zone names a face or cell that is not there. */

@@ -179,7 +179,7 @@ static tm_status read_comment(reader *r)
     tm_status status = name.failed ? tm_fail_memory(r->error) : TM_OK;
     if (status == TM_OK && name.size > 0 &&
         !tm_group_find(group, TM_GROUP_FACES, (int32_t)value) &&
-        !tm_group_named(group, TM_GROUP_FACES, name.byte))
+        !tm_group_named(group, TM_GROUP_FACES, name.byte, name.size))
         status = tm_group_add(group, TM_GROUP_FACES, (int32_t)value, name.byte, r->error);
     tm_text_free(&name);
     return status;

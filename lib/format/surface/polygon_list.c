@@ -208,6 +208,7 @@ void tm_polygon_name(const tm_polygon_list *list, int32_t value, tm_text *name)
     tm_text_format(name, list->dimension == TM_GROUP_REGIONS ? "region_%d" : "marker_%d",
                    value);
     const tm_block *group = tm_stream_find(list->stream, ".group");
-    while (!name->failed && tm_group_named(group, list->dimension, name->byte))
+    while (!name->failed &&
+           tm_group_named(group, list->dimension, name->byte, name->size))
         tm_text_append(name, "_", 1);
 }

@@ -9,8 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ATTRIBUTES_MAX = 1000 /* termesh-stream(5) */ };
-
 /* A component of an array, or zeros. */
 typedef struct column {
     const tm_vtk_data *data; /* NULL: zeros */
@@ -18,7 +16,7 @@ typedef struct column {
 } column;
 
 typedef struct column_list {
-    column at[ATTRIBUTES_MAX];
+    column at[TM_ATTRIBUTES_MAX];
     size_t count;
 } column_list;
 
@@ -56,7 +54,7 @@ static void add_array(const tm_vtk_maker *m, column_list *to, const tm_vtk_data 
 {
     if (data->lacks)
         list_name(m, &m->report->left_out, data, "not of all pieces");
-    else if (data->components > ATTRIBUTES_MAX - to->count)
+    else if (data->components > TM_ATTRIBUTES_MAX - to->count)
         list_name(m, &m->report->left_out, data, "more than 1000 attributes");
     else if (!is_finite(data, count))
         list_name(m, &m->report->left_out, data, "not all finite");
@@ -88,7 +86,7 @@ static tm_status allocate(const tm_vtk_maker *m, tm_block *block,
 {
     if (columns->count == 0)
         return TM_OK;
-    if (block->count > SIZE_MAX / ATTRIBUTES_MAX)
+    if (block->count > SIZE_MAX / TM_ATTRIBUTES_MAX)
         return tm_fail_memory(m->error);
     block->attribute = tm_new(block->count * columns->count, sizeof *block->attribute);
     block->attributes = columns->count;
@@ -126,8 +124,8 @@ static tm_status mark_vertices(tm_vtk_maker *m, tm_block *node)
         if (!node->marker)
             return tm_fail_memory(m->error);
         node->markers = true;
-        for (size_t i = cells->start[c]; i < cells->start[c + 1]; i++)
-            node->marker[cells->node[i]] = marker;
+        for (size_t i = cells->nodes.start[c]; i < cells->nodes.start[c + 1]; i++)
+            node->marker[cells->nodes.item[i]] = marker;
     }
     return TM_OK;
 }

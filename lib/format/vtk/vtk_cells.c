@@ -12,13 +12,8 @@ enum { COORDINATES = 3 };
 tm_status tm_vtk_mesh_new(tm_vtk_mesh *cells, const char *name, tm_error *error)
 {
     *cells = (tm_vtk_mesh){.name = name};
-    cells->start = tm_grow(NULL, &cells->start_room, 1, sizeof *cells->start);
-    cells->face_start =
-        tm_grow(NULL, &cells->face_start_room, 1, sizeof *cells->face_start);
-    if (!cells->start || !cells->face_start)
-        return tm_fail_memory(error);
-    cells->start[0] = cells->face_start[0] = 0;
-    return TM_OK;
+    const bool done = tm_lists_begin(&cells->nodes) && tm_lists_begin(&cells->faces);
+    return done ? TM_OK : tm_fail_memory(error);
 }
 
 static void free_list(tm_vtk_data_list *list)
@@ -33,10 +28,8 @@ void tm_vtk_mesh_free(tm_vtk_mesh *cells)
     free(cells->xyz);
     free(cells->piece_start);
     free(cells->type);
-    free(cells->start);
-    free(cells->node);
-    free(cells->face_start);
-    free(cells->face);
+    tm_lists_free(&cells->nodes);
+    tm_lists_free(&cells->faces);
     free_list(&cells->point_data);
     free_list(&cells->cell_data);
     tm_text_free(&cells->names);
@@ -105,14 +98,10 @@ static tm_status take_point(const tm_vtk_mesh *cells, const tm_numbers *numbers,
 tm_status tm_vtk_add_node(tm_vtk_mesh *cells, const tm_numbers *numbers, size_t i,
                           size_t first, tm_error *error)
 {
-    /* the nodes of the cell that is being made begin where the last one ends */
-    const size_t at = cells->start[cells->cells] + cells->open;
-    void *room = tm_grow(cells->node, &cells->node_room, at + 1, sizeof *cells->node);
-    if (!room)
+    uint32_t *node = tm_lists_room(&cells->nodes, cells->open + 1);
+    if (!node)
         return tm_fail_memory(error);
-    cells->node = room;
-    cells->open++;
-    return take_point(cells, numbers, i, first, &cells->node[at], error);
+    return take_point(cells, numbers, i, first, &node[cells->open++], error);
 }
 
 tm_status tm_vtk_end_cell(tm_vtk_mesh *cells, uint8_t type, tm_error *error)
@@ -123,16 +112,10 @@ tm_status tm_vtk_end_cell(tm_vtk_mesh *cells, uint8_t type, tm_error *error)
                           "more cells than 32 bits can number");
     void *types = tm_grow(cells->type, &cells->type_room, c + 1, sizeof *cells->type);
     cells->type = types ? types : cells->type;
-    void *start = tm_grow(cells->start, &cells->start_room, c + 2, sizeof *cells->start);
-    cells->start = start ? start : cells->start;
-    void *faces = tm_grow(cells->face_start, &cells->face_start_room, c + 2,
-                          sizeof *cells->face_start);
-    cells->face_start = faces ? faces : cells->face_start;
-    if (!types || !start || !faces)
+    if (!types || !tm_lists_end(&cells->nodes, cells->open) ||
+        !tm_lists_end(&cells->faces, cells->open_faces))
         return tm_fail_memory(error);
     cells->type[c] = type;
-    cells->start[c + 1] = cells->start[c] + cells->open;
-    cells->face_start[c + 1] = cells->face_start[c] + cells->open_faces;
     cells->open = cells->open_faces = 0;
     cells->cells++;
     return TM_OK;
@@ -142,22 +125,19 @@ tm_status tm_vtk_add_face(tm_vtk_mesh *cells, const tm_numbers *numbers, size_t 
                           size_t nodes, size_t first, tm_error *error)
 {
     enum { TRIANGLE = 3 };
-    const size_t at = cells->face_start[cells->cells] + cells->open_faces;
     if (nodes < TRIANGLE || nodes > numbers->count - i)
         return tm_fail_at(
             error, TM_ERROR_INPUT, cells->name, 0, NULL,
             "cell %zu: a face has %zu nodes (3 or more, as many as there are)",
             cells->cells, nodes);
-    void *room =
-        tm_grow(cells->face, &cells->face_room, at + 1 + nodes, sizeof *cells->face);
-    if (!room)
+    uint32_t *face = tm_lists_room(&cells->faces, cells->open_faces + 1 + nodes);
+    if (!face)
         return tm_fail_memory(error);
-    cells->face = room;
-    cells->face[at] = (uint32_t)nodes;
+    face += cells->open_faces;
+    face[0] = (uint32_t)nodes;
     tm_status status = TM_OK;
     for (size_t j = 0; j < nodes && status == TM_OK; j++)
-        status =
-            take_point(cells, numbers, i + j, first, &cells->face[at + 1 + j], error);
+        status = take_point(cells, numbers, i + j, first, &face[1 + j], error);
     cells->open_faces += 1 + nodes;
     return status;
 }

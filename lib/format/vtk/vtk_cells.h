@@ -4,6 +4,7 @@
 #ifndef TM_FORMAT_VTK_CELLS_H
 #define TM_FORMAT_VTK_CELLS_H
 
+#include "../../mesh/polyhedra.h"
 #include "../numbers.h"
 #include "vtk_read.h"
 
@@ -35,9 +36,8 @@ typedef struct tm_vtk_data_list {
     size_t room;
 } tm_vtk_data_list;
 
-/* The nodes of cell c are node[start[c]] … node[start[c + 1] - 1]. The faces of a
- * polyhedron are face[face_start[c]] … face[face_start[c + 1] - 1]: how many nodes, and
- * the nodes, of one after the other; those of other cells are none. */
+/* The lists of cell c are its nodes and, of a polyhedron, its faces: how many nodes, and
+ * the nodes, of one after the other; those of other cells are empty. */
 typedef struct tm_vtk_mesh {
     const char *name; /* of the file, for messages */
     size_t points;
@@ -46,16 +46,12 @@ typedef struct tm_vtk_mesh {
     size_t *piece_start; /* [pieces]: its first point */
     size_t cells;
     uint8_t *type;
-    size_t *start; /* [cells + 1] */
-    uint32_t *node;
-    size_t *face_start; /* [cells + 1] */
-    uint32_t *face;
+    tm_lists nodes, faces;
     tm_vtk_data_list point_data, cell_data;
     tm_text names;           /* of arrays, with 0 behind each */
     tm_text groups;          /* the strings group_names, with 0 behind each */
-    size_t open, open_faces; /* of node and face: of the cell that is being made */
-    size_t point_room, piece_room, type_room, start_room, node_room, face_start_room,
-        face_room;
+    size_t open, open_faces; /* items of the cell that is being made */
+    size_t point_room, piece_room, type_room;
 } tm_vtk_mesh;
 
 /* An empty grid. TM_ERROR_SYSTEM where memory is out. */

@@ -30,30 +30,16 @@ static tm_content find_content(const tm_vtk_maker *m)
 
 /* Elements -------------------------------------------------------------------------- */
 
-static void exchange(uint32_t *node, size_t i, size_t j)
-{
-    const uint32_t swapped = node[i];
-    node[i] = node[j];
-    node[j] = swapped;
-}
-
+/* A tetrahedron as tm_tetgen_orient() turns it. */
 static void turn(uint32_t *node, size_t k)
 {
-    switch (k) {
-    case TM_TET_NODES:
-        exchange(node, 2, 3);
-        break;
-    case TM_PYRAMID_NODES:
-        exchange(node, 1, 3);
-        break;
-    case TM_WEDGE_NODES:
-        exchange(node, 1, 2);
-        exchange(node, 4, 5);
-        break;
-    default: /* TM_HEX_NODES */
-        exchange(node, 1, 3);
-        exchange(node, 5, 7);
+    if (k != TM_TET_NODES) {
+        tm_mixed_mirror(node, k);
+        return;
     }
+    const uint32_t third = node[2];
+    node[2] = node[3];
+    node[3] = third;
 }
 
 static void copy_elements(const tm_vtk_maker *m, uint32_t *to, size_t *start)
@@ -63,8 +49,8 @@ static void copy_elements(const tm_vtk_maker *m, uint32_t *to, size_t *start)
     for (size_t c = 0; c < cells->cells; c++) {
         if (tm_vtk_kept(m, c) != 3)
             continue;
-        const size_t k = cells->start[c + 1] - cells->start[c];
-        memcpy(to + at, cells->node + cells->start[c], k * sizeof *to);
+        const size_t k = cells->nodes.start[c + 1] - cells->nodes.start[c];
+        memcpy(to + at, cells->nodes.item + cells->nodes.start[c], k * sizeof *to);
         at += k;
         if (start)
             start[++e] = at;
@@ -107,7 +93,7 @@ static tm_status make_mixed(tm_vtk_maker *m)
     size_t items = 0;
     for (size_t c = 0; c < cells->cells; c++)
         if (tm_vtk_kept(m, c) == 3)
-            items += cells->start[c + 1] - cells->start[c];
+            items += cells->nodes.start[c + 1] - cells->nodes.start[c];
     tm_block *mix = tm_stream_add(m->stream, ".mix");
     if (!mix)
         return tm_fail_memory(m->error);
@@ -167,8 +153,8 @@ static bool add_prism(polyhedra *p, const uint32_t *v, size_t nodes, size_t *k)
 
 static bool add_cell(polyhedra *p, const tm_vtk_mesh *cells, size_t c)
 {
-    const uint32_t *v = cells->node + cells->start[c];
-    const size_t nodes = cells->start[c + 1] - cells->start[c];
+    const uint32_t *v = cells->nodes.item + cells->nodes.start[c];
+    const size_t nodes = cells->nodes.start[c + 1] - cells->nodes.start[c];
     size_t k = 0;
     bool done = true;
     if (cells->type[c] == TM_VTK_PENTAGONAL_PRISM ||
@@ -176,9 +162,9 @@ static bool add_cell(polyhedra *p, const tm_vtk_mesh *cells, size_t c)
         done = add_prism(p, v, nodes, &k);
     else if (cells->type[c] != TM_VTK_POLYHEDRON)
         done = add_element(p, v, nodes, &k);
-    for (size_t i = cells->face_start[c]; i < cells->face_start[c + 1] && done;
-         i += 1 + cells->face[i])
-        done = add_polygon(p, cells->face + i + 1, cells->face[i], &k);
+    for (size_t i = cells->faces.start[c]; i < cells->faces.start[c + 1] && done;
+         i += 1 + cells->faces.item[i])
+        done = add_polygon(p, cells->faces.item + i + 1, cells->faces.item[i], &k);
     return done && tm_lists_end(&p->cells, k);
 }
 
@@ -186,7 +172,7 @@ static tm_status check_polyhedron(const tm_vtk_maker *m, size_t c)
 {
     const tm_vtk_mesh *cells = m->cells;
     if (cells->type[c] == TM_VTK_POLYHEDRON &&
-        cells->face_start[c] == cells->face_start[c + 1])
+        cells->faces.start[c] == cells->faces.start[c + 1])
         return tm_fail_at(m->error, TM_ERROR_INPUT, cells->name, 0, NULL,
                           "cell %zu is a polyhedron without faces", c);
     return TM_OK;

@@ -7,8 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ARRAYS_MAX = 1000 /* of data: as attributes of a row */ };
-
 /* Names and strings: %XX is a byte. */
 static void decode(tm_text *to, const char *bytes, size_t size)
 {
@@ -94,9 +92,9 @@ static tm_status keep(tm_vtk_file *file, const array *a, const tm_numbers *numbe
 {
     tm_vtk_mesh *cells = file->cells;
     tm_text name = {0};
-    if (a->list->arrays == ARRAYS_MAX)
+    if (a->list->arrays == TM_ATTRIBUTES_MAX)
         return tm_scan_fail(&file->scan, file->error, "there are more than %d arrays",
-                            ARRAYS_MAX);
+                            TM_ATTRIBUTES_MAX);
     decode(&name, a->name.begin, a->name.size);
     tm_text_append(&name, "", 1);
     tm_vtk_data *data =
@@ -159,13 +157,16 @@ static tm_status take_field(tm_vtk_file *file, tm_vtk_data_list *list, size_t co
     return status;
 }
 
+/* The numbers of colours: bytes, or 0 to 1 in text. */
+static tm_vtk_number type_of_colours(const tm_vtk_file *file)
+{
+    return (tm_vtk_number){TM_VTK_NUMBERS, file->binary ? TM_UINT8 : TM_FLOAT32};
+}
+
 /* "LOOKUP_TABLE name n": four numbers of colour each, passed over. */
 static tm_status take_table(tm_vtk_file *file)
 {
-    static const tm_vtk_number bytes = {TM_VTK_NUMBERS, TM_UINT8};
-    static const tm_vtk_number reals = {TM_VTK_NUMBERS, TM_FLOAT32};
-    array a = {.components = 4};
-    a.type = file->binary ? bytes : reals;
+    array a = {.components = 4, .type = type_of_colours(file)};
     a.name = tm_scan_word(&file->scan);
     const tm_status status = tm_vtk_take_count(file, "the size of a table", &a.tuples);
     return status == TM_OK ? take_array(file, &a) : status;
@@ -190,9 +191,7 @@ static tm_status take_scalars(tm_vtk_file *file, array *a)
 
 static tm_status take_colours(tm_vtk_file *file, array *a)
 {
-    static const tm_vtk_number bytes = {TM_VTK_NUMBERS, TM_UINT8};
-    static const tm_vtk_number reals = {TM_VTK_NUMBERS, TM_FLOAT32};
-    a->type = file->binary ? bytes : reals;
+    a->type = type_of_colours(file);
     const tm_status status =
         tm_vtk_take_count(file, "the number of components", &a->components);
     return status == TM_OK ? take_array(file, a) : status;

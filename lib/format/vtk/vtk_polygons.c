@@ -13,7 +13,7 @@ enum { TRIANGLE = 3, LINE = 2 };
 
 static size_t nodes_of(const tm_vtk_mesh *cells, size_t c)
 {
-    return cells->start[c + 1] - cells->start[c];
+    return cells->nodes.start[c + 1] - cells->nodes.start[c];
 }
 
 /* A block of so many rows and items, with markers where cells have them. */
@@ -43,7 +43,7 @@ static size_t rows_of(const tm_vtk_maker *m, size_t c)
 static void set_triangle(const tm_vtk_maker *m, tm_block *face, size_t row, size_t c,
                          size_t i)
 {
-    const uint32_t *v = m->cells->node + m->cells->start[c];
+    const uint32_t *v = m->cells->nodes.item + m->cells->nodes.start[c];
     uint32_t *to = face->integer + TRIANGLE * row;
     const bool strip = m->cells->type[c] == TM_VTK_STRIP;
     const size_t odd = strip ? i % 2 : 0;
@@ -88,7 +88,8 @@ static tm_status copy_polygons(tm_vtk_maker *m)
         if (tm_vtk_kept(m, c) != 2)
             continue;
         const size_t k = nodes_of(cells, c), at = facet->start[row];
-        memcpy(facet->item + at, cells->node + cells->start[c], k * sizeof *facet->item);
+        memcpy(facet->item + at, cells->nodes.item + cells->nodes.start[c],
+               k * sizeof *facet->item);
         if (facet->marker)
             facet->marker[row] = tm_vtk_marker(m, c);
         facet->start[++row] = at + k;
@@ -96,33 +97,20 @@ static tm_status copy_polygons(tm_vtk_maker *m)
     return status;
 }
 
-static void reverse(uint32_t *node, size_t k)
-{
-    for (size_t i = 1, j = k - 1; i < j; i++, j--) {
-        const uint32_t swapped = node[i];
-        node[i] = node[j];
-        node[j] = swapped;
-    }
-}
-
 /* The sides of a row that is the face of half and of its mate: the first is that which
  * the row is outward for, or on the boundary the row is turned. */
-static void set_sides(const tm_block *mix, tm_block *facet, size_t row, uint32_t half,
-                      uint32_t mate)
+static void set_sides(const tm_mesh_view *view, tm_block *facet, size_t row,
+                      uint32_t half, uint32_t mate)
 {
-    const uint32_t e = half / TM_ELEMENT_NODES, i = half % TM_ELEMENT_NODES;
-    const size_t begin = mix->start[e], k = facet->start[row + 1] - facet->start[row];
-    const uint8_t *shape = tm_element_shapes[mix->start[e + 1] - begin].face[i];
     uint32_t face[4], *side = facet->integer + 2 * row;
-    for (size_t j = 0; j < 4; j++)
-        face[j] = mix->item[begin + shape[j]];
-    const bool inward = tm_polygon_compare(facet->item + facet->start[row], face, k) < 0;
+    const size_t k = tm_half_face_nodes(view, half, face);
+    const uint32_t e = half / TM_ELEMENT_NODES;
     side[0] = e;
     side[1] = mate == half || mate == TM_NONE ? TM_NONE : mate / TM_ELEMENT_NODES;
-    if (!inward)
+    if (tm_polygon_compare(facet->item + facet->start[row], face, k) >= 0)
         return;
     if (side[1] == TM_NONE) {
-        reverse(facet->item + facet->start[row], k);
+        tm_polygon_turn(facet->item + facet->start[row], k);
         return;
     }
     side[0] = side[1];
@@ -157,7 +145,6 @@ static tm_status make_facets(tm_vtk_maker *m)
     if (status != TM_OK)
         return status;
     const tm_mesh_view view = tm_mesh_view_of_mixed(m->stream);
-    const tm_block *mix = tm_stream_find(m->stream, ".mix");
     tm_block *facet = tm_stream_find(m->stream, ".facet");
     const size_t halves = tm_half_faces(&view);
     uint32_t *mate = NULL;
@@ -165,7 +152,7 @@ static tm_status make_facets(tm_vtk_maker *m)
     for (size_t row = 0; status == TM_OK && row < facet->count; row++) {
         const uint32_t half = mate[halves + row];
         if (half != TM_NONE)
-            set_sides(mix, facet, row, half, mate[half]);
+            set_sides(&view, facet, row, half, mate[half]);
     }
     if (status == TM_OK)
         drop_loose(m, facet, mate + halves);
@@ -193,9 +180,9 @@ static tm_status mark_facets(tm_vtk_maker *m)
     for (size_t c = 0; c < cells->cells && done; c++) {
         if (tm_vtk_kept(m, c) != 2)
             continue;
-        const uint32_t f =
-            tm_polygon_table_find(&table, facet->start, facet->item,
-                                  cells->node + cells->start[c], nodes_of(cells, c));
+        const uint32_t f = tm_polygon_table_find(
+            &table, facet->start, facet->item, cells->nodes.item + cells->nodes.start[c],
+            nodes_of(cells, c));
         m->report->loose += f == UINT32_MAX;
         if (f != UINT32_MAX && facet->marker)
             facet->marker[f] = tm_vtk_marker(m, c);
@@ -228,7 +215,7 @@ tm_status tm_vtk_make_lines(tm_vtk_maker *m)
     const tm_status status = add_block(m, ".edge", rows, 0, &edge);
     for (size_t c = 0; c < cells->cells && status == TM_OK; c++)
         for (size_t i = 1; tm_vtk_kept(m, c) == 1 && i < nodes_of(cells, c); i++, row++) {
-            const uint32_t *v = cells->node + cells->start[c] + i - 1;
+            const uint32_t *v = cells->nodes.item + cells->nodes.start[c] + i - 1;
             memcpy(edge->integer + LINE * row, v, LINE * sizeof *v);
             if (edge->marker)
                 edge->marker[row] = tm_vtk_marker(m, c);

@@ -104,11 +104,11 @@ static tm_status find_nodes(tm_vtk_maker *m)
 static void renumber(tm_vtk_maker *m)
 {
     tm_vtk_mesh *cells = m->cells;
-    for (size_t i = 0; i < cells->start[cells->cells]; i++)
-        cells->node[i] = m->number[cells->node[i]];
-    for (size_t i = 0; i < cells->face_start[cells->cells];)
-        for (size_t k = cells->face[i++]; k > 0; k--, i++)
-            cells->face[i] = m->number[cells->face[i]];
+    for (size_t i = 0; i < cells->nodes.start[cells->cells]; i++)
+        cells->nodes.item[i] = m->number[cells->nodes.item[i]];
+    for (size_t i = 0; i < cells->faces.start[cells->cells];)
+        for (size_t k = cells->faces.item[i++]; k > 0; k--, i++)
+            cells->faces.item[i] = m->number[cells->faces.item[i]];
 }
 
 static tm_status make_nodes(tm_vtk_maker *m)

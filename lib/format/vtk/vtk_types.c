@@ -77,7 +77,7 @@ static tm_status check(const tm_vtk_mesh *cells, size_t c, tm_error *error)
 {
     static const uint8_t least_of_dimension[] = {1, 2, 3, 0};
     const cell_type *t = type_of(cells->type[c]);
-    const size_t nodes = cells->start[c + 1] - cells->start[c];
+    const size_t nodes = cells->nodes.start[c + 1] - cells->nodes.start[c];
     if (!t)
         return tm_fail_at(error, TM_ERROR_INPUT, cells->name, 0, NULL,
                           "cell %zu is of VTK's type %u, which a stream cannot hold", c,
@@ -113,13 +113,13 @@ static void reorder(uint8_t type, uint32_t *node)
 /* Those that are the middle of a cell, but the corner of another one, are none. */
 static void take_back_corners(const tm_vtk_mesh *cells, bool *middle)
 {
-    for (size_t i = 0; i < cells->start[cells->cells]; i++)
-        middle[cells->node[i]] = false;
+    for (size_t i = 0; i < cells->nodes.start[cells->cells]; i++)
+        middle[cells->nodes.item[i]] = false;
     for (size_t c = 0; c < cells->cells; c++)
-        for (size_t i = cells->face_start[c]; i < cells->face_start[c + 1];) {
-            const size_t k = cells->face[i];
+        for (size_t i = cells->faces.start[c]; i < cells->faces.start[c + 1];) {
+            const size_t k = cells->faces.item[i];
             for (size_t j = 1; j <= k; j++)
-                middle[cells->face[i + j]] = false;
+                middle[cells->faces.item[i + j]] = false;
             i += 1 + k;
         }
 }
@@ -130,8 +130,8 @@ tm_status tm_vtk_take_corners(tm_vtk_mesh *cells, bool *middle, size_t *higher_o
     size_t to = 0, begin = 0;
     *higher_order = 0;
     for (size_t c = 0; c < cells->cells; c++) {
-        const size_t end = cells->start[c + 1];
-        cells->start[c] = begin;
+        const size_t end = cells->nodes.start[c + 1];
+        cells->nodes.start[c] = begin;
         const tm_status status =
             cells->type[c] == TM_VTK_EMPTY ? TM_OK : check(cells, c, error);
         if (status != TM_OK)
@@ -139,17 +139,17 @@ tm_status tm_vtk_take_corners(tm_vtk_mesh *cells, bool *middle, size_t *higher_o
         const cell_type *t = &types[cells->type[c]];
         const size_t corners = t->corners ? t->corners : end - begin;
         for (size_t i = begin + corners; i < end; i++)
-            middle[cells->node[i]] = true;
+            middle[cells->nodes.item[i]] = true;
         *higher_order += corners < end - begin;
-        reorder(cells->type[c], cells->node + begin);
+        reorder(cells->type[c], cells->nodes.item + begin);
         for (size_t i = 0; i < corners; i++)
-            cells->node[to + i] = cells->node[begin + i];
+            cells->nodes.item[to + i] = cells->nodes.item[begin + i];
         cells->type[c] = t->is;
-        cells->start[c] = to;
+        cells->nodes.start[c] = to;
         to += corners;
         begin = end;
     }
-    cells->start[cells->cells] = to;
+    cells->nodes.start[cells->cells] = to;
     take_back_corners(cells, middle);
     return TM_OK;
 }

@@ -29,10 +29,7 @@ typedef struct packing {
 static void to_little_endian(unsigned char *to, const char *from, size_t size,
                              size_t number_size)
 {
-    static const uint16_t one = 1;
-    unsigned char first;
-    memcpy(&first, &one, 1);
-    if (first == 1 || number_size == 1) {
+    if (!tm_binary_is_big() || number_size == 1) {
         memcpy(to, from, size);
         return;
     }

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-enum { COORDINATES = 3, ARRAYS_MAX = 1000 /* of data: as attributes of a row */ };
+enum { COORDINATES = 3 };
 
 typedef struct reader {
     tm_vtu_file file;
@@ -249,9 +249,9 @@ static tm_status add_names(reader *r, tm_vtu_section section, tm_vtk_data_list *
         const tm_vtu_entry *entry = &file->entry[i];
         if (entry->section != section || entry->strings)
             continue;
-        if (list->arrays == ARRAYS_MAX)
+        if (list->arrays == TM_ATTRIBUTES_MAX)
             return tm_vtu_fail(file, entry, r->error, "there are more than %d arrays",
-                               ARRAYS_MAX);
+                               TM_ATTRIBUTES_MAX);
         tm_vtk_data *data =
             tm_vtk_data_named(&r->cells, list, tm_vtu_name(file, entry), true);
         if (!data)
