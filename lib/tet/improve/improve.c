@@ -31,6 +31,9 @@ static const size_t tries_least = 3000;
  * parts, and waits; larger ones are slower, as their memory is further away. */
 static const size_t part_tets = 250000;
 
+/* Where less is bad, taking parts out costs more than they save. */
+static const double part_bad = 0.01;
+
 enum { PASSES_MAX = 8, KICKS_MAX = 1000, ROUNDS_MAX = 4 };
 
 /* Work, see improve_engine.h: of a tetrahedron tried in a phase; by so many that are only
@@ -430,12 +433,14 @@ static tm_status improve_whole(tm_tet_mesh *mesh, const tm_improve_options *opti
 }
 
 /* Whether a mesh is so large that it is cut. One whose surface may move is not, nor one
- * with a set, nor one that is to become smaller. */
+ * with a set, nor one that is to become smaller, nor one that is good nearly all over. */
 static bool is_for_parts(const tm_tet_mesh *mesh, const tm_improve_options *options)
 {
     const bool shrinks = options->max_growth > 0 && options->max_growth < 1;
     return mesh->tets >= 2 * part_tets && options->surface.tolerance == 0 &&
-           !mesh->has_set && !shrinks && mesh->dangling == 0;
+           !mesh->has_set && !shrinks && mesh->dangling == 0 &&
+           (double)tm_improve_count_bad_angles(mesh, options->angle) >=
+               part_bad * (double)mesh->tets;
 }
 
 tm_status tm_improve(tm_tet_mesh *mesh, const tm_improve_options *options,

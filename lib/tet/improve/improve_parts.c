@@ -18,6 +18,10 @@
 
 enum { ROUNDS = 4 };
 
+/* Of the nodes of a tetrahedron so many are due where it is. All four would leave out
+ * what a bad one is improved with, one alone would try those again that were tried. */
+enum { MOST_OF_FOUR = 3 };
+
 typedef struct one_part {
     tm_improve_report report;
     tm_status status;
@@ -29,7 +33,7 @@ typedef struct round_of_parts {
     const tm_tet_mesh *mesh;
     tm_improve_options options;
     tm_improve_engine *engine;
-    const bool *due;     /* [nodes]: tetrahedra that have one are worked on, but for */
+    const bool *due;     /* [nodes]: tetrahedra of these are worked on, but for */
     const bool *between; /* [nodes]: those that have one of these; NULL */
     one_part *one;       /* [parts] */
     pthread_t caller;    /* that is told of progress */
@@ -47,12 +51,13 @@ static bool add_set(const round_of_parts *r, size_t p, one_part *one)
         return false;
     }
     for (size_t t = 0; t < part->mesh.slots; t++) {
-        bool is_due = false, is_between = false;
+        int due = 0;
+        bool is_between = false;
         for (int i = 0; i < 4; i++) {
-            is_due |= r->due[part->node[part->mesh.tet[t][i]]];
+            due += r->due[part->node[part->mesh.tet[t][i]]];
             is_between |= r->between && r->between[part->node[part->mesh.tet[t][i]]];
         }
-        in_set[t] = is_due && !is_between;
+        in_set[t] = due >= MOST_OF_FOUR && !is_between;
         any |= in_set[t];
     }
     if (any)
@@ -96,18 +101,20 @@ static void add_report(tm_improve_report *to, const tm_improve_report *more)
     }
 }
 
-/* What was due and is near to a face between parts still is. */
+/* What was due and has a node between parts still is; what came since was not. */
 static bool find_due(const tm_tet_mesh *mesh, bool **due, const bool *between,
                      size_t nodes)
 {
     bool *now = calloc(mesh->nodes + 1, sizeof *now);
     for (uint32_t t = 0; t < mesh->slots && now; t++) {
         const uint32_t *n = mesh->tet[t];
-        bool any = false;
-        for (int i = 0; i < 4; i++)
-            any |= n[i] < nodes && between[n[i]];
-        for (int i = 0; i < 4 && any; i++)
-            now[n[i]] |= n[i] >= nodes || (*due)[n[i]];
+        bool was_due = true, is_between = false;
+        for (int i = 0; i < 4; i++) {
+            was_due &= n[i] >= nodes || (*due)[n[i]];
+            is_between |= n[i] < nodes && between[n[i]];
+        }
+        for (int i = 0; i < 4 && was_due && is_between; i++)
+            now[n[i]] = true;
     }
     free(*due);
     *due = now;
