@@ -310,6 +310,7 @@ static settings read_options(filter *f)
         o.lepp.stop =
             o.lepp.algorithm == TM_LEPP_SELECTIVE ? TM_LEPP_CONVERGED : TM_LEPP_ORIGINAL;
     o.lepp.count_invalid_swaps = f->json;
+    o.improve.threads = f->threads;
     o.lepp.progress = o.improve.progress = filter_progress(f);
     return o;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* When the improver tries what. */
 #include "improve_engine.h"
+#include "improve_parts.h"
 
 #include "../../base/array.h"
 #include "../mesh_set.h"
@@ -25,6 +26,13 @@ static const double fewest = 0.5;
 
 /* For few tetrahedra it is cheap to insist. */
 static const size_t tries_least = 3000;
+
+/* Tetrahedra of a part of a large mesh. In smaller ones more of all is near to other
+ * parts, and waits; larger ones are slower, as their memory is further away. */
+static const size_t part_tets = 250000;
+
+/* Where less is bad, taking parts out costs more than they save. */
+static const double part_bad = 0.01;
 
 enum { PASSES_MAX = 8, KICKS_MAX = 1000, ROUNDS_MAX = 4 };
 
@@ -244,25 +252,11 @@ static void coarsen(tm_improver *m)
     settle(m, TM_PHASE_SHRINK, 0);
 }
 
-/* Those that the report calls bad: by their angles. */
-static size_t count_bad_angles(const tm_improver *m)
-{
-    const tm_tet_mesh *mesh = m->mesh;
-    const double(*x)[3] = (const double(*)[3])mesh->xyz;
-    double limit = tm_bad_sine2(m->options->angle);
-    size_t bad = 0;
-    for (uint32_t t = 0; t < mesh->slots; t++) {
-        const uint32_t *n = mesh->tet[t];
-        bad += tm_tet_lives(mesh, t) &&
-               tm_tet_sine2(x[n[0]], x[n[1]], x[n[2]], x[n[3]]) < limit;
-    }
-    return bad;
-}
-
 bool tm_improve_keeps_angles(const tm_improver *m)
 {
     return m->cost.measure == TM_MEASURE_DIHEDRAL ||
-           badness_of(m, count_bad_angles(m)) <= m->angle_badness;
+           badness_of(m, tm_improve_count_bad_angles(m->mesh, m->options->angle)) <=
+               m->angle_badness;
 }
 
 /* Keeps the mesh if it is the best so far, or goes back to that. Returns how bad it is.
@@ -400,12 +394,12 @@ static tm_status improve_once(tm_tet_mesh *mesh, const tm_improve_options *optio
         return tm_fail_memory(error);
     tm_status status = tm_improve_start(m, mesh, options, report, error);
     if (status == TM_OK) {
-        report->bad_before = count_bad_angles(m);
+        report->bad_before = tm_improve_count_bad_angles(m->mesh, m->options->angle);
         m->angle_badness =
             mesh->tets <= m->most_tets ? badness_of(m, report->bad_before) : HUGE_VAL;
         run_all(m);
         status = m->status;
-        report->bad_after = count_bad_angles(m);
+        report->bad_after = tm_improve_count_bad_angles(m->mesh, m->options->angle);
         report->too_large = mesh->tets > m->most_tets;
         if (status == TM_OK && m->features.may_move)
             status = tm_envelope_measure(&m->features.envelope, mesh, distance, error);
@@ -415,8 +409,8 @@ static tm_status improve_once(tm_tet_mesh *mesh, const tm_improve_options *optio
     return status;
 }
 
-tm_status tm_improve(tm_tet_mesh *mesh, const tm_improve_options *options,
-                     tm_improve_report *report, tm_error *error)
+static tm_status improve_whole(tm_tet_mesh *mesh, const tm_improve_options *options,
+                               tm_improve_report *report, tm_error *error)
 {
     enum { TRIES = 3 };
     const double most = options->surface.tolerance, rounding = 1e-9, less = 0.5;
@@ -436,4 +430,23 @@ tm_status tm_improve(tm_tet_mesh *mesh, const tm_improve_options *options,
     }
     tm_tet_mesh_free(&input);
     return status;
+}
+
+/* Whether a mesh is so large that it is cut. One whose surface may move is not, nor one
+ * with a set, nor one that is to become smaller, nor one that is good nearly all over. */
+static bool is_for_parts(const tm_tet_mesh *mesh, const tm_improve_options *options)
+{
+    const bool shrinks = options->max_growth > 0 && options->max_growth < 1;
+    return mesh->tets >= 2 * part_tets && options->surface.tolerance == 0 &&
+           !mesh->has_set && !shrinks && mesh->dangling == 0 &&
+           (double)tm_improve_count_bad_angles(mesh, options->angle) >=
+               part_bad * (double)mesh->tets;
+}
+
+tm_status tm_improve(tm_tet_mesh *mesh, const tm_improve_options *options,
+                     tm_improve_report *report, tm_error *error)
+{
+    if (is_for_parts(mesh, options))
+        return tm_improve_parts(mesh, options, part_tets, improve_whole, report, error);
+    return improve_whole(mesh, options, report, error);
 }

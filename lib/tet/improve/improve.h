@@ -70,6 +70,7 @@ typedef struct tm_improve_options {
     size_t passes;             /* over the bad tetrahedra, at most; 0: any number */
     bool converge;             /* go on while anything is gained, not only enough */
     tm_surface_limits surface; /* how far the surface may move */
+    unsigned threads;          /* 0 is 1: always the same result */
     const tm_progress *progress;
 } tm_improve_options;
 
