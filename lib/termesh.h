@@ -60,6 +60,8 @@
 #include "surface/mend/mend.h"
 #include "surface/measure/surface_curvature.h"
 #include "surface/measure/surface_distance.h"
+#include "surface/measure/surface_evaluate.h"
+#include "surface/surface_seeds.h"
 
 /* examine: what is wrong with a mesh, and how good it is */
 #include "examine/element_examine.h"
@@ -91,6 +93,7 @@
 #include "tet/mesh_set.h"
 #include "tet/surface_limits.h"
 #include "tet/mesh_measure.h"
+#include "tet/evaluate.h"
 #include "tet/star.h"
 #include "tet/delaunay/delaunay.h"
 #include "tet/improve/improve.h"

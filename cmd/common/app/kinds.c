@@ -24,7 +24,7 @@ static const struct {
     const char *filter;
     unsigned kinds;
 } table[] = {
-    {"tetgen-mesh", POINTS | SURFACE | PART},
+    {"tetgen-mesh", POINTS | SURFACE | TETRAHEDRA | PART},
     {"surface-import", POINTS | SURFACE | PART},
     {"surface-mend", SURFACE | PART},
     {"octree-mesh", SURFACE | PART},

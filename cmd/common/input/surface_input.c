@@ -154,7 +154,7 @@ static tm_format read_surface(const filter *f, tm_polygon_surface *surface,
             status = kinds_check(f->name, stream, name, &error);
         if (status == TM_OK) {
             rename_surface(stream);
-            if (!mesh_too || tm_stream_find(stream, "surface.node") ||
+            if (tm_stream_find(stream, "surface.node") ||
                 tm_content_of(stream) <= TM_CONTENT_SURFACE)
                 status = surface_input_of_stream(stream, name, surface, &error);
         }
