@@ -390,14 +390,20 @@ static void fill_surface(settings *s, tm_polygon_surface *surface, tm_format for
                          tm_stream *mesh)
 {
     tm_surface_defects defects;
-    size_t dropped;
+    size_t dropped, mended;
     tm_error error, why = {.status = TM_OK};
     if (tm_coordinates_check((const double(*)[3])surface->xyz, surface->nodes,
                              surface->base, &error) != TM_OK)
         mesh_input_fail(&f, &error);
-    if (tm_surface_drop_duplicates(surface, &dropped, &error) != TM_OK ||
+    if (tm_surface_drop_degenerate(surface, &mended, &error) != TM_OK ||
+        tm_surface_drop_duplicates(surface, &dropped, &error) != TM_OK ||
         tm_surface_find_defects(surface, &defects, &error) != TM_OK)
         filter_fail(&f, &error);
+    if (mended > 0)
+        filter_note(&f,
+                    "faces with two corners in the same place: %zu, which lose one, or "
+                    "are dropped",
+                    mended);
     if (dropped > 0)
         filter_note(&f, "faces in the place of an earlier one, which are dropped: %zu",
                     dropped);

@@ -31,6 +31,12 @@ tm_status tm_surface_find_defects(const tm_polygon_surface *surface,
 tm_status tm_surface_drop_duplicates(tm_polygon_surface *surface, size_t *dropped,
                                      tm_error *error);
 
+/* Takes corners out of polygons that are where the corner before is, and facets whose only
+ * polygon has fewer than three corners left; polygons of one node or two stay. *mended is
+ * how many polygons had such corners. O(n). */
+tm_status tm_surface_drop_degenerate(tm_polygon_surface *surface, size_t *mended,
+                                     tm_error *error);
+
 TM_EXTERN_C_END
 
 #endif

@@ -289,6 +289,32 @@ END
     [[ ${stderr_lines[-1]} == 'tetgen-mesh: pierced.off: the surface intersects itself: TetGen cannot fill it (surface-mend '*'octree-mesh --lenient '* ]]
 }
 
+@test "faces with a node twice make no segment inside" {
+    surface cube off >cube.off
+    tetgen-mesh --no-history cube.off >expected.tm
+    # between opposite corners: a segment that would cut the cube
+    sed '2s/12/14/' cube.off >twice.off
+    printf '3 0 0 6\n4 1 7 7 1\n' >>twice.off
+    run -0 --separate-stderr tetgen-mesh --no-history twice.off
+    [ "$stderr" = 'tetgen-mesh: faces with two corners in the same place: 2, which lose one, or are dropped' ]
+    cmp expected.tm <<<"$output"
+    # and one that has a corner too many
+    surface box off | sed '$s/^4 \([0-9]*\)/5 \1 \1/' | tetgen-mesh --no-history |
+        cmp - <(surface box off | tetgen-mesh --no-history)
+}
+
+@test "binary STL with bytes behind the last triangle" {
+    surface sphere stl-binary >exact.stl
+    tetgen-mesh --no-history exact.stl >expected.tm
+    for more in 1 3 50 1000; do
+        { cat exact.stl; head -c $more /dev/zero | tr '\0' x; } >more.stl
+        run -0 --separate-stderr tetgen-mesh --no-history -o got.tm more.stl
+        [ "$stderr" = "tetgen-mesh: more.stl: $more bytes behind the last triangle are skipped" ]
+        cmp got.tm expected.tm
+        tetgen-mesh --no-history <more.stl | cmp - expected.tm
+    done
+}
+
 @test "flat surfaces, flat points and too few points are refused" {
     printf 'OFF\n4 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 0 1 2 3\n' >flat.off
     printf '5 3\n1 0 0 0\n2 1 2 3\n3 2 1 3\n4 1 1 2\n5 4 5 9\n' >flat.node

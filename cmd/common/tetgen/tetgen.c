@@ -169,8 +169,11 @@ static tm_status parse(const tm_text *bytes, const char *file, const char *name,
     if (!block)
         return tm_fail_memory(error);
     const tm_block *node = tm_stream_find(mesh, ".node");
-    const tm_status status = tm_tetgen_read(block, bytes->byte, bytes->size, file,
-                                            &mesh->base, node ? node->count : 0, error);
+    tm_tetgen_nodes nodes = {mesh->base, node ? node->count : 0, NULL};
+    const tm_status status =
+        tm_tetgen_read(block, bytes->byte, bytes->size, file, &nodes, error);
+    mesh->base = nodes.base;
+    tm_tetgen_nodes_free(&nodes);
     return status == TM_OK ? check_last_line(bytes, file, error) : status;
 }
 
