@@ -70,8 +70,10 @@ static void say(const filter *f, const tm_mend_report *report)
     }
 }
 
-/* Whether meshers take what there is now; *error says why not. */
-static bool is_good(const filter *f, const tm_stream *stream, tm_error *error)
+/* Whether meshers take what there is now; *error says why not. What bounds the outside
+ * beside walls is turned outward, which only that surface tells. */
+static bool is_good(const filter *f, const tm_stream *stream, tm_mend_report *report,
+                    tm_error *error)
 {
     const tm_surface_options options = {
         .feature_angle = TM_FEATURE_ANGLE, .regions = true, .walls = true};
@@ -83,6 +85,9 @@ static bool is_good(const filter *f, const tm_stream *stream, tm_error *error)
                                                stream->base, &polygons, error);
     if (status == TM_OK) {
         status = tm_surface_build(&surface, &polygons, &options, error);
+        if (status == TM_OK)
+            tm_mend_turn_outward(tm_stream_find(stream, ".face"), &surface, &polygons,
+                                 &report->step[TM_MEND_TURNED]);
         tm_surface_free(&surface);
     }
     tm_polygon_surface_free(&polygons);
@@ -138,9 +143,9 @@ int main(int argc, char **argv)
     filter_stage(&f, "mending");
     if (tm_mend(&stream, &options, &report, &error) != TM_OK)
         filter_fail(&f, &error);
-    say(&f, &report);
     filter_stage(&f, "looking for crossings");
-    const bool good = is_good(&f, &stream, &error);
+    const bool good = is_good(&f, &stream, &report, &error);
+    say(&f, &report);
     if (!good)
         filter_note(&f, "%s: still: %s", filter_input_name(&f), error.what);
     write_json(&f, &stream, &report, good);

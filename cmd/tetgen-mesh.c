@@ -239,7 +239,7 @@ static void describe_open_edges(const tm_polygon_surface *surface,
     tm_text_format(text, "edges of one face only: %zu, such as that",
                    defects->open_edges);
     for (int i = 0; i < 2; i++) {
-        const double *xyz = surface->xyz[defects->open_edge[i]];
+        const double *xyz = surface->xyz[defects->open_edge[0][i]];
         tm_text_string(text, i == 0 ? " from (" : " to (");
         for (int k = 0; k < 3; k++) {
             tm_text_string(text, k == 0 ? "" : ", ");

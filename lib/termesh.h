@@ -61,6 +61,7 @@
 #include "surface/measure/surface_curvature.h"
 #include "surface/measure/surface_distance.h"
 #include "surface/measure/surface_evaluate.h"
+#include "surface/surface_crossings.h"
 #include "surface/surface_seeds.h"
 
 /* examine: what is wrong with a mesh, and how good it is */
@@ -68,6 +69,7 @@
 #include "examine/examination.h"
 #include "examine/jens_statistics.h"
 #include "examine/mixed_volume.h"
+#include "examine/surface_examine.h"
 #include "examine/poly/poly_boundary.h"
 #include "examine/poly/poly_examine.h"
 #include "examine/poly/poly_finite_volume.h"

@@ -35,7 +35,7 @@ static const struct {
     {"tet-stats", TETRAHEDRA},
     {"jens-stats", TETRAHEDRA | MIXED},
     {"poly-stats", POLYHEDRA},
-    {"mesh-check", CELLS},
+    {"mesh-check", SURFACE | CELLS | PART},
     {"mesh-view", ALL},
     {"getfem-export", SURFACE | TETRAHEDRA | MIXED},
     {"gmsh-export", POINTS | SURFACE | TETRAHEDRA | MIXED},

@@ -2,7 +2,6 @@
 #include "tetgen_attributes.h"
 
 #include "../../../lib/surface/measure/surface_evaluate.h"
-#include "../../../lib/surface/point_table.h"
 #include "../../../lib/tet/evaluate.h"
 
 #include <stdlib.h>
@@ -11,21 +10,9 @@
 static bool *find_known(const filter *f, const tm_polygon_surface *surface,
                         const tm_block *node, size_t *unknown)
 {
-    tm_point_table table = {0};
     bool *known = calloc(node->count + 1, sizeof *known);
-    bool ok = known != NULL;
-    uint32_t first;
-    for (uint32_t v = 0; v < surface->nodes && ok; v++)
-        ok = tm_point_table_join(&table, surface->xyz, v, &first);
-    if (!ok)
+    if (!known || !tm_surface_find_known(surface, node, known, unknown))
         filter_fail_memory(f);
-    *unknown = 0;
-    for (size_t v = 0; v < node->count; v++) {
-        known[v] =
-            tm_point_table_find(&table, surface->xyz, node->real + 3 * v) != UINT32_MAX;
-        *unknown += !known[v];
-    }
-    tm_point_table_free(&table);
     return known;
 }
 

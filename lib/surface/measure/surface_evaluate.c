@@ -2,8 +2,27 @@
 #include "surface_evaluate.h"
 
 #include "../../geom/vector.h"
+#include "../point_table.h"
 
 #include <string.h>
+
+bool tm_surface_find_known(const tm_polygon_surface *polygons, const tm_block *node,
+                           bool *known, size_t *unknown)
+{
+    tm_point_table table = {0};
+    bool ok = true;
+    uint32_t first;
+    for (uint32_t v = 0; v < polygons->nodes && ok; v++)
+        ok = tm_point_table_join(&table, polygons->xyz, v, &first);
+    *unknown = 0;
+    for (size_t v = 0; v < node->count && ok; v++) {
+        known[v] =
+            tm_point_table_find(&table, polygons->xyz, node->real + 3 * v) != UINT32_MAX;
+        *unknown += !known[v];
+    }
+    tm_point_table_free(&table);
+    return ok;
+}
 
 /* How much of a triangle is beside the edge from a to b, seen from p: along its normal.
  */
