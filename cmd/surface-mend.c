@@ -7,6 +7,7 @@
 
 #include "../lib/stream/coordinates.h"
 #include "../lib/surface/mend/mend.h"
+#include "../lib/surface/surface_apart.h"
 
 #include <float.h>
 #include <string.h>
@@ -70,6 +71,23 @@ static void say(const filter *f, const tm_mend_report *report)
     }
 }
 
+/* Whether that is plain without the surface that meshers make of it. */
+static bool is_plainly_good(const filter *f, const tm_stream *stream,
+                            const tm_mend_report *report)
+{
+    const tm_block *node = tm_stream_find(stream, ".node");
+    const tm_block *face = tm_stream_find(stream, ".face");
+    bool apart = false;
+    tm_error error;
+    if (!report->manifold || face->count == 0)
+        return false;
+    if (tm_triangles_are_apart((const double(*)[3])node->real, node->count,
+                               (const uint32_t(*)[3])face->integer, face->count, &apart,
+                               &error) != TM_OK)
+        filter_fail(f, &error);
+    return apart;
+}
+
 /* Whether meshers take what there is now; *error says why not. What bounds the outside
  * beside walls is turned outward, which only that surface tells. */
 static bool is_good(const filter *f, const tm_stream *stream, tm_mend_report *report,
@@ -79,6 +97,8 @@ static bool is_good(const filter *f, const tm_stream *stream, tm_mend_report *re
         .feature_angle = TM_FEATURE_ANGLE, .regions = true, .walls = true};
     tm_polygon_surface polygons;
     tm_surface surface;
+    if (is_plainly_good(f, stream, report))
+        return true;
     tm_polygon_surface_init(&polygons);
     tm_status status = surface_input_of_blocks(tm_stream_find(stream, ".node"),
                                                tm_stream_find(stream, ".face"),

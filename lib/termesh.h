@@ -61,6 +61,7 @@
 #include "surface/measure/surface_curvature.h"
 #include "surface/measure/surface_distance.h"
 #include "surface/measure/surface_evaluate.h"
+#include "surface/surface_apart.h"
 #include "surface/surface_crossings.h"
 #include "surface/surface_seeds.h"
 

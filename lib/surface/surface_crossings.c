@@ -137,11 +137,35 @@ static void direction(const double x[3], const double y[3], double unit[3])
         unit[i] /= length;
 }
 
+/* The same of edges from one corner, not made as long as each other: that takes no roots,
+ * and is enough for most. */
+static bool edges_are_apart(const double of_p[2][3], const double of_q[2][3])
+{
+    const double least = margin * margin;
+    double d[3];
+    for (int x = 0; x < 3; x++)
+        d[x] = of_p[0][x] + of_p[1][x] - of_q[0][x] - of_q[1][x];
+    const double norm2 = tm_norm2(d);
+    for (int s = 0; s < 2; s++) {
+        const double p = tm_dot(d, of_p[s]), q = -tm_dot(d, of_q[s]);
+        if (!(p > 0 && p * p > least * norm2 * tm_norm2(of_p[s]) && q > 0 &&
+              q * q > least * norm2 * tm_norm2(of_q[s])))
+            return false;
+    }
+    return true;
+}
+
 /* Corner i of p is corner k of q: whether a plane through it is between what is left. */
 static bool corners_are_apart(const double *const p[3], int i, const double *const q[3],
                               int k)
 {
     double of_p[2][3], of_q[2][3], d[3];
+    for (int s = 0; s < 2; s++) {
+        tm_subtract(of_p[s], p[(i + 1 + s) % 3], p[i]);
+        tm_subtract(of_q[s], q[(k + 1 + s) % 3], q[k]);
+    }
+    if (edges_are_apart((const double(*)[3])of_p, (const double(*)[3])of_q))
+        return true;
     for (int s = 0; s < 2; s++) {
         direction(p[i], p[(i + 1 + s) % 3], of_p[s]);
         direction(q[k], q[(k + 1 + s) % 3], of_q[s]);

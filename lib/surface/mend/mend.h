@@ -46,6 +46,7 @@ typedef struct tm_mend_report {
     tm_mended step[TM_MEND_STEPS];
     double weld;                    /* the distance that was taken */
     size_t open_before, open_edges; /* edges of one triangle */
+    bool manifold;                  /* each edge has two triangles, which turn alike */
 } tm_mend_report;
 
 /* Mends the triangles of .face, whose nodes are in .node. A step that leaves more open or
