@@ -436,7 +436,8 @@ static void refine_tets(settings *s, tm_stream *input, tm_stream *mesh)
         filter_usage_error(&f, "what is about regions and holes needs a surface, but "
                                "these are tetrahedra, which keep their regions");
     if (!asks_for_nodes(s) && !s->request.more)
-        filter_usage_error(&f, "tetrahedra are refined by -q, -a, -m or --size");
+        fail_input("holds tetrahedra (.ele), but tetgen-mesh takes them to refine only: "
+                   "-q, -a, -m or --size would say how");
     if (tm_stream_check_coordinates(input, &error) != TM_OK)
         mesh_input_fail(&f, &error);
     double *size =

@@ -77,7 +77,7 @@ stl-export      3 3 3 0 0 3 0 0 0
 surface-mend    3 0 3 0 3 3 3 3 3
 tet-stats       3 3 3 3 0 0 3 3 3
 tetgen-export   3 0 0 0 0 0 3 3 3
-tetgen-mesh     3 0 0 0 2 3 3 3 3
+tetgen-mesh     3 0 0 0 3 3 3 3 3
 visf-export     3 3 0 0 0 0 0 0 0
 vtk-export      3 3 0 0 0 0 0 0 0
 vtu-export      3 3 0 0 0 0 0 0 0

@@ -72,9 +72,9 @@ fan_volume() {
 
 @test "tetrahedra: what refines them is needed; a stream of other elements is refused" {
     surface cube off | tetgen-mesh >mesh.tm
-    run -2 --separate-stderr tetgen-mesh mesh.tm
+    run -3 --separate-stderr tetgen-mesh mesh.tm
     [ -z "$output" ]
-    [[ $stderr == 'tetgen-mesh: tetrahedra are refined by -q, -a, -m or --size'* ]]
+    [[ $stderr == 'tetgen-mesh: mesh.tm: holds tetrahedra (.ele), but tetgen-mesh takes them to refine only: -q'* ]]
     run -2 --separate-stderr tetgen-mesh --regions -q mesh.tm
     run -3 --separate-stderr tetgen-mesh -r -q <(surface cube off)
     printf '%s\n' 'termesh 1' .node '8 3 0 0' '1 0 0 0' '2 1 0 0' '3 1 1 0' '4 0 1 0' \
