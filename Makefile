@@ -5,7 +5,8 @@
 #                        build/completion, the library in build, static and shared
 #   make check           all tests; ONLY=NAME: one test program, or one file of tests/cli;
 #                        SAN=1: under the address and undefined-behaviour sanitizers,
-#                        in build/san; TM_SEED repeats the random ones
+#                        in build/san; SAN=thread: under the one for threads, in
+#                        build/san-thread; TM_SEED repeats the random ones
 #   make fuzz            damaged input for every filter; FUZZ_CASES of it, TM_SEED
 #   make bench           all of tests/bench
 #   make lint            what the compiler does not see; make format mends its part
@@ -75,7 +76,11 @@ endif
 FUZZ_CASES = 20000
 BUILD = build
 
-ifneq ($(filter-out 0,$(SAN)),)
+ifeq ($(SAN),thread)
+override BUILD := $(BUILD)/san-thread
+SANITIZE = -fsanitize=thread -fno-omit-frame-pointer
+export TSAN_OPTIONS ?= exitcode=99
+else ifneq ($(filter-out 0,$(SAN)),)
 override BUILD := $(BUILD)/san
 SANITIZE = -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 # No exit status of a filter's own.
@@ -247,7 +252,7 @@ check: tests
 	sh tests/run.sh $(BUILD) $(ONLY)
 
 # Always under the sanitizers.
-ifdef SANITIZE
+ifneq ($(filter-out 0 thread,$(SAN)),)
 fuzz: all $(fuzzer)
 	$(fuzzer) $(BUILD)/bin $(FUZZ_CASES)
 else

@@ -107,7 +107,7 @@ tm_status tm_element_examine(tm_examination *found, const tm_mesh_view *mesh,
     tm_boundary_faces boundary = {0};
     tm_status status = examine_elements(found, mesh, sign, threads, error);
     if (status == TM_OK)
-        status = tm_element_examine_faces(found, mesh, sign, &boundary, error);
+        status = tm_element_examine_faces(found, mesh, sign, &boundary, threads, error);
     free(sign);
     if (status == TM_OK)
         status = tm_element_examine_nonconforming(found, &boundary, error);

@@ -7,6 +7,7 @@
 
 #include "../base/array.h"
 #include "../base/disjoint_sets.h"
+#include "../base/parallel.h"
 #include "../mesh/face_table.h"
 
 #include <stdlib.h>
@@ -18,23 +19,31 @@ typedef struct list {
     uint32_t *item;
 } list;
 
+/* What all walkers have in common. */
 typedef struct walk {
     const tm_mesh_view *mesh;
     const int8_t *sign;
-    tm_examination *found;
-    tm_boundary_faces *boundary;
     tm_face_table table;
     list far;         /* the larger nodes of far edges */
     list listed;      /* rows of .edge; no arrays where there are none */
-    uint32_t *row_to; /* [nodes]: the last row of .edge from a smaller node; TM_NONE */
     uint32_t *parent; /* [elements]: a forest with a tree for each component */
-    uint32_t *stamp;  /* [nodes]: the last v that has an edge to the node; TM_NONE */
-    size_t elements;  /* that do not name a node twice */
-    size_t joints;    /* of two components into one */
-    size_t used_nodes;
-    size_t edges;
-    size_t faces;
+    uint8_t *used;    /* [nodes] */
+    uint32_t *cut;    /* walker i has the nodes from cut[i] up to cut[i + 1] */
+    struct walker *walker;
 } walk;
+
+/* Who walks over some of the nodes. */
+typedef struct walker {
+    const walk *w;
+    tm_face_table table;
+    tm_defect_list defect[TM_DEFECTS];
+    tm_boundary_faces boundary;
+    uint32_t *row_to; /* [nodes]: the last row of .edge from a smaller node; TM_NONE */
+    uint32_t *stamp;  /* [nodes]: the last v that has an edge to the node; TM_NONE */
+    size_t edges, faces;
+    tm_status status;
+    tm_error error;
+} walker;
 
 /* The members of a face. */
 typedef struct members {
@@ -48,11 +57,10 @@ static bool is_whole(const walk *w, size_t e)
     return w->sign[e] != TM_NODE_TWICE;
 }
 
-static void add_defect(walk *w, tm_defect d, uint32_t first, uint32_t second,
+static void add_defect(walker *w, tm_defect d, uint32_t first, uint32_t second,
                        uint32_t third)
 {
-    tm_defect_add(&w->found->defect[d],
-                  (uint32_t[TM_DEFECT_NUMBERS]){first, second, third});
+    tm_defect_add(&w->defect[d], (uint32_t[TM_DEFECT_NUMBERS]){first, second, third});
 }
 
 static uint32_t lesser(uint32_t a, uint32_t b)
@@ -62,10 +70,18 @@ static uint32_t lesser(uint32_t a, uint32_t b)
 
 /* Edges ---------------------------------------------------------------------------- */
 
-static void meet_edge(walk *w, uint32_t v, uint32_t end)
+static void set_used(const walker *w, uint32_t v)
 {
-    w->edges += w->stamp[end] != v;
+    __atomic_store_n(&w->w->used[v], 1, __ATOMIC_RELAXED);
+}
+
+static void meet_edge(walker *w, uint32_t v, uint32_t end)
+{
+    if (w->stamp[end] == v)
+        return;
     w->stamp[end] = v;
+    w->edges++;
+    set_used(w, end);
 }
 
 /* The two largest nodes of a tetrahedron, in ascending order. */
@@ -155,10 +171,8 @@ static bool list_rows(walk *w)
         return true;
     w->listed.start = calloc(mesh->nodes + 2, sizeof *w->listed.start);
     w->listed.item = tm_new(mesh->edges, sizeof *w->listed.item);
-    w->row_to = tm_new(mesh->nodes, sizeof *w->row_to);
-    if (!w->listed.start || !w->listed.item || !w->row_to)
+    if (!w->listed.start || !w->listed.item)
         return false;
-    memset(w->row_to, UINT8_MAX, mesh->nodes * sizeof *w->row_to);
     size_t *next = w->listed.start + 1;
     for (size_t r = 0; r < mesh->edges; r++)
         next[lesser(mesh->edge[r][0], mesh->edge[r][1]) + 1]++;
@@ -170,14 +184,16 @@ static bool list_rows(walk *w)
 }
 
 /* The rows of .edge from v, where all edges to larger nodes were met. */
-static void take_rows(walk *w, uint32_t v)
+static void take_rows(walker *w, uint32_t v)
 {
-    for (size_t i = w->listed.start[v]; i < w->listed.start[v + 1]; i++) {
-        const uint32_t row = w->listed.item[i], *n = w->mesh->edge[row];
+    const list *listed = &w->w->listed;
+    const uint32_t(*edge)[2] = w->w->mesh->edge;
+    for (size_t i = listed->start[v]; i < listed->start[v + 1]; i++) {
+        const uint32_t row = listed->item[i], *n = edge[row];
         const uint32_t end = n[0] == v ? n[1] : n[0];
         const uint32_t earlier = w->row_to[end];
-        const bool repeats = earlier != TM_NONE && lesser(w->mesh->edge[earlier][0],
-                                                          w->mesh->edge[earlier][1]) == v;
+        const bool repeats =
+            earlier != TM_NONE && lesser(edge[earlier][0], edge[earlier][1]) == v;
         if (repeats && end != v) {
             add_defect(w, TM_REPEATED_EDGE, row, earlier, 0);
             continue;
@@ -188,62 +204,52 @@ static void take_rows(walk *w, uint32_t v)
     }
 }
 
-/* The edges that begin at v, whose faces were taken: it is used if it has an edge to a
- * smaller one, met before, or to a larger one. */
-static void take_edges(walk *w, uint32_t v, size_t edges_before)
+/* The edges that begin at v, whose faces were taken. */
+static void take_edges(walker *w, uint32_t v, size_t edges_before)
 {
-    for (size_t i = w->far.start[v]; i < w->far.start[v + 1]; i++)
-        meet_edge(w, v, w->far.item[i]);
-    if (w->listed.start)
+    const list *far = &w->w->far;
+    for (size_t i = far->start[v]; i < far->start[v + 1]; i++)
+        meet_edge(w, v, far->item[i]);
+    if (w->w->listed.start)
         take_rows(w, v);
-    w->used_nodes += w->stamp[v] != TM_NONE || w->edges > edges_before;
+    if (w->edges > edges_before)
+        set_used(w, v);
 }
 
 /* Faces ---------------------------------------------------------------------------- */
 
-static void join(walk *w, uint32_t e, uint32_t g)
-{
-    e = tm_set_root(w->parent, e);
-    g = tm_set_root(w->parent, g);
-    w->joints += e != g;
-    if (e < g)
-        w->parent[g] = e;
-    else
-        w->parent[e] = g;
-}
-
-static uint32_t element_of(const walk *w, uint32_t half)
+static uint32_t element_of(const walker *w, uint32_t half)
 {
     return half >> w->table.shift;
 }
 
-static void check_sides(walk *w, const members *at)
+static void check_sides(walker *w, const members *at)
 {
     const uint32_t e = element_of(w, at->element[0].id);
     const uint32_t g = element_of(w, at->element[1].id);
-    const int product = w->sign[e] * w->sign[g];
+    const int product = w->w->sign[e] * w->w->sign[g];
     const bool alike = at->element[0].turned == at->element[1].turned;
     if (product != 0 && alike == (product > 0))
         add_defect(w, TM_OVERLAPPING_FACE, lesser(e, g), e < g ? g : e, 0);
 }
 
-static bool add_boundary_face(walk *w, uint32_t half)
+static bool add_boundary_face(walker *w, uint32_t half)
 {
-    tm_boundary_faces *b = w->boundary;
+    tm_boundary_faces *b = &w->boundary;
     void *moved = tm_grow(b->node, &b->room, b->count + 1, sizeof *b->node);
     if (!moved)
         return false;
     b->node = moved;
-    if (tm_half_face_nodes(w->mesh, half, b->node[b->count]) == 3)
+    if (tm_half_face_nodes(w->w->mesh, half, b->node[b->count]) == 3)
         b->node[b->count][3] = TM_NONE;
     b->count++;
     return true;
 }
 
 /* Whether row f of .facet says which elements are at its face, and turns as it should. */
-static bool is_right(const walk *w, const members *at, uint32_t f, bool turned)
+static bool is_right(const walker *w, const members *at, uint32_t f, bool turned)
 {
-    const uint32_t *side = w->mesh->side[f];
+    const uint32_t *side = w->w->mesh->side[f];
     if (at->elements != (side[1] == TM_NONE ? 1 : 2))
         return false;
     const bool second = element_of(w, at->element[0].id) != side[0];
@@ -251,14 +257,14 @@ static bool is_right(const walk *w, const members *at, uint32_t f, bool turned)
         return false;
     if (at->elements == 2 && element_of(w, at->element[!second].id) != side[1])
         return false;
-    const int8_t sign = w->sign[side[0]];
+    const int8_t sign = w->w->sign[side[0]];
     return sign == 0 || (turned == at->element[second].turned) == (sign > 0);
 }
 
 /* A row of .face or .facet, of which this face is; the elements at it were taken. */
-static void take_row(walk *w, members *at, const tm_face_member *member)
+static void take_row(walker *w, members *at, const tm_face_member *member)
 {
-    const uint32_t faces = (uint32_t)w->mesh->faces;
+    const uint32_t faces = (uint32_t)w->w->mesh->faces;
     uint32_t row = member->id - w->table.first_row;
     const bool is_facet = row >= faces;
     uint32_t *first = is_facet ? &at->facet_row : &at->face_row;
@@ -272,7 +278,7 @@ static void take_row(walk *w, members *at, const tm_face_member *member)
         add_defect(w, TM_DANGLING_FACE, row, 0, is_facet);
 }
 
-static members take_members(walk *w, const tm_face *face)
+static members take_members(walker *w, const tm_face *face)
 {
     members at = {.face_row = TM_NONE, .facet_row = TM_NONE};
     for (uint32_t m = face->first; m != TM_FACE_END; m = w->table.member[m].next) {
@@ -284,23 +290,24 @@ static members take_members(walk *w, const tm_face *face)
         if (at.elements < 2)
             at.element[at.elements] = *member;
         if (at.elements > 0)
-            join(w, element_of(w, at.element[0].id), element_of(w, member->id));
+            tm_set_unite_shared(w->w->parent, element_of(w, at.element[0].id),
+                                element_of(w, member->id));
         at.elements++;
     }
     return at;
 }
 
-static void add_unmatched(walk *w, uint32_t v, const tm_face *face, uint32_t how)
+static void add_unmatched(walker *w, uint32_t v, const tm_face *face, uint32_t how)
 {
     uint32_t n[3];
     tm_face_others(face, n);
-    tm_defect_add(&w->found->defect[TM_UNMATCHED_FACE],
+    tm_defect_add(&w->defect[TM_UNMATCHED_FACE],
                   (uint32_t[TM_DEFECT_NUMBERS]){v, n[0], n[1], how});
 }
 
 /* Returns the number of elements at a face; v is its smallest node. *enough is false
  * where memory is out. */
-static size_t take_face(walk *w, uint32_t v, const tm_face *face, bool *enough)
+static size_t take_face(walker *w, uint32_t v, const tm_face *face, bool *enough)
 {
     const uint32_t p = (uint32_t)(face->beside >> 32), q = (uint32_t)face->beside;
     if (v == p || p == q) /* a row that is no triangle */
@@ -340,7 +347,7 @@ static bool is_plain(const tm_face_table *table)
 }
 
 /* Faces of the same nodes follow each other, whatever their cyclic order. */
-static bool take_faces(walk *w, uint32_t v)
+static bool take_faces(walker *w, uint32_t v)
 {
     const tm_face *before = NULL;
     bool enough = true;
@@ -359,77 +366,137 @@ static bool take_faces(walk *w, uint32_t v)
 
 /* The walk ------------------------------------------------------------------------- */
 
-static tm_status walk_nodes(walk *w, tm_error *error)
+static bool begin_walker(walker *w, const walk *all)
 {
-    tm_status status = TM_OK;
-    for (uint32_t v = 0; v < w->mesh->nodes && status == TM_OK; v++) {
+    const size_t nodes = all->mesh->nodes;
+    w->w = all;
+    tm_face_table_share(&w->table, &all->table);
+    w->stamp = tm_new(nodes, sizeof *w->stamp);
+    if (!w->stamp)
+        return false;
+    memset(w->stamp, UINT8_MAX, nodes * sizeof *w->stamp);
+    if (!all->listed.start)
+        return true;
+    w->row_to = tm_new(nodes, sizeof *w->row_to);
+    if (!w->row_to)
+        return false;
+    memset(w->row_to, UINT8_MAX, nodes * sizeof *w->row_to);
+    return true;
+}
+
+static void walk_nodes(void *context, size_t i)
+{
+    const walk *all = context;
+    walker *w = &all->walker[i];
+    if (!begin_walker(w, all))
+        w->status = tm_fail_memory(&w->error);
+    for (uint32_t v = all->cut[i]; v < all->cut[i + 1] && w->status == TM_OK; v++) {
         const size_t edges_before = w->edges;
-        status = tm_face_table_at(&w->table, v, error);
-        if (status == TM_OK && !take_faces(w, v))
-            status = tm_fail_memory(error);
-        if (status == TM_OK)
+        w->status = tm_face_table_at(&w->table, v, &w->error);
+        if (w->status == TM_OK && !take_faces(w, v))
+            w->status = tm_fail_memory(&w->error);
+        if (w->status == TM_OK)
             take_edges(w, v, edges_before);
     }
-    return status;
+    tm_face_table_free(&w->table);
+    free(w->stamp);
+    free(w->row_to);
 }
 
 /* Rows that cannot be a face of any element. */
-static void take_no_faces(walk *w)
+static void take_no_faces(const walk *w, tm_examination *found)
 {
     const uint32_t faces = (uint32_t)w->mesh->faces;
     const uint32_t rows = faces + (uint32_t)w->mesh->facets;
     for (uint32_t row = 0; row < rows; row++)
         if (!tm_row_is_face(w->mesh, row))
-            add_defect(w, TM_DANGLING_FACE, row < faces ? row : row - faces, 0,
-                       row >= faces);
+            tm_defect_add(&found->defect[TM_DANGLING_FACE],
+                          (uint32_t[TM_DEFECT_NUMBERS]){row < faces ? row : row - faces,
+                                                        0, row >= faces});
 }
 
-static bool allocate(walk *w)
+static bool allocate(walk *w, unsigned threads)
 {
     const tm_mesh_view *mesh = w->mesh;
     w->parent = tm_new(mesh->elements, sizeof *w->parent);
-    w->stamp = tm_new(mesh->nodes, sizeof *w->stamp);
-    if (!w->parent || !w->stamp)
+    w->used = calloc(mesh->nodes + 1, sizeof *w->used);
+    w->cut = tm_new((size_t)threads + 1, sizeof *w->cut);
+    w->walker = calloc(threads, sizeof *w->walker);
+    if (!w->parent || !w->used || !w->cut || !w->walker)
         return false;
-    memset(w->stamp, UINT8_MAX, mesh->nodes * sizeof *w->stamp);
-    for (uint32_t e = 0; e < mesh->elements; e++) {
+    for (uint32_t e = 0; e < mesh->elements; e++)
         w->parent[e] = e;
-        w->elements += is_whole(w, e);
-    }
     return true;
 }
 
-static void report(const walk *w)
+static bool append_boundary(tm_boundary_faces *to, const tm_boundary_faces *more)
 {
-    tm_examination *found = w->found;
-    found->boundary_faces = w->boundary->count;
-    found->components = w->elements - w->joints;
-    found->unused_nodes = w->mesh->nodes - w->used_nodes;
-    found->euler = (int64_t)w->used_nodes - (int64_t)w->edges + (int64_t)w->faces -
-                   (int64_t)w->elements;
+    const size_t all = to->count + more->count;
+    void *moved = tm_grow(to->node, &to->room, all, sizeof *to->node);
+    if (!moved)
+        return false;
+    to->node = moved;
+    if (more->count > 0)
+        memcpy(to->node + to->count, more->node, more->count * sizeof *to->node);
+    to->count = all;
+    return true;
+}
+
+/* What the walkers found, in the order of the nodes. */
+static tm_status collect(const walk *w, unsigned threads, tm_examination *found,
+                         tm_boundary_faces *boundary, tm_error *error)
+{
+    for (unsigned t = 0; t < threads; t++) {
+        const walker *one = &w->walker[t];
+        if (one->status != TM_OK)
+            return tm_fail_as(error, &one->error);
+        for (size_t d = 0; d < TM_DEFECTS; d++)
+            tm_defect_add_list(&found->defect[d], &one->defect[d]);
+        if (!append_boundary(boundary, &one->boundary))
+            return tm_fail_memory(error);
+        found->euler += (int64_t)one->faces - (int64_t)one->edges;
+    }
+    found->boundary_faces = boundary->count;
+    for (size_t v = 0; v < w->mesh->nodes; v++)
+        found->unused_nodes += !w->used[v];
+    found->euler += (int64_t)(w->mesh->nodes - found->unused_nodes);
+    for (uint32_t e = 0; e < w->mesh->elements; e++) {
+        found->components += is_whole(w, e) && w->parent[e] == e;
+        found->euler -= is_whole(w, e);
+    }
+    return TM_OK;
+}
+
+static void free_walk(walk *w, unsigned threads)
+{
+    for (unsigned t = 0; w->walker && t < threads; t++)
+        free(w->walker[t].boundary.node);
+    free(w->walker);
+    tm_face_table_free(&w->table);
+    free(w->far.start);
+    free(w->far.item);
+    free(w->listed.start);
+    free(w->listed.item);
+    free(w->parent);
+    free(w->used);
+    free(w->cut);
 }
 
 tm_status tm_element_examine_faces(tm_examination *found, const tm_mesh_view *mesh,
                                    const int8_t *sign, tm_boundary_faces *boundary,
-                                   tm_error *error)
+                                   unsigned threads, tm_error *error)
 {
-    walk w = {.mesh = mesh, .sign = sign, .found = found, .boundary = boundary};
-    tm_status status = tm_face_table_make(&w.table, mesh, error);
-    if (status == TM_OK && (!list_far_edges(&w) || !list_rows(&w) || !allocate(&w)))
+    walk w = {.mesh = mesh, .sign = sign};
+    tm_status status = tm_face_table_make(&w.table, mesh, threads, error);
+    if (status == TM_OK &&
+        (!list_far_edges(&w) || !list_rows(&w) || !allocate(&w, threads)))
         status = tm_fail_memory(error);
     if (status == TM_OK) {
-        take_no_faces(&w);
-        status = walk_nodes(&w, error);
+        take_no_faces(&w, found);
+        tm_face_table_cut(&w.table, threads, w.cut);
+        tm_parallel(threads, threads, walk_nodes, &w);
+        status = collect(&w, threads, found, boundary, error);
     }
-    if (status == TM_OK)
-        report(&w);
-    tm_face_table_free(&w.table);
-    free(w.far.start);
-    free(w.far.item);
-    free(w.listed.start);
-    free(w.listed.item);
-    free(w.row_to);
-    free(w.parent);
-    free(w.stamp);
+    free_walk(&w, threads);
     return status;
 }

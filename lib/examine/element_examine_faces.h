@@ -18,10 +18,10 @@ typedef struct tm_boundary_faces {
 /* Finds in *found: unmatched faces of equal kind, overlapping, dangling and repeated
  * ones, dangling and repeated edges, components, unused nodes, Euler number. Appends the
  * boundary faces to *boundary, in an order that depends on the mesh only. sign[elements]:
- * see above. */
+ * see above. Each of threads >= 1 walks over a part of the nodes. */
 tm_status tm_element_examine_faces(tm_examination *found, const tm_mesh_view *mesh,
                                    const int8_t *sign, tm_boundary_faces *boundary,
-                                   tm_error *error);
+                                   unsigned threads, tm_error *error);
 
 /* Finds in *found: triangles that are half of a quadrilateral, both on the boundary.
  * Expected O(faces). */

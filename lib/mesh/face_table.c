@@ -6,6 +6,7 @@
 #include "face_table.h"
 
 #include "../base/array.h"
+#include "../base/parallel.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -93,37 +94,58 @@ static inline size_t list_element(const tm_mesh_view *mesh, size_t e, const uint
     return tm_element_shapes[k].faces;
 }
 
-/* next[v + 1] counts what will be listed at v. Whether an element names a node twice. */
-static bool count_elements(const tm_mesh_view *mesh, size_t *next)
+/* A thread's part of the lists: those of some nodes. */
+typedef struct part {
+    uint32_t first, past; /* nodes */
+    bool twice;           /* an element names a node twice */
+} part;
+
+static inline bool has(const part *p, uint32_t node)
 {
+    return node - p->first < p->past - p->first;
+}
+
+typedef struct listing {
+    const tm_mesh_view *mesh;
+    size_t *next;
+    uint32_t *item;
+    part *part;
+} listing;
+
+/* next[v + 1] counts what will be listed at v. */
+static void count_elements(void *context, size_t i)
+{
+    const listing *l = context;
+    part *p = &l->part[i];
     uint32_t node[TM_ELEMENT_FACES], first;
-    bool twice = false;
-    for (size_t e = 0; e < mesh->elements; e++) {
+    for (size_t e = 0; e < l->mesh->elements; e++) {
         size_t k;
-        const uint32_t *n = tm_mesh_view_nodes(mesh, e, &k);
+        const uint32_t *n = tm_mesh_view_nodes(l->mesh, e, &k);
         if (may_have_node_twice(n, k)) {
-            twice = true;
+            p->twice = true;
             continue;
         }
-        for (size_t i = list_element(mesh, e, n, k, node, &first); i-- > 0;)
-            next[node[i] + 1]++;
+        for (size_t f = list_element(l->mesh, e, n, k, node, &first); f-- > 0;)
+            if (has(p, node[f]))
+                l->next[node[f] + 1]++;
     }
-    return twice;
 }
 
 /* next[v] is where the next one of v goes. */
-static void list_elements(const tm_mesh_view *mesh, size_t *next, bool twice,
-                          uint32_t *item)
+static void list_elements(void *context, size_t i)
 {
+    const listing *l = context;
+    const part *p = &l->part[i];
     uint32_t node[TM_ELEMENT_FACES], first;
-    const uint32_t step = mesh->start ? 1 : 0;
-    for (size_t e = 0; e < mesh->elements; e++) {
+    const uint32_t step = l->mesh->start ? 1 : 0;
+    for (size_t e = 0; e < l->mesh->elements; e++) {
         size_t k;
-        const uint32_t *n = tm_mesh_view_nodes(mesh, e, &k);
-        if (twice && tm_has_node_twice(n, k))
+        const uint32_t *n = tm_mesh_view_nodes(l->mesh, e, &k);
+        if (p->twice && tm_has_node_twice(n, k))
             continue;
-        for (size_t i = list_element(mesh, e, n, k, node, &first); i-- > 0;)
-            item[next[node[i]]++] = first + (uint32_t)i * step;
+        for (size_t f = list_element(l->mesh, e, n, k, node, &first); f-- > 0;)
+            if (has(p, node[f]))
+                l->item[l->next[node[f]]++] = first + (uint32_t)f * step;
     }
 }
 
@@ -138,33 +160,45 @@ static uint32_t corner_of_row(const tm_mesh_view *mesh, size_t row)
                                      : TM_NONE;
 }
 
-static bool make_lists(tm_face_table *table)
+/* start[v + 2] counts, then start[v + 1] is where the next item of v goes. */
+static bool make_lists(tm_face_table *table, part *parts, unsigned threads)
 {
     const tm_mesh_view *mesh = table->mesh;
     const size_t rows = mesh->faces + mesh->facets;
     table->start = calloc(mesh->nodes + 2, sizeof *table->start);
     if (!table->start)
         return false;
-    /* start[v + 2] counts, then start[v + 1] is where the next item of v goes. */
-    size_t *next = table->start + 1;
-    const bool twice = count_elements(mesh, next);
+    listing l = {.mesh = mesh, .next = table->start + 1, .part = parts};
+    size_t *next = l.next;
+    tm_parallel(threads, threads, count_elements, &l);
     for (size_t row = 0; row < rows; row++)
         if (corner_of_row(mesh, row) != TM_NONE)
             next[corner_of_row(mesh, row) + 1]++;
     for (size_t v = 0; v < mesh->nodes; v++)
         next[v + 1] += next[v];
-    table->item = tm_new(next[mesh->nodes], sizeof *table->item);
+    table->item = l.item = tm_new(next[mesh->nodes], sizeof *table->item);
     if (!table->item)
         return false;
-    list_elements(mesh, next, twice, table->item);
+    tm_parallel(threads, threads, list_elements, &l);
     for (size_t row = 0; row < rows; row++)
         if (corner_of_row(mesh, row) != TM_NONE)
             table->item[next[corner_of_row(mesh, row)]++] = (uint32_t)row | ROW;
     return true;
 }
 
+/* The nodes cut into parts of as many nodes each. */
+static part *cut_nodes(size_t nodes, unsigned threads)
+{
+    part *parts = calloc(threads, sizeof *parts);
+    for (unsigned t = 0; parts && t < threads; t++) {
+        parts[t].first = (uint32_t)(nodes * t / threads);
+        parts[t].past = (uint32_t)(nodes * (t + 1) / threads);
+    }
+    return parts;
+}
+
 tm_status tm_face_table_make(tm_face_table *table, const tm_mesh_view *mesh,
-                             tm_error *error)
+                             unsigned threads, tm_error *error)
 {
     const unsigned shift = mesh->start ? MIXED_SHIFT : TET_SHIFT;
     *table = (tm_face_table){
@@ -174,13 +208,46 @@ tm_status tm_face_table_make(tm_face_table *table, const tm_mesh_view *mesh,
         return tm_fail(error, TM_ERROR_SYSTEM,
                        "%zu elements have more faces than 31 bits can number",
                        mesh->elements);
-    return make_lists(table) ? TM_OK : tm_fail_memory(error);
+    part *parts = cut_nodes(mesh->nodes, threads);
+    const bool done = parts && make_lists(table, parts, threads);
+    free(parts);
+    return done ? TM_OK : tm_fail_memory(error);
+}
+
+void tm_face_table_share(tm_face_table *table, const tm_face_table *other)
+{
+    *table = (tm_face_table){.mesh = other->mesh,
+                             .shift = other->shift,
+                             .first_row = other->first_row,
+                             .start = other->start,
+                             .item = other->item,
+                             .shared = true};
+}
+
+void tm_face_table_cut(const tm_face_table *table, size_t runs, uint32_t *cut)
+{
+    const size_t nodes = table->mesh->nodes, items = table->start[nodes];
+    for (size_t run = 0; run <= runs; run++) {
+        /* the first node behind so many items */
+        size_t low = 0, high = run < runs ? nodes : 0;
+        const size_t before = (size_t)((double)items * (double)run / (double)runs);
+        while (low < high) {
+            const size_t middle = low + (high - low) / 2;
+            if (table->start[middle] < before)
+                low = middle + 1;
+            else
+                high = middle;
+        }
+        cut[run] = (uint32_t)(run < runs ? low : nodes);
+    }
 }
 
 void tm_face_table_free(tm_face_table *table)
 {
-    free(table->start);
-    free(table->item);
+    if (!table->shared) {
+        free(table->start);
+        free(table->item);
+    }
     free(table->face);
     free(table->member);
     free(table->hash.slot);
@@ -319,7 +386,7 @@ tm_status tm_face_mates(uint32_t **mate, const tm_mesh_view *mesh, tm_error *err
 {
     tm_face_table table;
     *mate = NULL;
-    tm_status status = tm_face_table_make(&table, mesh, error);
+    tm_status status = tm_face_table_make(&table, mesh, 1, error);
     const size_t members = table.first_row + mesh->faces + mesh->facets;
     if (status == TM_OK) {
         *mate = tm_new(members, sizeof **mate);

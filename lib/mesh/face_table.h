@@ -45,6 +45,7 @@ typedef struct tm_face_table {
     uint32_t first_row; /* elements << shift */
     size_t *start;      /* [nodes + 1]: what has faces at v is */
     uint32_t *item;     /* item[start[v] … start[v + 1]) */
+    bool shared;        /* these are another table's */
     /* The faces at the node that tm_face_table_at() was last called for. */
     size_t faces;
     tm_face *face;
@@ -57,10 +58,19 @@ typedef struct tm_face_table {
 /* Prepares *table for all elements, and all rows of three nodes or of four different
  * ones: those that name a node twice share no face with an element. TM_ERROR_SYSTEM where
  * memory is out or there are 2^31 members. The view has to stay as long as the table;
- * tm_face_table_free() also after an error. O(nodes + members). */
+ * tm_face_table_free() also after an error. threads >= 1 look at all elements each, and
+ * list what is at a part of the nodes. O(nodes + members). */
 tm_status tm_face_table_make(tm_face_table *table, const tm_mesh_view *mesh,
-                             tm_error *error);
+                             unsigned threads, tm_error *error);
 void tm_face_table_free(tm_face_table *table);
+
+/* A table with the lists of another one, which has to stay as long, and faces of its own:
+ * for another thread. */
+void tm_face_table_share(tm_face_table *table, const tm_face_table *other);
+
+/* Cuts the nodes into runs with about as many members each: run i is of the nodes from
+ * cut[i] up to cut[i + 1]. O(runs log nodes). */
+void tm_face_table_cut(const tm_face_table *table, size_t runs, uint32_t *cut);
 
 /* Finds the faces at node v, in no particular order. Expected O(k) for k members;
  * TM_ERROR_SYSTEM where memory is out. */

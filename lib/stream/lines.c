@@ -11,6 +11,9 @@
 /* Fits the second-level cache, so that what was read is parsed there. */
 enum { WINDOW = 1 << 17 };
 
+/* Behind the buffer: the line feed that the last line may lack, and what is looked at. */
+enum { SPARE = 1 + TM_LINES_SLACK };
+
 /* The bytes that are left in a regular file; 0: not known. */
 static size_t size_left(int fd)
 {
@@ -32,10 +35,9 @@ tm_status tm_lines_open(tm_lines *lines, int fd, const char *name,
     tm_input_open(&lines->input, fd, name);
     lines->progress_at.of = progress ? size_left(fd) : 0;
     tm_progress_tell(progress, &lines->progress_at);
-    lines->buffer = malloc(WINDOW + TM_LINES_SLACK);
+    lines->buffer = malloc(WINDOW + SPARE);
     if (!lines->buffer)
         return tm_fail_memory(error);
-    memset(lines->buffer, 0, WINDOW + TM_LINES_SLACK);
     lines->at = lines->end = lines->filled = lines->buffer;
     return TM_OK;
 }
@@ -47,6 +49,34 @@ void tm_lines_close(tm_lines *lines)
     lines->buffer = NULL;
 }
 
+/* A buffer of that size, with what the window holds in front. */
+static bool move(tm_lines *lines, size_t capacity)
+{
+    const size_t rest = (size_t)(lines->filled - lines->at);
+    const size_t whole = (size_t)(lines->end - lines->at);
+    memmove(lines->buffer, lines->at, rest);
+    char *moved = lines->buffer;
+    if (capacity > lines->capacity)
+        moved = realloc(lines->buffer, capacity + SPARE);
+    if (moved) {
+        lines->buffer = moved;
+        lines->capacity = capacity;
+    }
+    lines->at = lines->buffer;
+    lines->end = lines->at + whole;
+    lines->filled = lines->buffer + rest;
+    return moved;
+}
+
+bool tm_lines_room(tm_lines *lines, size_t bytes)
+{
+    const size_t rest = (size_t)(lines->filled - lines->at);
+    const size_t free = lines->capacity - (size_t)(lines->filled - lines->buffer);
+    const size_t needed = rest + bytes;
+    return free >= bytes ||
+           move(lines, needed > lines->capacity ? 2 * needed : lines->capacity);
+}
+
 /* Doubles the buffer for a line that does not fit; the line begins it. */
 static tm_status widen(tm_lines *lines, tm_error *error)
 {
@@ -54,60 +84,63 @@ static tm_status widen(tm_lines *lines, tm_error *error)
     if (lines->too_long)
         return tm_fail_at(error, TM_ERROR_INPUT, lines->name, lines->line, NULL,
                           "the line is longer than %zu bytes", TM_LINE_MAX);
-    size_t used = (size_t)(lines->filled - lines->buffer);
-    size_t capacity = lines->capacity * 2;
-    char *moved = realloc(lines->buffer, capacity + TM_LINES_SLACK);
-    if (!moved)
-        return tm_fail_memory(error);
-    memset(moved + lines->capacity, 0, capacity + TM_LINES_SLACK - lines->capacity);
-    lines->buffer = moved;
-    lines->at = lines->end = moved;
-    lines->capacity = capacity;
-    lines->filled = moved + used;
+    return move(lines, lines->capacity * 2) ? TM_OK : tm_fail_memory(error);
+}
+
+/* Reads once into the free end of the buffer, at most so many bytes; sets `end` behind
+ * the last line feed. */
+static tm_status read_more(tm_lines *lines, size_t most, tm_error *error)
+{
+    size_t got;
+    tm_status status = tm_input_read(&lines->input, lines->filled, most, &got, error);
+    if (status != TM_OK)
+        return status;
+    const char *last = got ? memrchr(lines->filled, '\n', got) : NULL;
+    lines->filled += got;
+    if (got == 0)
+        lines->at_end = true;
+    if (got == 0 && lines->filled > lines->end) {
+        *lines->filled++ = '\n';
+        lines->ended_without_line_feed = true;
+        last = lines->filled - 1;
+    }
+    if (last)
+        lines->end = last + 1;
+    memset(lines->filled, 0, (size_t)TM_LINES_SLACK);
     return TM_OK;
 }
 
-/* Reads once into the free end of the buffer; sets `end` behind the last line feed. */
-static tm_status read_more(tm_lines *lines, tm_error *error)
+void tm_lines_tell(tm_lines *lines)
 {
-    size_t got, room = lines->capacity - (size_t)(lines->filled - lines->buffer);
-    tm_status status = tm_input_read(&lines->input, lines->filled, room, &got, error);
-    if (status != TM_OK)
-        return status;
-    if (got == 0) {
-        lines->at_end = true;
-        if (lines->filled > lines->at) {
-            *lines->filled++ = '\n';
-            lines->ended_without_line_feed = true;
-        }
-        lines->end = lines->filled;
-        return TM_OK;
-    }
     lines->progress_at.done = lines->input.taken;
     tm_progress_tell(lines->progress, &lines->progress_at);
-    char *last = memrchr(lines->filled, '\n', got);
-    lines->filled += got;
-    if (last)
-        lines->end = last + 1;
-    return TM_OK;
 }
 
 tm_status tm_lines_fill(tm_lines *lines, tm_error *error)
 {
     if (lines->at < lines->end || lines->at_end)
         return TM_OK;
-    size_t rest = (size_t)(lines->filled - lines->at);
-    memmove(lines->buffer, lines->at, rest);
-    lines->at = lines->end = lines->buffer;
-    lines->filled = lines->buffer + rest;
+    if (lines->ahead != TM_OK)
+        return tm_fail_as(error, &lines->ahead_error);
+    move(lines, lines->capacity);
     tm_status status = TM_OK;
     while (status == TM_OK && lines->at == lines->end && !lines->at_end) {
-        if ((size_t)(lines->filled - lines->buffer) == lines->capacity)
+        size_t room = lines->capacity - (size_t)(lines->filled - lines->buffer);
+        if (room == 0)
             status = widen(lines, error);
-        if (status == TM_OK)
-            status = read_more(lines, error);
+        else
+            status = read_more(lines, room, error);
+        tm_lines_tell(lines);
     }
     return status;
+}
+
+void tm_lines_read_ahead(tm_lines *lines, size_t bytes)
+{
+    const char *full = lines->filled + bytes;
+    while (lines->ahead == TM_OK && !lines->at_end && lines->filled + 1 < full)
+        lines->ahead =
+            read_more(lines, (size_t)(full - lines->filled), &lines->ahead_error);
 }
 
 const char *tm_lines_quote(const char *at, char text[TM_QUOTE_CHARS])

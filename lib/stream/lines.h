@@ -25,8 +25,10 @@ typedef struct tm_lines {
     char *filled;    /* past the last byte that was read */
     bool at_end;     /* the file has no more */
     bool ended_without_line_feed;
-    bool too_long; /* a line was */
-    size_t line;   /* number of the line at `at`, from 1 */
+    bool too_long;   /* a line was */
+    size_t line;     /* number of the line at `at`, from 1 */
+    tm_status ahead; /* how tm_lines_read_ahead() ended, and why: */
+    tm_error ahead_error;
     const tm_progress *progress;
     tm_progress_at progress_at; /* bytes read, of those of a regular file */
 } tm_lines;
@@ -38,6 +40,18 @@ void tm_lines_close(tm_lines *lines);
 /* Makes at < end, reading more if there is none; at == end then means the end of the
  * file. A line of over TM_LINE_MAX bytes is an error. */
 tm_status tm_lines_fill(tm_lines *lines, tm_error *error);
+
+/* Makes room for `bytes` more, which may move what the window holds. False where memory
+ * is out. */
+bool tm_lines_room(tm_lines *lines, size_t bytes);
+
+/* Reads up to so many bytes more, of which there is room, behind those that there are and
+ * leaves these alone: others may look at them, up to TM_LINES_SLACK bytes before
+ * `filled`. What is wrong is said by tm_lines_fill() when all before it is used up. */
+void tm_lines_read_ahead(tm_lines *lines, size_t bytes);
+
+/* Tells how far the reading is. */
+void tm_lines_tell(tm_lines *lines);
 
 static inline bool tm_is_blank(char c)
 {

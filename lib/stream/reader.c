@@ -8,11 +8,16 @@
 #include "lines.h"
 #include "names.h"
 #include "row.h"
+#include "row_chunks.h"
 #include "sniff.h"
 
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Bytes of a window that all threads read at a time, at most; and below which starting
+ * them costs more than they save. */
+enum { STEP_MAX = 1 << 24, WORTH_THREADS = 1 << 16 };
 
 static const char magic[] = "termesh 1\n";
 
@@ -21,6 +26,9 @@ typedef struct {
     tm_stream *stream;
     tm_block_names names;
     bool base_known;
+    bool one_by_one; /* rows, to the end of the window */
+    unsigned threads;
+    size_t step; /* bytes that all of them read at a time */
     tm_error *error;
 } reader;
 
@@ -204,21 +212,6 @@ static tm_status missing_row(reader *r, const tm_block *block, size_t row, size_
                 tm_lines_quote(r->lines.at, text));
 }
 
-/* Room for one more row; it doubles, up to what the header claims. */
-static bool reserve_row(tm_block *block, size_t row, size_t rows, size_t *room)
-{
-    enum { FIRST = 1024 };
-    if (row < *room)
-        return true;
-    size_t wanted = 2 * *room + FIRST;
-    if (wanted > rows)
-        wanted = rows;
-    if (!tm_block_resize(block, wanted))
-        return false;
-    *room = wanted;
-    return true;
-}
-
 /* The number of the first row of the first .node is the stream's index base. */
 static tm_status read_base(reader *r, const tm_block *block)
 {
@@ -250,38 +243,95 @@ static inline tm_status find_row(reader *r, const tm_block *block, size_t rows)
     return status;
 }
 
+static void read_ahead(void *context)
+{
+    reader *r = context;
+    tm_lines_read_ahead(&r->lines, r->step);
+}
+
+/* Reads rows by several threads while more of the file comes in: what is in the window,
+ * or up to a line that is no row. Then lines are read one by one to the window's end. */
+static tm_status read_chunks(reader *r, tm_row_context *context)
+{
+    tm_lines *lines = &r->lines;
+    tm_block *block = context->block;
+    const size_t before = block->count;
+    if (!tm_lines_room(lines, 2 * r->step))
+        return tm_fail_memory(r->error);
+    if ((size_t)(lines->end - lines->at) < r->step)
+        tm_lines_read_ahead(lines, r->step);
+    const char *end = lines->end, *next = lines->at;
+    /* what is looked at behind the last row is not what is being read */
+    if (!lines->at_end) {
+        const ptrdiff_t still = lines->filled - lines->at - TM_LINES_SLACK;
+        end = still > 0 ? memrchr(lines->at, '\n', (size_t)still) : NULL;
+        end = end ? end + 1 : lines->at;
+    }
+    r->one_by_one = true;
+    if (end == lines->at)
+        return TM_OK;
+    if (!tm_row_chunks_read(context, lines->at, end, r->threads, read_ahead, r, &next))
+        return tm_fail_memory(r->error);
+    tm_lines_tell(lines);
+    r->one_by_one = next < end;
+    lines->at = next;
+    lines->line += block->count - before;
+    return TM_OK;
+}
+
+/* One row, or as many as are in the form in which they are written. */
+static tm_status read_some_rows(reader *r, tm_row_context *context)
+{
+    tm_block *block = context->block;
+    const size_t before = block->count;
+    if (!tm_row_reserve(context, 1))
+        return tm_fail_memory(r->error);
+    r->lines.at = tm_row_read_plain(context, r->lines.at, r->lines.end, context->room);
+    r->lines.line += block->count - before;
+    if (block->count > before)
+        return TM_OK;
+    const char *after = tm_row_read(context, r->lines.at, r->lines.end);
+    if (!after)
+        return context->problem.status == TM_ERROR_SYSTEM
+                   ? tm_fail_memory(r->error)
+                   : FAIL(r, block->name, "%s", context->problem.what);
+    r->lines.at = after;
+    r->lines.line++;
+    block->count++;
+    return TM_OK;
+}
+
+/* Whether what is in the window is worth more than one thread. Names of groups are read
+ * by one: they are put into one text. */
+static bool worth_threads(const reader *r, const tm_block *block)
+{
+    return r->threads > 1 && block->kind != TM_GROUP && !r->one_by_one &&
+           r->lines.end - r->lines.at >= WORTH_THREADS;
+}
+
 static tm_status read_rows(reader *r, tm_block *block, size_t rows, size_t limit)
 {
-    size_t room = 0;
-    tm_row_context context = {
-        .block = block, .shape = tm_block_shape_of(block->kind), .limit = limit};
+    tm_row_context context = {.block = block,
+                              .shape = tm_block_shape_of(block->kind),
+                              .rows = rows,
+                              .limit = limit};
     tm_status status = TM_OK;
     if (!tm_block_resize(block, 0))
         return tm_fail_memory(r->error);
     if (block->start)
         block->start[0] = 0;
+    r->one_by_one = false;
     while (status == TM_OK && block->count < rows) {
+        if (r->lines.at == r->lines.end)
+            r->one_by_one = false;
         status = find_row(r, block, rows);
         if (status == TM_OK && !r->base_known)
             status = read_base(r, block);
-        if (status == TM_OK && !reserve_row(block, block->count, rows, &room))
-            status = tm_fail_memory(r->error);
         if (status != TM_OK)
             return status;
         context.base = r->stream->base;
-        size_t before = block->count;
-        r->lines.at = tm_row_read_plain(&context, r->lines.at, r->lines.end, room);
-        r->lines.line += block->count - before;
-        if (block->count > before)
-            continue;
-        const char *after = tm_row_read(&context, r->lines.at, r->lines.end);
-        if (!after)
-            return context.problem.status == TM_ERROR_SYSTEM
-                       ? tm_fail_memory(r->error)
-                       : FAIL(r, block->name, "%s", context.problem.what);
-        r->lines.at = after;
-        r->lines.line++;
-        block->count++;
+        status = worth_threads(r, block) ? read_chunks(r, &context)
+                                         : read_some_rows(r, &context);
     }
     return status;
 }
@@ -372,11 +422,16 @@ static tm_status read_blocks(reader *r)
     }
 }
 
-tm_status tm_stream_read(tm_stream *stream, int fd, const char *name, tm_error *error)
+tm_status tm_stream_read(tm_stream *stream, int fd, const char *name, unsigned threads,
+                         tm_error *error)
 {
     tm_error unused;
-    reader r = {
-        .stream = stream, .names = {.stream = stream}, .error = error ? error : &unused};
+    const size_t step = (size_t)threads * TM_CHUNK_BYTES;
+    reader r = {.stream = stream,
+                .names = {.stream = stream},
+                .threads = threads,
+                .step = step < STEP_MAX ? step : STEP_MAX,
+                .error = error ? error : &unused};
     tm_status status = tm_lines_open(&r.lines, fd, name, stream->progress, r.error);
     if (status == TM_OK)
         status = read_magic(&r);

@@ -13,6 +13,22 @@
 #include <math.h>
 #include <string.h>
 
+bool tm_row_reserve(tm_row_context *c, size_t more)
+{
+    enum { FIRST = 1024 };
+    const size_t left = c->rows - c->block->count;
+    const size_t needed = c->block->count + (more < left ? more : left);
+    if (needed <= c->room)
+        return true;
+    size_t room = 2 * c->room + FIRST;
+    room = room < needed ? needed : room;
+    room = room < c->rows ? room : c->rows;
+    if (!tm_block_resize(c->block, room))
+        return false;
+    c->room = room;
+    return true;
+}
+
 bool tm_row_begins(const char *at)
 {
     while (tm_is_blank(*at))
@@ -193,7 +209,7 @@ static const char *list(tm_row_context *c, const char *at, const char *end)
     if (count < least || count > end - at)
         return FAIL(c, "row %zu: a list of %lld (%lld or more, all on the line)",
                     block->count + c->base, (long long)count, (long long)least);
-    size_t begin = block->start[block->count];
+    const size_t begin = c->items;
     uint32_t *item =
         tm_grow(block->item, &c->item_room, begin + (size_t)count, sizeof *item);
     if (!item) {
@@ -204,7 +220,7 @@ static const char *list(tm_row_context *c, const char *at, const char *end)
     for (size_t i = 0; i < (size_t)count && at; i++)
         at = block->kind == TM_CELL ? reference(c, at, end, false, &item[begin + i])
                                     : index_of(c, at, end, &item[begin + i]);
-    block->start[block->count + 1] = begin + (size_t)count;
+    block->start[block->count + 1] = c->items = begin + (size_t)count;
     return at;
 }
 

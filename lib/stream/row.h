@@ -9,11 +9,18 @@
 typedef struct tm_row_context {
     tm_block *block; /* row block->count is read; it has room for it */
     const tm_block_shape *shape;
+    size_t rows;      /* that the header says */
+    size_t room;      /* rows that the block has room for */
     unsigned base;    /* of the stream's indices */
     size_t limit;     /* nodes that an index may name */
+    size_t items;     /* of block->item: those of the rows before */
     size_t item_room; /* of block->item; grows */
     tm_error problem; /* what is wrong, without the place */
 } tm_row_context;
+
+/* Makes room for `more` rows behind those that are read, and for as many again, but for
+ * no more than the header says. False where memory is out. */
+bool tm_row_reserve(tm_row_context *context, size_t more);
 
 /* Whether a line may be a row: it begins with a number. Blanks are skipped. */
 bool tm_row_begins(const char *at);

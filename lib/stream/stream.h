@@ -91,8 +91,10 @@ void tm_stream_free(tm_stream *stream);
  * indices, finite numbers, that it is complete. *stream must be empty; after an error it
  * is again, and *error says file, line, block and cause: TM_ERROR_INPUT for what is
  * wrong in the text, TM_ERROR_SYSTEM for read errors and memory. Memory grows with the
- * rows that were read, not with the counts that are claimed. O(bytes). */
-tm_status tm_stream_read(tm_stream *stream, int fd, const char *name, tm_error *error);
+ * rows that were read, not with the counts that are claimed. threads >= 1 read it, always
+ * with the same result. O(bytes). */
+tm_status tm_stream_read(tm_stream *stream, int fd, const char *name, unsigned threads,
+                         tm_error *error);
 
 /* Writes a stream to fd; threads >= 1 format it, always the same bytes. O(bytes). */
 tm_status tm_stream_write(const tm_stream *stream, int fd, unsigned threads,

@@ -172,7 +172,7 @@ static tm_status connect_faces(tm_tet_mesh *mesh, const uint32_t (*listed)[3],
                                .faces = listed_count,
                                .face = listed};
     tm_face_table table;
-    tm_status status = tm_face_table_make(&table, &view, error);
+    tm_status status = tm_face_table_make(&table, &view, 1, error);
     for (uint32_t v = 0; v < mesh->nodes && status == TM_OK; v++) {
         status = tm_face_table_at(&table, v, error);
         if (status != TM_OK)

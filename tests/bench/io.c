@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* io make CELLS: a stream of a grid of CELLS³ cells, six tetrahedra each, with random
  *     nodes, on standard output.
- * io read | io getline: reads a stream from standard input with all checks, or as a
- *     simple program would, with getline, strtol and strtod.
+ * io read [THREADS] | io getline: reads a stream from standard input with all checks,
+ *     or as a simple program would, with getline, strtol and strtod.
  * io both | io printf: what read does, then writes the stream to /dev/null, by the
  *     library or by fprintf with %.17g and %d. */
 #include "../../lib/stream/stream.h"
@@ -70,11 +70,11 @@ static void make(uint32_t n)
     tm_stream_free(&stream);
 }
 
-static void read_stream(tm_stream *stream)
+static void read_stream(tm_stream *stream, unsigned threads)
 {
     tm_error error = {0};
     tm_stream_init(stream);
-    if (tm_stream_read(stream, STDIN_FILENO, "<stdin>", &error) != TM_OK)
+    if (tm_stream_read(stream, STDIN_FILENO, "<stdin>", threads, &error) != TM_OK)
         fail(&error);
 }
 
@@ -140,7 +140,7 @@ int main(int argc, char **argv)
         read_by_getline();
         return 0;
     }
-    read_stream(&stream);
+    read_stream(&stream, argc > 2 ? (unsigned)atoi(argv[2]) : 1);
     if (strcmp(what, "printf") == 0)
         write_by_printf(&stream);
     if (strcmp(what, "both") == 0 &&

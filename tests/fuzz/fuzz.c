@@ -136,7 +136,7 @@ static tm_status read_bytes(tm_stream *stream, const char *bytes, size_t size,
     if (fd < 0 || write(fd, bytes, size) != (ssize_t)size || lseek(fd, 0, SEEK_SET) != 0)
         give_up("memfd_create");
     tm_stream_init(stream);
-    tm_status status = tm_stream_read(stream, fd, "case", error);
+    tm_status status = tm_stream_read(stream, fd, "case", 1, error);
     close(fd);
     return status;
 }

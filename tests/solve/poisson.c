@@ -57,7 +57,7 @@ static tm_status read_and_run(const char *file, solve *method, const solution *e
     int fd = file ? open(file, O_RDONLY) : STDIN_FILENO;
     if (fd < 0)
         return tm_fail(error, TM_ERROR_SYSTEM, "%s cannot be opened", file);
-    tm_status status = tm_stream_read(&stream, fd, file ? file : "<stdin>", error);
+    tm_status status = tm_stream_read(&stream, fd, file ? file : "<stdin>", 1, error);
     if (file)
         close(fd);
     if (status == TM_OK)

@@ -174,7 +174,7 @@ static tm_status read_stream(const char *bytes, size_t size, tm_text *meaning)
     assert_true(fd >= 0);
     assert_int_equal(write(fd, bytes, size), size);
     assert_int_equal(lseek(fd, 0, SEEK_SET), 0);
-    const tm_status status = tm_stream_read(&stream, fd, "file", &error);
+    const tm_status status = tm_stream_read(&stream, fd, "file", 1, &error);
     close(fd);
     write_stream(&stream, meaning);
     tm_stream_free(&stream);

@@ -240,7 +240,7 @@ static void check_as_mixed(const tm_mesh_view *tets, const tm_examination *found
     tm_mesh_view mesh = *tets;
     mesh.start = start;
     tm_examination mixed;
-    assert_int_equal(tm_element_examine(&mixed, &mesh, 1, NULL), TM_OK);
+    assert_int_equal(tm_element_examine(&mixed, &mesh, 1 + random_below(3), NULL), TM_OK);
     assert_true(mixed.mixed && !found->mixed);
     assert_int_equal(mixed.kind[TM_TETRAHEDRON], tets->elements);
     assert_memory_equal(mixed.defect, found->defect, sizeof mixed.defect);
@@ -264,7 +264,7 @@ static void check(const soup *s)
     const soup before = *s;
     size_t count[TM_DEFECTS] = {0}, boundary = 0;
     tm_examination found;
-    assert_int_equal(tm_element_examine(&found, &mesh, 1, NULL), TM_OK);
+    assert_int_equal(tm_element_examine(&found, &mesh, 1 + random_below(3), NULL), TM_OK);
     assert_memory_equal(s, &before, sizeof before);
     count_tets_and_nodes(s, count);
     count_faces(s, count, &boundary);

@@ -154,9 +154,17 @@ static void check_mates(const soup *s, const polygon *all, size_t count, size_t 
 /* Each is at its smallest node, and listed once; members turn alike if they are. */
 static void check_table(const soup *s, const polygon *all, size_t count)
 {
-    tm_face_table table;
+    enum { RUNS = 3 };
+    tm_face_table lists, table;
     size_t members = 0;
-    assert_int_equal(tm_face_table_make(&table, &s->mesh, NULL), TM_OK);
+    uint32_t cut[RUNS + 1];
+    assert_int_equal(tm_face_table_make(&lists, &s->mesh, 1 + random_below(4), NULL),
+                     TM_OK);
+    tm_face_table_share(&table, &lists);
+    tm_face_table_cut(&table, RUNS, cut);
+    assert_true(cut[0] == 0 && cut[RUNS] == s->mesh.nodes);
+    for (size_t run = 0; run < RUNS; run++)
+        assert_true(cut[run] <= cut[run + 1]);
     for (uint32_t v = 0; v < s->mesh.nodes; v++) {
         uint32_t before[3] = {0}, node[3];
         assert_int_equal(tm_face_table_at(&table, v, NULL), TM_OK);
@@ -187,6 +195,7 @@ static void check_table(const soup *s, const polygon *all, size_t count)
         members -= all[i].k == 3 || !has_twice(all[i].node, all[i].k);
     assert_int_equal(members, 0);
     tm_face_table_free(&table);
+    tm_face_table_free(&lists);
 }
 
 static void test_soups(void **state)

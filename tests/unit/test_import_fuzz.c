@@ -74,7 +74,7 @@ static void check_stream(const tm_stream *stream)
     assert_int_equal(tm_stream_write(stream, fd, 1, &error), TM_OK);
     assert_int_equal(lseek(fd, 0, SEEK_SET), 0);
     tm_stream_init(&again);
-    const tm_status status = tm_stream_read(&again, fd, "again", &error);
+    const tm_status status = tm_stream_read(&again, fd, "again", 1, &error);
     if (status != TM_OK)
         print_error("%s: %s\n", error.block, error.what);
     assert_int_equal(status, TM_OK);

@@ -680,7 +680,7 @@ static void write_and_read(const tm_stream *stream, tm_stream *again)
     assert_true(fd >= 0);
     assert_ok(tm_stream_write(stream, fd, 1, &error), &error);
     assert_int_equal(lseek(fd, 0, SEEK_SET), 0);
-    assert_ok(tm_stream_read(again, fd, name, &error), &error);
+    assert_ok(tm_stream_read(again, fd, name, 1, &error), &error);
     close(fd);
     unlink(name);
 }

@@ -260,7 +260,7 @@ static void test_stream(void **state)
     const off_t size = lseek(fd, 0, SEEK_CUR);
     lseek(fd, 0, SEEK_SET);
     stream.progress = &reads;
-    assert_int_equal(tm_stream_read(&stream, fd, "file", NULL), TM_OK);
+    assert_int_equal(tm_stream_read(&stream, fd, "file", 1, NULL), TM_OK);
     assert_true(read.last.bytes);
     assert_int_equal(read.last.done, size);
     assert_int_equal(read.last.of, size);

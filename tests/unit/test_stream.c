@@ -59,7 +59,7 @@ static tm_status read_text(tm_stream *stream, const char *text, size_t size,
 {
     int fd = file_of(text, size);
     tm_stream_init(stream);
-    tm_status status = tm_stream_read(stream, fd, "x.tm", error);
+    tm_status status = tm_stream_read(stream, fd, "x.tm", 1, error);
     close(fd);
     return status;
 }
@@ -333,7 +333,7 @@ static void test_pipe(void **state)
     close(end[1]);
     tm_stream stream;
     tm_stream_init(&stream);
-    assert_int_equal(tm_stream_read(&stream, end[0], "<stdin>", NULL), TM_OK);
+    assert_int_equal(tm_stream_read(&stream, end[0], "<stdin>", 1, NULL), TM_OK);
     assert_written(&stream, 1, all);
     tm_stream_free(&stream);
     close(end[0]);
@@ -349,7 +349,7 @@ static void test_write_errors(void **state)
     assert_int_equal(tm_stream_write(&stream, -1, 1, &error), TM_ERROR_SYSTEM);
     assert_non_null(strstr(error.what, "cannot write"));
     tm_stream_free(&stream);
-    assert_int_equal(tm_stream_read(&stream, -1, "x", &error), TM_ERROR_SYSTEM);
+    assert_int_equal(tm_stream_read(&stream, -1, "x", 1, &error), TM_ERROR_SYSTEM);
     assert_non_null(strstr(error.what, "cannot read"));
 }
 
@@ -390,7 +390,7 @@ static void test_many_blocks(void **state)
     tm_error error = {0};
     int fd = file_of(text.byte, text.size);
     tm_stream_init(&stream);
-    assert_int_equal(tm_stream_read(&stream, fd, "many", &error), TM_OK);
+    assert_int_equal(tm_stream_read(&stream, fd, "many", 1, &error), TM_OK);
     close(fd);
     assert_int_equal(stream.blocks, 1 + 2 * BLOCKS);
     assert_string_equal(stream.block[2 * BLOCKS].name, "p149999.cell");
@@ -402,7 +402,7 @@ static void test_many_blocks(void **state)
     text.size = size;
     tm_text_string(&text, "p77777.cell\n0 0\n.end\n");
     fd = file_of(text.byte, text.size);
-    assert_int_equal(tm_stream_read(&stream, fd, "many", &error), TM_ERROR_INPUT);
+    assert_int_equal(tm_stream_read(&stream, fd, "many", 1, &error), TM_ERROR_INPUT);
     close(fd);
     assert_string_equal(error.block, "p77777.cell");
     assert_string_equal(error.what, "a second block of that name");

@@ -103,6 +103,7 @@ static void test_one_way(void **state)
     assert_distance(&c.surface[TM_BACK], sqrt(1.5)); /* from (0, 1, 1) */
     assert_int_equal(c.curve[TM_THERE].parts, 3);
     assert_distance(&c.curve[TM_THERE], 0.5); /* the middle of the diagonal */
+    tm_surface_free(&b);
     assert_int_equal(tm_surface_of_triangles(&b, xyz, 4, triangle, NULL, 0, &error),
                      TM_ERROR_INPUT);
     tm_surface_free(&a);

@@ -108,7 +108,7 @@ void filter_read(const filter *f, tm_stream *stream)
     int fd = open_input(f);
     tm_stream_init(stream);
     stream->progress = filter_progress(f);
-    if (tm_stream_read(stream, fd, filter_input_name(f), &error) != TM_OK ||
+    if (tm_stream_read(stream, fd, filter_input_name(f), f->threads, &error) != TM_OK ||
         kinds_check(f->name, stream, filter_input_name(f), &error) != TM_OK)
         filter_fail(f, &error);
     if (f->input)

@@ -51,8 +51,8 @@ static tm_status read_nodes_beside(const filter *f, tm_polygon_surface *surface,
 }
 
 /* The stream in these bytes: they are put where tm_stream_read() can read them. */
-static tm_status read_stream(const tm_text *bytes, const char *name, tm_stream *stream,
-                             tm_error *error)
+static tm_status read_stream(const tm_text *bytes, const char *name, unsigned threads,
+                             tm_stream *stream, tm_error *error)
 {
     int fd = memfd_create("stream", MFD_CLOEXEC);
     if (fd < 0)
@@ -63,7 +63,7 @@ static tm_status read_stream(const tm_text *bytes, const char *name, tm_stream *
         status =
             tm_fail(error, TM_ERROR_SYSTEM, "cannot hold the input: %s", strerror(errno));
     if (status == TM_OK)
-        status = tm_stream_read(stream, fd, name, error);
+        status = tm_stream_read(stream, fd, name, threads, error);
     close(fd);
     return status;
 }
@@ -149,7 +149,7 @@ static tm_format read_surface(const filter *f, tm_polygon_surface *surface,
     tm_status status = TM_OK;
     const tm_format format = tm_format_of(bytes.byte, bytes.size, name);
     if (format == TM_FORMAT_STREAM) {
-        status = read_stream(&bytes, name, stream, &error);
+        status = read_stream(&bytes, name, f->threads, stream, &error);
         if (status == TM_OK && !mesh_too) /* else what f itself takes */
             status = kinds_check(f->name, stream, name, &error);
         if (status == TM_OK) {

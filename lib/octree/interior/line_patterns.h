@@ -18,7 +18,7 @@ extern const uint8_t tm_side_octants[6][4];
 
 static inline unsigned tm_code_at(tm_line_code code, unsigned octant)
 {
-    return code >> 2 * octant & 3u;
+    return (unsigned)code >> 2 * octant & 3u;
 }
 
 /* A node that a line comes to from one direction and leaves in another. */
