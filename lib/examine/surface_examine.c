@@ -145,14 +145,15 @@ static tm_status build_and_examine(tm_surface_examination *found,
     tm_surface_options options = {
         .feature_angle = TM_FEATURE_ANGLE, .regions = true, .walls = true};
     tm_surface built;
-    tm_status status = tm_surface_build(&built, surface, &options, error);
+    tm_error why;
+    tm_status status = tm_surface_build(&built, surface, &options, &why);
     const bool closed = status == TM_OK;
     if (status == TM_ERROR_INPUT) {
-        snprintf(found->problem, sizeof found->problem, "%s", error->what);
+        snprintf(found->problem, sizeof found->problem, "%s", why.what);
         tm_surface_free(&built);
         options =
             (tm_surface_options){.feature_angle = TM_FEATURE_ANGLE, .lenient = true};
-        status = tm_surface_build(&built, surface, &options, error);
+        status = tm_surface_build(&built, surface, &options, &why);
         if (status == TM_ERROR_INPUT) {
             tm_surface_free(&built);
             return TM_OK; /* nothing is left, which the problem says */
@@ -160,7 +161,9 @@ static tm_status build_and_examine(tm_surface_examination *found,
     }
     found->components = built.components;
     found->euler = built.euler;
-    if (status == TM_OK)
+    if (status != TM_OK)
+        status = tm_fail_as(error, &why);
+    else
         status = closed ? examine_closed(found, surface, &built, error)
                         : examine_open(found, surface, &built, error);
     tm_surface_free(&built);
