@@ -2,9 +2,11 @@
 /* mesh-check: what is wrong with a mesh, as exit status and as a list. */
 #include "common/input/against.h"
 #include "common/input/mesh_input.h"
+#include "common/input/surface_input.h"
 
 #include "../lib/examine/element_examine.h"
 #include "../lib/examine/poly/poly_examine.h"
+#include "../lib/examine/surface_examine.h"
 
 #include <math.h>
 
@@ -102,6 +104,47 @@ static void write_report(filter *f, const tm_examination *found, const limits *l
     tm_text_free(&text);
 }
 
+/* A stream without elements: its surface. Returns the exit status. */
+static int check_surface(filter *f, const tm_stream *stream, limits *l)
+{
+    tm_polygon_surface surface;
+    tm_surface_examination found;
+    tm_error error;
+    const bool is_main = tm_stream_find(stream, ".face");
+    if (l->against.file)
+        filter_usage_error(f, "--against needs elements, but this is a surface");
+    tm_polygon_surface_init(&surface);
+    filter_stage(f, "examining");
+    if (surface_input_of_blocks(
+            tm_stream_find(stream, is_main ? ".node" : "surface.node"),
+            tm_stream_find(stream, is_main ? ".face" : "surface.face"), stream->base,
+            &surface, &error) != TM_OK ||
+        tm_surface_examine(&found, &surface, &error) != TM_OK)
+        mesh_input_fail(f, &error);
+    if (f->json) {
+        tm_surface_examination_json(filter_json_begin(f), &found, &surface);
+        filter_json_end(f);
+    }
+    if (filter_has_report(f) && (f->output || f->verbosity >= 0)) {
+        tm_text text = {0};
+        tm_surface_examination_text(&text, &found, &surface);
+        filter_write_text(f, &text);
+        tm_text_free(&text);
+    }
+    const bool good = tm_surface_examination_is_good(&found);
+    tm_surface_examination_free(&found);
+    tm_polygon_surface_free(&surface);
+    return good ? 0 : EXIT_GOAL;
+}
+
+static bool has_elements(const tm_stream *stream)
+{
+    for (int i = 0; i < ELEMENT_BLOCKS; i++)
+        if (tm_stream_find(stream, element_block[i]))
+            return true;
+    return false;
+}
+
 int main(int argc, char **argv)
 {
     filter f = {
@@ -111,7 +154,9 @@ int main(int argc, char **argv)
             "Says what is wrong with a mesh of tetrahedra, polyhedra or mixed elements:\n"
             "inverted, flat and overlapping ones, faces that do not match, polyhedra\n"
             "that are not closed, a boundary that is not closed or not manifold,\n"
-            "duplicate nodes. Exit status 1 if anything is.",
+            "duplicate nodes; of a surface open edges, crossings, doubles, turned "
+            "pieces.\n"
+            "Exit status 1 if anything is.",
         .help = AGAINST_HELP
         "      --within D      exit status 1 if any of these distances is above D: a "
         "part\n"
@@ -126,6 +171,11 @@ int main(int argc, char **argv)
 
     tm_stream stream;
     mesh_input_read_to_compute(&f, &stream);
+    if (!has_elements(&stream)) {
+        const int status = check_surface(&f, &stream, &l);
+        tm_stream_free(&stream);
+        return filter_finish(&f, status);
+    }
     tm_examination found;
     examine(&f, &stream, &found);
     against_measure(&f, &l.against, &stream);

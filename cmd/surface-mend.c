@@ -7,6 +7,7 @@
 
 #include "../lib/stream/coordinates.h"
 #include "../lib/surface/mend/mend.h"
+#include "../lib/surface/surface_apart.h"
 
 #include <float.h>
 #include <string.h>
@@ -70,19 +71,43 @@ static void say(const filter *f, const tm_mend_report *report)
     }
 }
 
-/* Whether meshers take what there is now; *error says why not. */
-static bool is_good(const filter *f, const tm_stream *stream, tm_error *error)
+/* Whether that is plain without the surface that meshers make of it. */
+static bool is_plainly_good(const filter *f, const tm_stream *stream,
+                            const tm_mend_report *report)
+{
+    const tm_block *node = tm_stream_find(stream, ".node");
+    const tm_block *face = tm_stream_find(stream, ".face");
+    bool apart = false;
+    tm_error error;
+    if (!report->manifold || face->count == 0)
+        return false;
+    if (tm_triangles_are_apart((const double(*)[3])node->real, node->count,
+                               (const uint32_t(*)[3])face->integer, face->count, &apart,
+                               &error) != TM_OK)
+        filter_fail(f, &error);
+    return apart;
+}
+
+/* Whether meshers take what there is now; *error says why not. What bounds the outside
+ * beside walls is turned outward, which only that surface tells. */
+static bool is_good(const filter *f, const tm_stream *stream, tm_mend_report *report,
+                    tm_error *error)
 {
     const tm_surface_options options = {
         .feature_angle = TM_FEATURE_ANGLE, .regions = true, .walls = true};
     tm_polygon_surface polygons;
     tm_surface surface;
+    if (is_plainly_good(f, stream, report))
+        return true;
     tm_polygon_surface_init(&polygons);
     tm_status status = surface_input_of_blocks(tm_stream_find(stream, ".node"),
                                                tm_stream_find(stream, ".face"),
                                                stream->base, &polygons, error);
     if (status == TM_OK) {
         status = tm_surface_build(&surface, &polygons, &options, error);
+        if (status == TM_OK)
+            tm_mend_turn_outward(tm_stream_find(stream, ".face"), &surface, &polygons,
+                                 &report->step[TM_MEND_TURNED]);
         tm_surface_free(&surface);
     }
     tm_polygon_surface_free(&polygons);
@@ -138,9 +163,9 @@ int main(int argc, char **argv)
     filter_stage(&f, "mending");
     if (tm_mend(&stream, &options, &report, &error) != TM_OK)
         filter_fail(&f, &error);
-    say(&f, &report);
     filter_stage(&f, "looking for crossings");
-    const bool good = is_good(&f, &stream, &error);
+    const bool good = is_good(&f, &stream, &report, &error);
+    say(&f, &report);
     if (!good)
         filter_note(&f, "%s: still: %s", filter_input_name(&f), error.what);
     write_json(&f, &stream, &report, good);

@@ -45,7 +45,7 @@ int main(void)
     tm_stream stream;
     tm_error error;
     tm_stream_init(&stream);
-    tm_status status = tm_stream_read(&stream, STDIN_FILENO, "<stdin>", &error);
+    tm_status status = tm_stream_read(&stream, STDIN_FILENO, "<stdin>", 1, &error);
     if (status == TM_OK)
         status = print_quality("before", &stream, &error);
     if (status == TM_OK)

@@ -94,7 +94,7 @@ int main()
     try {
         stream mesh;
         tm_error error;
-        check(tm_stream_read(mesh.get(), STDIN_FILENO, "<stdin>", &error), error);
+        check(tm_stream_read(mesh.get(), STDIN_FILENO, "<stdin>", 1, &error), error);
         print_quality("before", mesh);
         improve(mesh);
         print_quality("after", mesh);

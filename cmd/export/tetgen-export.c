@@ -18,6 +18,21 @@ static filter f = {
     .letters = FILTER_LETTERS,
 };
 
+/* A name with the suffix of one of the files stands for all of them. */
+static void drop_suffix(char *base)
+{
+    static const char *const suffixes[] = {".node", ".ele", ".face", ".edge", ".group"};
+    const size_t size = strlen(base);
+    for (size_t i = 0; i < sizeof suffixes / sizeof *suffixes; i++) {
+        const size_t length = strlen(suffixes[i]);
+        if (size > length && base[size - length - 1] != '/' &&
+            strcmp(base + size - length, suffixes[i]) == 0) {
+            base[size - length] = '\0';
+            return;
+        }
+    }
+}
+
 static const char *read_operands(void)
 {
     int c = filter_option(&f);
@@ -27,7 +42,8 @@ static const char *read_operands(void)
         filter_usage_error(&f, "-o: the output is the files BASE.node, BASE.ele, …");
     if (optind >= f.argc)
         filter_usage_error(&f, "BASE is missing, the name of the files without suffix");
-    const char *base = f.argv[optind++];
+    char *base = f.argv[optind++];
+    drop_suffix(base);
     if (!*base)
         filter_usage_error(&f, "BASE is empty");
     filter_operands(&f);

@@ -105,6 +105,24 @@ static void expand_base(const char *base, operands *named)
     }
 }
 
+/* Where no .node file is among those that are named, that beside the first one. */
+static void find_nodes(operands *named)
+{
+    for (size_t i = 0; i < named->count; i++)
+        if (suffix_of(named->file[i].name) == 0)
+            return;
+    const char *name = named->file[0].name;
+    const size_t size = strlen(name) - strlen(suffixes[suffix_of(name)]);
+    char *plain = joined(name, size, suffixes[0]);
+    char *packed = joined(plain, strlen(plain), ".gz");
+    if (access(plain, F_OK) == 0)
+        add_file(named, plain);
+    else if (access(packed, F_OK) == 0)
+        add_file(named, packed);
+    free(plain);
+    free(packed);
+}
+
 static void read_operands(operands *named)
 {
     int c = filter_option(&f);
@@ -133,6 +151,7 @@ static void read_operands(operands *named)
                                ".edge or .group, or in one of these and .gz",
                                f.argv[i]);
     }
+    find_nodes(named);
     const char *first = named->file[0].name;
     size_t size = strlen(first) - strlen(suffixes[suffix_of(first)]);
     named->stem = joined(f.input, size, "");
@@ -160,20 +179,18 @@ static const char *block_name(const operands *named, const char *file)
     return suffixes[suffix_of(file)];
 }
 
-static void read_block(const char *file, tm_block *block, const tm_block *node,
-                       unsigned *base)
+static void read_block(const char *file, tm_block *block, tm_tetgen_nodes *nodes)
 {
     tm_text bytes = {0};
     filter_read_file(&f, file, &bytes);
-    if (tm_tetgen_read(block, bytes.byte, bytes.size, file, base, node ? node->count : 0,
-                       &error) != TM_OK)
+    if (tm_tetgen_read(block, bytes.byte, bytes.size, file, nodes, &error) != TM_OK)
         filter_fail_file(&f, &error, &bytes, f.name);
     tm_text_free(&bytes);
 }
 
 /* Reads a file into a new block; the file is then done with. */
 static void read_file(tm_stream *stream, tetgen_file *from, const char *name,
-                      const char *node, unsigned *base)
+                      tm_tetgen_nodes *nodes)
 {
     if (tm_stream_find(stream, name))
         succeed(tm_fail_at(&error, TM_ERROR_INPUT, from->path, 0, name,
@@ -181,9 +198,31 @@ static void read_file(tm_stream *stream, tetgen_file *from, const char *name,
     tm_block *block = tm_stream_add(stream, name);
     if (!block)
         succeed(tm_fail_memory(&error));
-    read_block(from->path, block, node ? tm_stream_find(stream, node) : NULL, base);
+    read_block(from->path, block, nodes);
     free(from->path);
     from->path = NULL;
+}
+
+/* Of elements of second order the nodes in the middle of edges go, which their corners
+ * leave out. */
+static void drop_middles(tm_stream *stream, const char *node, int part,
+                         tm_tetgen_nodes *nodes)
+{
+    tm_block *other[3];
+    char name[TM_BLOCK_NAME];
+    size_t dropped;
+    if (!nodes->middle)
+        return;
+    for (int i = 0; i < 3; i++) {
+        snprintf(name, sizeof name, "%.*s%s", part, node, suffixes[i + 1]);
+        other[i] = tm_stream_find(stream, name);
+    }
+    succeed(tm_tetgen_drop_middles(nodes, tm_stream_find(stream, node), other, &dropped,
+                                   &error));
+    filter_note(&f,
+                "%.*s.ele: tetrahedra of 10 nodes, of second order, are taken by their "
+                "corners; %zu nodes in the middle of edges are dropped",
+                part, node, dropped);
 }
 
 /* Reads a .node file and the other files of its part, which may be numbered from
@@ -191,19 +230,21 @@ static void read_file(tm_stream *stream, tetgen_file *from, const char *name,
 static void read_part(tm_stream *stream, operands *named, size_t node_file)
 {
     char node[TM_BLOCK_NAME], name[TM_BLOCK_NAME];
-    unsigned base = 1;
+    tm_tetgen_nodes nodes = {.base = 1};
     snprintf(node, sizeof node, "%s", block_name(named, named->file[node_file].name));
-    read_file(stream, &named->file[node_file], node, NULL, &base);
+    read_file(stream, &named->file[node_file], node, &nodes);
     if (node[0] == '.')
-        stream->base = base;
+        stream->base = nodes.base;
     int part = (int)(strlen(node) - strlen(suffixes[0]));
     for (size_t s = 1; s < SUFFIXES; s++) {
         snprintf(name, sizeof name, "%.*s%s", part, node, suffixes[s]);
         for (size_t i = 0; i < named->count; i++)
             if (named->file[i].path &&
                 strcmp(block_name(named, named->file[i].name), name) == 0)
-                read_file(stream, &named->file[i], name, node, &base);
+                read_file(stream, &named->file[i], name, &nodes);
     }
+    drop_middles(stream, node, part, &nodes);
+    tm_tetgen_nodes_free(&nodes);
 }
 
 /* The main mesh first, then the parts. */

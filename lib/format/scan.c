@@ -98,6 +98,20 @@ static tm_status fail_missing(const tm_scan *scan, const char *what, tm_error *e
     return tm_scan_fail(scan, error, "the line ends where %s should be", what);
 }
 
+/* As tm_read_double(), of a number that has D for E. */
+static const char *read_fortran(const char *begin, const char *at, const char *end,
+                                double *value)
+{
+    enum { LONGEST = 64 };
+    char text[LONGEST];
+    const size_t size = (size_t)(end - begin);
+    if (!at || at == end || (*at != 'D' && *at != 'd') || size > sizeof text)
+        return at;
+    memcpy(text, begin, size);
+    text[at - begin] = 'e';
+    return tm_read_double(text, text + size, value) == text + size ? end : at;
+}
+
 tm_status tm_scan_double(tm_scan *scan, const char *what, double *value, tm_error *error)
 {
     tm_word word = tm_scan_word(scan);
@@ -105,6 +119,7 @@ tm_status tm_scan_double(tm_scan *scan, const char *what, double *value, tm_erro
         return fail_missing(scan, what, error);
     const char *end = word.begin + word.size;
     const char *after = tm_read_double(word.begin, end, value);
+    after = read_fortran(word.begin, after, end, value);
     if (after != end) {
         bool comma = after && *after == ',';
         return tm_scan_fail(scan, error, "%s: '%.*s' is not a number%s", what,
@@ -131,6 +146,22 @@ tm_status tm_scan_integer(tm_scan *scan, const char *what, int64_t lo, int64_t h
         return tm_scan_fail(scan, error,
                             "%s: %" PRId64 " is out of range (%" PRId64 "..%" PRId64 ")",
                             what, *value, lo, hi);
+    return TM_OK;
+}
+
+tm_status tm_scan_whole(tm_scan *scan, const char *what, int64_t lo, int64_t hi,
+                        int64_t *value, tm_error *error)
+{
+    static const double largest = 9007199254740992; /* 2^53 */
+    tm_scan ahead = *scan;
+    double real = 0;
+    if (tm_scan_integer(&ahead, what, INT64_MIN, INT64_MAX, value, NULL) == TM_OK ||
+        (ahead = *scan, tm_scan_double(&ahead, what, &real, NULL) != TM_OK) ||
+        real != floor(real) || fabs(real) > largest || (double)lo > real ||
+        real > (double)hi)
+        return tm_scan_integer(scan, what, lo, hi, value, error);
+    *value = (int64_t)real;
+    *scan = ahead;
     return TM_OK;
 }
 

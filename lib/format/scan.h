@@ -45,10 +45,15 @@ tm_word tm_scan_word(tm_scan *scan);
 tm_word tm_scan_rest(tm_scan *scan);
 
 /* The next word of the line as a number. `what` says in messages what it stands for:
- * "the x coordinate". Only finite numbers are taken. */
+ * "the x coordinate". Only finite numbers are taken; an exponent may begin with D, as
+ * Fortran writes it. */
 tm_status tm_scan_double(tm_scan *scan, const char *what, double *value, tm_error *error);
 tm_status tm_scan_integer(tm_scan *scan, const char *what, int64_t lo, int64_t hi,
                           int64_t *value, tm_error *error);
+
+/* The same where a whole number may be written as a real one: 1.0, 1e0, 1.0D0. */
+tm_status tm_scan_whole(tm_scan *scan, const char *what, int64_t lo, int64_t hi,
+                        int64_t *value, tm_error *error);
 
 /* Three coordinates. */
 tm_status tm_scan_point(tm_scan *scan, double point[3], tm_error *error);

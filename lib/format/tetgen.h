@@ -14,20 +14,40 @@ TM_EXTERN_C_BEGIN
  * numbered from 0 or 1, with comments anywhere, attributes, markers, CR LF, header fields
  * left out. What such a file holds is what a block of the stream holds. */
 
+/* What the files of one mesh have to know of its nodes; {.base = 1} before the first. */
+typedef struct tm_tetgen_nodes {
+    unsigned base; /* the number of the first one */
+    size_t count;
+    bool *middle; /* [count]: in the middle of an edge of elements of second order (-o2),
+                     whose rows are longer; NULL where they are of first order */
+} tm_tetgen_nodes;
+
 /* Reads a file into *block, whose name and kind are set and which is otherwise empty. Of
- * kind TM_NODE, the first row tells *base (it stays as it was where there are no rows);
- * other kinds need it: their indices must be in *base … *base + nodes - 1. Rows must be
- * numbered without a gap, and nothing may follow them. The two tetrahedra that
- * `tetgen -nn` adds to rows of .face, and the one to rows of .edge, are skipped.
- * Second-order elements (-o2) are refused. After an error the block's arrays are freed.
+ * kind TM_NODE, the first row tells *nodes (base stays as it was where there are no
+ * rows); other kinds need it: their indices must be its nodes'. Rows may come in any
+ * order, but each number must be there once, from 0 or 1 on; they are put in the order of
+ * their numbers. Nothing may follow them. The two tetrahedra that `tetgen -nn` adds to
+ * rows of .face, and the one to rows of .edge, are skipped. Of elements of second order
+ * the corners are taken; .face and .edge have then to be read after .ele. A marker may be
+ * written as a real number that is whole. After an error the block's arrays are freed.
  * O(bytes). */
 tm_status tm_tetgen_read(tm_block *block, const char *bytes, size_t size,
-                         const char *name, unsigned *base, size_t nodes, tm_error *error);
+                         const char *name, tm_tetgen_nodes *nodes, tm_error *error);
 
-/* The same of the header and the rows at a scan (scan.h), which goes behind them. */
+/* Takes the nodes out of .node that are in the middle of edges of second order and no
+ * corner of a row of the others, which may be NULL, and numbers these anew. *dropped is
+ * how many. TM_ERROR_SYSTEM where memory is out. O(n). */
+tm_status tm_tetgen_drop_middles(tm_tetgen_nodes *nodes, tm_block *node,
+                                 tm_block *const other[3], size_t *dropped,
+                                 tm_error *error);
+
+void tm_tetgen_nodes_free(tm_tetgen_nodes *nodes);
+
+/* As tm_tetgen_read(), of the header and the rows at a scan (scan.h), which goes behind
+ * them. */
 struct tm_scan;
-tm_status tm_tetgen_read_rows(tm_block *block, struct tm_scan *scan, unsigned *base,
-                              size_t nodes, tm_error *error);
+tm_status tm_tetgen_read_rows(tm_block *block, struct tm_scan *scan,
+                              tm_tetgen_nodes *nodes, tm_error *error);
 
 /* TetGen accepts tetrahedra of either orientation; a stream has right-hand positive ones.
  */

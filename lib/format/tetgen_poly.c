@@ -19,7 +19,9 @@ static tm_status read_nodes(reader *r)
     if (!node)
         return tm_fail_memory(r->error);
     tm_polygon_surface *surface = r->surface;
-    tm_status status = tm_tetgen_read_rows(node, &r->scan, &surface->base, 0, r->error);
+    tm_tetgen_nodes nodes = {.base = surface->base};
+    tm_status status = tm_tetgen_read_rows(node, &r->scan, &nodes, r->error);
+    surface->base = nodes.base;
     if (status == TM_OK && node->count > 0)
         status = tm_polygon_surface_nodes_from_stream(surface, node, r->error);
     tm_stream_free(&rows);
@@ -47,8 +49,7 @@ static tm_status read_marker(reader *r, int64_t *marker)
 {
     if (!r->markers || !tm_scan_more(&r->scan))
         return TM_OK;
-    return tm_scan_integer(&r->scan, "the marker", INT32_MIN, INT32_MAX, marker,
-                           r->error);
+    return tm_scan_whole(&r->scan, "the marker", INT32_MIN, INT32_MAX, marker, r->error);
 }
 
 static tm_status end_row(reader *r, const char *what)

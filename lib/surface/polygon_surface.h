@@ -55,6 +55,8 @@ typedef struct tm_polygon_surface {
     size_t regions;
     tm_region *region;
 
+    size_t left_bytes; /* of a file, behind its last face, which were not read */
+
     size_t capacity[9]; /* of the arrays that grow; for polygon_surface.c */
 } tm_polygon_surface;
 

@@ -8,13 +8,17 @@
 #include "surface_tree.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 typedef struct finder {
-    tm_surface *surface;
-    uint32_t pair[2]; /* the first that was found */
-    double point[3];
-    bool all; /* else the first is enough */
+    const tm_surface *surface;
+    size_t found;
+    tm_crossing first; /* that was found */
+    bool all;          /* else the first is enough */
+    tm_crossing *list; /* of all, where it is wanted */
+    size_t room;
+    bool listing, failed;
 } finder;
 
 static int sign_in(const double a[3], const double b[3], const double c[3], unsigned w)
@@ -133,11 +137,35 @@ static void direction(const double x[3], const double y[3], double unit[3])
         unit[i] /= length;
 }
 
+/* The same of edges from one corner, not made as long as each other: that takes no roots,
+ * and is enough for most. */
+static bool edges_are_apart(const double of_p[2][3], const double of_q[2][3])
+{
+    const double least = margin * margin;
+    double d[3];
+    for (int x = 0; x < 3; x++)
+        d[x] = of_p[0][x] + of_p[1][x] - of_q[0][x] - of_q[1][x];
+    const double norm2 = tm_norm2(d);
+    for (int s = 0; s < 2; s++) {
+        const double p = tm_dot(d, of_p[s]), q = -tm_dot(d, of_q[s]);
+        if (!(p > 0 && p * p > least * norm2 * tm_norm2(of_p[s]) && q > 0 &&
+              q * q > least * norm2 * tm_norm2(of_q[s])))
+            return false;
+    }
+    return true;
+}
+
 /* Corner i of p is corner k of q: whether a plane through it is between what is left. */
 static bool corners_are_apart(const double *const p[3], int i, const double *const q[3],
                               int k)
 {
     double of_p[2][3], of_q[2][3], d[3];
+    for (int s = 0; s < 2; s++) {
+        tm_subtract(of_p[s], p[(i + 1 + s) % 3], p[i]);
+        tm_subtract(of_q[s], q[(k + 1 + s) % 3], q[k]);
+    }
+    if (edges_are_apart((const double(*)[3])of_p, (const double(*)[3])of_q))
+        return true;
     for (int s = 0; s < 2; s++) {
         direction(p[i], p[(i + 1 + s) % 3], of_p[s]);
         direction(q[k], q[(k + 1 + s) % 3], of_q[s]);
@@ -230,15 +258,31 @@ static void bounds_of(const tm_tree_triangle *triangle, double low[3], double hi
 }
 
 /* Somewhere in both boxes. */
-static void find_point(finder *f, const tm_tree_triangle *a, const tm_tree_triangle *b)
+static tm_crossing crossing_of(const tm_tree_triangle *a, const tm_tree_triangle *b)
 {
     double low[2][3], high[2][3];
+    tm_crossing found;
     bounds_of(a, low[0], high[0]);
     bounds_of(b, low[1], high[1]);
     for (int i = 0; i < 3; i++)
-        f->point[i] = (fmax(low[0][i], low[1][i]) + fmin(high[0][i], high[1][i])) / 2;
-    f->pair[0] = a->id < b->id ? a->id : b->id;
-    f->pair[1] = a->id < b->id ? b->id : a->id;
+        found.point[i] = (fmax(low[0][i], low[1][i]) + fmin(high[0][i], high[1][i])) / 2;
+    found.triangle[0] = a->id < b->id ? a->id : b->id;
+    found.triangle[1] = a->id < b->id ? b->id : a->id;
+    return found;
+}
+
+static void add_to_list(finder *f, tm_crossing found)
+{
+    if (f->found == f->room) {
+        const size_t room = 2 * f->room + 16;
+        tm_crossing *more = realloc(f->list, room * sizeof *more);
+        f->failed |= !more;
+        if (!more)
+            return;
+        f->list = more;
+        f->room = room;
+    }
+    f->list[f->found] = found;
 }
 
 static void try_pair(finder *f, const tm_tree_triangle *a, const tm_tree_triangle *b)
@@ -251,8 +295,11 @@ static void try_pair(finder *f, const tm_tree_triangle *a, const tm_tree_triangl
         !tm_triangles_meet((const double(*)[3])surface->xyz, surface->triangle[a->id],
                            surface->triangle[b->id]))
         return;
-    if (f->surface->crossings++ == 0)
-        find_point(f, a, b);
+    if (f->found == 0)
+        f->first = crossing_of(a, b);
+    if (f->listing)
+        add_to_list(f, crossing_of(a, b));
+    f->found++;
 }
 
 static void try_leaves(finder *f, const tm_tree_node *n, const tm_tree_node *m)
@@ -267,8 +314,8 @@ static void try_leaves(finder *f, const tm_tree_node *n, const tm_tree_node *m)
 static void try_nodes(finder *f, const tm_tree_node *n, const tm_tree_node *m)
 {
     const tm_tree_node *node = f->surface->tree->node;
-    if (!boxes_meet(n->low, n->high, m->low, m->high) ||
-        (!f->all && f->surface->crossings > 0))
+    if (!boxes_meet(n->low, n->high, m->low, m->high) || (!f->all && f->found > 0) ||
+        f->failed)
         return;
     if (n->count > 0 && m->count > 0) {
         try_leaves(f, n, m);
@@ -306,17 +353,45 @@ tm_status tm_surface_find_crossings(tm_surface *surface, bool lenient, unsigned 
 {
     finder f = {.surface = surface, .all = lenient};
     try_nodes(&f, &surface->tree->node[0], &surface->tree->node[0]);
+    surface->crossings = f.found;
+    const uint32_t *pair = f.first.triangle;
+    const double *point = f.first.point;
     if (lenient || surface->crossings == 0)
         return TM_OK;
     return tm_fail(
         error, TM_ERROR_INPUT,
         "%s: faces %zu and %zu meet near (%g, %g, %g), elsewhere than in a "
         "common node or edge%s",
-        surface->shell[f.pair[0]] == surface->shell[f.pair[1]]
+        surface->shell[pair[0]] == surface->shell[pair[1]]
             ? "the surface crosses itself"
             : "two pieces of the surface cross",
-        (size_t)surface->facet[f.pair[0]] + base,
-        (size_t)surface->facet[f.pair[1]] + base, f.point[0], f.point[1], f.point[2],
-        tm_surface_is_level(surface, f.pair[0], f.pair[1]) ? tm_surface_overlap_help
-                                                           : "");
+        (size_t)surface->facet[pair[0]] + base, (size_t)surface->facet[pair[1]] + base,
+        point[0], point[1], point[2],
+        tm_surface_is_level(surface, pair[0], pair[1]) ? tm_surface_overlap_help : "");
+}
+
+static int compare_crossings(const void *a, const void *b)
+{
+    const uint32_t *p = ((const tm_crossing *)a)->triangle;
+    const uint32_t *q = ((const tm_crossing *)b)->triangle;
+    if (p[0] != q[0])
+        return p[0] < q[0] ? -1 : 1;
+    return (p[1] > q[1]) - (p[1] < q[1]);
+}
+
+tm_status tm_surface_list_crossings(const tm_surface *surface, tm_crossing **list,
+                                    size_t *count, tm_error *error)
+{
+    finder f = {.surface = surface, .all = true, .listing = true};
+    try_nodes(&f, &surface->tree->node[0], &surface->tree->node[0]);
+    if (f.failed) {
+        free(f.list);
+        f.list = NULL;
+        f.found = 0;
+    }
+    if (f.found > 1)
+        qsort(f.list, f.found, sizeof *f.list, compare_crossings);
+    *list = f.list;
+    *count = f.found;
+    return f.failed ? tm_fail_memory(error) : TM_OK;
 }

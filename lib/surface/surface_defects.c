@@ -65,8 +65,8 @@ static void count_edges(const tm_polygon_surface *surface, const uint32_t *uniqu
         for (next = i + 1; next < count; next++)
             if (compare_edges(edges[i], edges[next]) != 0)
                 break;
-        if (next - i == 1 && defects->open_edges++ == 0)
-            memcpy(defects->open_edge, edges[i], sizeof *edges);
+        if (next - i == 1 && defects->open_edges++ < TM_EDGES_LISTED)
+            memcpy(defects->open_edge[defects->open_edges - 1], edges[i], sizeof *edges);
         defects->crowded_edges += next - i > 2;
         defects->odd_edges += next - i > 2 && (next - i) % 2 != 0;
     }

@@ -9,15 +9,17 @@
 
 TM_EXTERN_C_BEGIN
 
+enum { TM_EDGES_LISTED = 5 };
+
 typedef struct tm_surface_defects {
-    size_t duplicate_nodes;  /* nodes where an earlier one is */
-    size_t unused_nodes;     /* points that no polygon has as a corner */
-    size_t repeated_corners; /* polygons with a point twice */
-    size_t open_edges;       /* with one polygon only */
-    size_t crowded_edges;    /* with more than two polygons */
-    size_t odd_edges;        /* with three polygons, five, … */
-    uint32_t open_edge[2];   /* the nodes of one of the open edges */
-    bool flat;               /* all nodes are in one plane, exactly */
+    size_t duplicate_nodes;                 /* nodes where an earlier one is */
+    size_t unused_nodes;                    /* points that no polygon has as a corner */
+    size_t repeated_corners;                /* polygons with a point twice */
+    size_t open_edges;                      /* with one polygon only */
+    size_t crowded_edges;                   /* with more than two polygons */
+    size_t odd_edges;                       /* with three polygons, five, … */
+    uint32_t open_edge[TM_EDGES_LISTED][2]; /* the nodes of the first ones */
+    bool flat;                              /* all nodes are in one plane, exactly */
 } tm_surface_defects;
 
 /* Counts them. Nodes with equal coordinates are taken as one node. Polygons of one node
@@ -29,6 +31,12 @@ tm_status tm_surface_find_defects(const tm_polygon_surface *surface,
  * as where two solids touch that are closed each for itself; *dropped is how many. Facets
  * of several polygons, or with holes, stay. O(n log n) in the number of corners. */
 tm_status tm_surface_drop_duplicates(tm_polygon_surface *surface, size_t *dropped,
+                                     tm_error *error);
+
+/* Takes corners out of polygons that are where the corner before is, and facets whose
+ * only polygon has fewer than three corners left; polygons of one node or two stay.
+ * *mended is how many polygons had such corners. O(n). */
+tm_status tm_surface_drop_degenerate(tm_polygon_surface *surface, size_t *mended,
                                      tm_error *error);
 
 TM_EXTERN_C_END

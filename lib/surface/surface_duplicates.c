@@ -119,3 +119,62 @@ tm_status tm_surface_drop_duplicates(tm_polygon_surface *surface, size_t *droppe
     free(gone);
     return done ? TM_OK : tm_fail_memory(error);
 }
+
+/* Moves the corners of a polygon that are not where the one before is to the front;
+ * returns how many there are. */
+static size_t join_corners(uint32_t *item, size_t count, const uint32_t *unique)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++)
+        if (kept == 0 || unique[item[i]] != unique[item[kept - 1]])
+            item[kept++] = item[i];
+    while (kept > 1 && unique[item[kept - 1]] == unique[item[0]])
+        kept--;
+    return kept;
+}
+
+/* Without such corners; gone[f] is set of facets that have none of their own left. */
+static size_t mend_polygons(tm_polygon_surface *surface, const uint32_t *unique,
+                            bool *gone)
+{
+    enum { POLYGON_MIN = 3 };
+    size_t mended = 0, corners = 0;
+    for (size_t f = 0; f < surface->facets; f++) {
+        const size_t first = surface->facet_start[f], end = surface->facet_start[f + 1];
+        const bool alone = end - first == 1 && surface->facet_hole_start[f] ==
+                                                   surface->facet_hole_start[f + 1];
+        for (size_t p = first; p < end; p++) {
+            uint32_t *item = surface->item + surface->start[p];
+            const size_t count = surface->start[p + 1] - surface->start[p];
+            size_t kept =
+                count < POLYGON_MIN || !alone ? count : join_corners(item, count, unique);
+            mended += kept < count;
+            gone[f] = kept < count && kept < POLYGON_MIN;
+            memmove(surface->item + corners, item, kept * sizeof *item);
+            surface->start[p] = corners;
+            corners += kept;
+        }
+    }
+    surface->start[surface->polygons] = surface->corners = corners;
+    return mended;
+}
+
+tm_status tm_surface_drop_degenerate(tm_polygon_surface *surface, size_t *mended,
+                                     tm_error *error)
+{
+    *mended = 0;
+    if (surface->facets == 0)
+        return TM_OK;
+    uint32_t *unique = tm_new(surface->nodes, sizeof *unique);
+    bool *gone = calloc(surface->facets, sizeof *gone);
+    size_t joined;
+    const bool done =
+        unique && gone && tm_points_weld(surface->xyz, surface->nodes, unique, &joined);
+    if (done)
+        *mended = mend_polygons(surface, unique, gone);
+    if (*mended > 0)
+        drop_facets(surface, gone);
+    free(unique);
+    free(gone);
+    return done ? TM_OK : tm_fail_memory(error);
+}

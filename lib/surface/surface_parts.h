@@ -92,6 +92,11 @@ tm_status tm_surface_number_regions(tm_surface *surface,
                                     tm_region_finder *at, const void *context,
                                     tm_error *error);
 
+/* Whether t turns as the triangle of the file that it is from; true where it has been
+ * flipped, as that had no area. */
+bool tm_surface_is_as_given(const tm_surface *surface, const tm_polygon_surface *polygons,
+                            size_t t);
+
 /* The unit normal of t; false where it is so thin that it has none of its own. */
 bool tm_surface_own_normal(const tm_surface *surface, uint32_t t, double normal[3]);
 

@@ -245,3 +245,16 @@ tm_status tm_surface_triangulate(tm_surface *surface, const tm_polygon_surface *
     free(unique);
     return status;
 }
+
+bool tm_surface_is_as_given(const tm_surface *surface, const tm_polygon_surface *polygons,
+                            size_t t)
+{
+    const size_t facet = surface->facet[t];
+    const uint32_t *row = polygons->item + polygons->start[polygons->facet_start[facet]];
+    const double *first = surface->xyz[surface->triangle[t][0]];
+    const double *second = surface->xyz[surface->triangle[t][1]];
+    for (int i = 0; i < 3; i++)
+        if (tm_distance2(polygons->xyz[row[i]], first) == 0)
+            return tm_distance2(polygons->xyz[row[(i + 1) % 3]], second) == 0;
+    return true;
+}

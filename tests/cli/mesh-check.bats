@@ -651,6 +651,72 @@ END
     done
 }
 
+# A cube of 12 triangles as a stream, changed by a sed script of OFF.
+changed_cube() {
+    surface cube off | sed "$1" | surface-import -q
+}
+
+@test "a good surface: the table and the JSON, exit 0" {
+    surface cube stream >cube.tm
+    run -0 mesh-check cube.tm
+    [ "$(grep -c . <<<"$output")" -eq 11 ]
+    [ "$(tail -n 1 <<<"$output")" = 'nothing is wrong' ]
+    mesh-check --json - cube.tm >report
+    grep -qx '{"nodes": 8, "triangles": 12, "components": 1, "nested": 0, "regions": 1, "euler": 2, "volume": \(1\|0.99999999999999[0-9]*\), "area": 6, "unused_nodes": 0, "non_manifold_edges": 0, "open_edges": 0, "duplicate_nodes": 0, "degenerate": 0, "repeated_faces": 0, "turned_faces": 0, "turned_shells": 0, "crossings": 0, "crossing_pairs": \[\], "problem": "", "good": true}' report
+    surface sphere off | surface-import | mesh-check -j 2 >two
+    surface sphere off | surface-import | mesh-check | cmp - two
+    run -2 mesh-check --against cube.tm cube.tm
+}
+
+# shellcheck disable=SC2016 # the $ is sed's
+@test "what is wrong with a surface: each kind, with its place" {
+    wrong() { # wrong SED JSON-MEMBER LINE
+        changed_cube "$1" >wrong.tm
+        mesh-check --json report -o text wrong.tm && return 1
+        grep -q "$2" report
+        grep -q "$3" text
+    }
+    wrong '2s/12/11/; $d' '"open_edges": 3, ' '^    nodes [0-9]* and [0-9]*, from (.*) to (.*)$'
+    wrong '2s/12/13/; $p' '"repeated_faces": 1, ' '^repeated triangles: 1, the first is 13, at (.*)$'
+    wrong '$s/3 \(.\) \(.\) \(.\)/3 \2 \1 \3/' '"turned_faces": 1, "turned_shells": 0, ' \
+        '^triangles turned against most of their shell: 1, the first is 12, at ('
+    wrong 's/^3 \(.\) \(.\) \(.\)$/3 \2 \1 \3/' '"turned_faces": 0, "turned_shells": 1, ' \
+        '^outermost shells that look inward: 1, the first is 1, at ('
+    wrong '2s/8 12/9 12/; 3s/.*/&\n&/; s/^3 \(.\) \(.\) \(.\)$/3 \1 \2 \3/' '"duplicate_nodes": 1, ' \
+        '^nodes in the place of an earlier one: 1$'
+    printf '%s\n' 'termesh 1' .node '4 3 0 0' '1 0 0 0' '2 1 0 0' '3 0 1 0' '4 2 0 0' .face '2 0' \
+        '1 1 2 3' '2 1 2 4' .end >flat.tm
+    run -1 mesh-check flat.tm
+    [[ $output == *'degenerate triangles: 1, the first is 2, at (0, 0, 0)'* ]]
+}
+
+@test "crossings: each pair, with a place; nesting" {
+    cat >three.py <<'END'
+import sys
+print('OFF\n12 12 0')
+for x, s in ((0, 9), (0.5, 1), (float(sys.argv[1]), 1)):
+    for p in ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)):
+        print(p[0] * s + x, p[1] * s + x, p[2] * s + x)
+for b in (0, 4, 8):
+    for f in ((0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)):
+        print(3, *(b + v for v in f))
+END
+    python3 three.py 1.5 | surface-import | mesh-check >apart
+    grep -q '^shells within others *2$' apart
+    python3 three.py 0.6 | surface-import >crossed.tm
+    run -1 mesh-check --json report crossed.tm
+    pairs=$(sed -n 's/^crossings: //p' <<<"$output")
+    [ "$pairs" -ge 3 ]
+    [ "$(grep -c '^    triangles [0-9]* and [0-9]* meet near (.*)$' <<<"$output")" -eq "$((pairs < 5 ? pairs : 5))" ]
+    python3 -c '
+import json, sys
+found = json.load(open("report"))
+pairs = found["crossing_pairs"]
+assert len(pairs) == found["crossings"] == int(sys.argv[1])
+assert pairs == sorted(pairs) and all(len(p) == 5 and 5 <= p[0] < p[1] <= 12 for p in pairs)
+assert "cross" in found["problem"]' "$pairs"
+}
+
 @test "usage errors: exit 2" {
     run -2 mesh-check --no-such-option cube.tm
     run -2 mesh-check cube.tm cube.tm

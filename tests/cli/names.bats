@@ -174,7 +174,8 @@ cube() {
         '4 1' '3 1 3 2 1' '3 1 2 4 2' '3 2 3 4 3' '3 1 4 3 4' 0 1 '1 .1 .1 .1 7 -1' >all.smesh
     command -v tetgen >/dev/null || skip "there is no tetgen"
     run -3 --separate-stderr tetgen-mesh --strict all.smesh
-    [[ "$stderr" == *'1 regions, which --switches A would keep'* ]]
+    [[ "$stderr" == *'1 regions, which --regions would keep'* ]]
+    run -0 tetgen-mesh --quiet --strict --regions all.smesh
     run -0 tetgen-mesh --quiet --strict --switches A all.smesh
     [ -x "$TM_BUILD/bin/octree-mesh" ] || skip "there is no p4est"
     run -3 octree-mesh --strict -a 2 all.smesh

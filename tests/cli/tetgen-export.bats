@@ -140,3 +140,18 @@ END
     grep -x '3 0 0 0.30000000000000004 0 0 0' out.node
     grep -x '1 1 0 0 1e-300 0 7' out.node
 }
+
+@test "the name of one of the files stands for all" {
+    tetgen-export plain two.tm
+    for suffix in node ele face edge group; do
+        tetgen-export "other.$suffix" two.tm
+        cmp other.node plain.node
+        cmp other.ele plain.ele
+        rm other.*
+    done
+    mkdir folder
+    tetgen-export folder/.node two.tm
+    [ -e folder/.node.node ]
+    tetgen-export x.y two.tm
+    [ -e x.y.node ]
+}

@@ -126,13 +126,62 @@ END
     tetgen-import -q --no-history cube.1 | cmp - plain.tm
 }
 
-@test "tetrahedra of second order are refused" {
-    surface cube smesh >cube.smesh
-    tetgen -pQ -o2 cube.smesh
-    run --separate-stderr tetgen-import cube.1
-    [ "$status" -eq 3 ]
-    [ -z "$output" ]
-    [[ $stderr == 'tetgen-import: cube.1.ele:1: tetrahedra of 10 nodes, of second order '*'-o2'* ]]
+@test "tetrahedra of second order: their corners, and no other node" {
+    surface cube smesh | sed '2,9s/$/ 0.5 7/; 1s/.*/8 3 1 1/' >cube.smesh
+    tetgen -pQ cube.smesh
+    tetgen-import -q --no-history cube.1 >plain.tm
+    for switches in -o2 -o2nn; do
+        tetgen -pQ $switches cube.smesh
+        run -0 --separate-stderr tetgen-import --no-history cube.1 -o second.tm
+        [[ $stderr == 'tetgen-import: .ele: tetrahedra of 10 nodes, of second order, are taken by their corners; 19 nodes in the middle of edges are dropped' ]]
+        cmp second.tm plain.tm
+    done
+    # without .face and .edge, too
+    rm cube.1.face cube.1.edge
+    tetgen-import -q cube.1 | mesh-check
+}
+
+@test "rows in any order of their numbers" {
+    tetgen-import --no-history two >expected.tm
+    for suffix in node ele face edge; do
+        sed 's/#.*//; /^[ \r]*$/d' "two.$suffix" >rows
+        { sed -n 1p rows; sed 1d rows | tac; } >"back.$suffix"
+    done
+    tetgen-import --no-history back | cmp - expected.tm
+    printf '3 3 0 0\n2 2 0 0\n0 0 0 0\n1 1 0 0\n' >a.node
+    [ "$(tetgen-import --no-history a | rows .node /dev/stdin | xargs)" = '0 0 0 0 1 1 0 0 2 2 0 0' ]
+    printf '3 3 0 0\n2 2 0 0\n1 0 0 0\n2 1 0 0\n' >a.node
+    run -3 --separate-stderr tetgen-import a
+    [[ $stderr == *'no row has number 3 '* ]]
+    printf '3 3 0 0\n3 2 0 0\n1 0 0 0\n4 1 0 0\n' >a.node
+    run -3 --separate-stderr tetgen-import a
+    [[ $stderr == *'a.node:4: the row has number 4 '* ]]
+}
+
+@test "a marker as a real number, exponents as Fortran writes them" {
+    printf '%s\n' '4 3 1 1' '1 0 0 0 1D0 1.0' '2 1.0D0 0 0 2.5d-1 1.0D0' '3 0 1d0 0 0 -2.' \
+        '4 0 0 0.1D+1 0 3e0' >real.node
+    printf '1 1\n1 1 2 3 7.0\n' >real.face
+    tetgen-import --no-history real >real.tm
+    [ "$(rows .node real.tm | xargs)" = '1 0 0 0 1 1 2 1 0 0 0.25 1 3 0 1 0 0 -2 4 0 0 1 0 3' ]
+    [ "$(rows .face real.tm)" = '1 1 2 3 7' ]
+    for wrong in 1.5 1D 1Q0 3e9 1.0.0; do
+        printf '1 3 0 1\n1 0 0 0 %s\n' "$wrong" >wrong.node
+        run -3 --separate-stderr tetgen-import wrong
+        [[ $stderr == *'wrong.node:2: the marker: '* ]]
+    done
+}
+
+@test "one file that needs its nodes: they are beside it" {
+    tetgen-import --no-history two.node two.ele >expected.tm
+    tetgen-import --no-history two.ele | cmp - expected.tm
+    tetgen-import --no-history two.face two.edge >got.tm
+    tetgen-import --no-history two.node two.face two.edge | cmp - got.tm
+    gzip two.node
+    tetgen-import --no-history two.ele | cmp - expected.tm
+    rm two.node.gz
+    run -3 --separate-stderr tetgen-import two.ele
+    [[ $stderr == *'two.ele: its .node file is not among the files'* ]]
 }
 
 @test "parts: STEM.PART.node beside STEM.node" {
@@ -182,9 +231,10 @@ END
     run --separate-stderr tetgen-import three
     [ "$status" -eq 4 ]
     [[ $stderr == 'tetgen-import: three.node: cannot open: '* ]]
-    run --separate-stderr tetgen-import two.ele
+    cp two.ele lone.ele
+    run --separate-stderr tetgen-import lone.ele
     [ "$status" -eq 3 ]
-    [ "$stderr" = 'tetgen-import: two.ele: its .node file is not among the files' ]
+    [ "$stderr" = 'tetgen-import: lone.ele: its .node file is not among the files' ]
     run --separate-stderr tetgen-import two.node two.ele two.ele
     [ "$status" -eq 3 ]
     [[ $stderr == *'second file'* ]]

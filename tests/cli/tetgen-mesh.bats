@@ -70,12 +70,18 @@ fan_volume() {
     [ "$(grep -c '^\.node' <<<"$output")" -eq 1 ]
 }
 
-@test "a stream without a surface is refused" {
+@test "tetrahedra: what refines them is needed; a stream of other elements is refused" {
     surface cube off | tetgen-mesh >mesh.tm
-    run --separate-stderr tetgen-mesh mesh.tm
-    [ "$status" -eq 3 ]
+    run -3 --separate-stderr tetgen-mesh mesh.tm
     [ -z "$output" ]
-    [[ $stderr == 'tetgen-mesh: mesh.tm: holds tetrahedra (.ele), but tetgen-mesh takes points'* ]]
+    [[ $stderr == 'tetgen-mesh: mesh.tm: holds tetrahedra (.ele), but tetgen-mesh takes them to refine only: -q'* ]]
+    run -2 --separate-stderr tetgen-mesh --regions -q mesh.tm
+    run -3 --separate-stderr tetgen-mesh -r -q <(surface cube off)
+    printf '%s\n' 'termesh 1' .node '8 3 0 0' '1 0 0 0' '2 1 0 0' '3 1 1 0' '4 0 1 0' \
+        '5 0 0 1' '6 1 0 1' '7 1 1 1' '8 0 1 1' .mix '1 0' '1 8 1 2 3 4 5 6 7 8' .end >hexahedron.tm
+    run -3 --separate-stderr tetgen-mesh hexahedron.tm
+    [ -z "$output" ]
+    [[ $stderr == 'tetgen-mesh: hexahedron.tm: holds mixed elements (.mix), but tetgen-mesh takes points'* ]]
 }
 
 @test "polygons need no cutting" {
@@ -254,7 +260,7 @@ END
     [[ $stderr == *'open.off: TetGen made no tetrahedra: the surface encloses no volume'* ]]
 }
 
-@test "a surface that intersects itself: TetGen's complaint is shown" {
+@test "a surface that intersects itself: which faces do, and where" {
     cat >pierced.off <<'END'
 OFF
 8 8 0
@@ -278,8 +284,35 @@ END
     run --separate-stderr tetgen-mesh pierced.off
     [ "$status" -eq 3 ]
     [ -z "$output" ]
-    [[ $stderr == *'tetgen-mesh: tetgen:   Facet #1 intersects facet #5'* ]]
-    [[ ${stderr_lines[-1]} == 'tetgen-mesh: pierced.off: the surface intersects itself: TetGen cannot fill it' ]]
+    [[ $stderr == *'tetgen-mesh: faces 1 and 5 meet near (1.05, 1.05, 0)'* ]]
+    [[ $stderr == *'tetgen-mesh: … and 2 pairs more'* ]]
+    [[ ${stderr_lines[-1]} == 'tetgen-mesh: pierced.off: the surface intersects itself: TetGen cannot fill it (surface-mend '*'octree-mesh --lenient '* ]]
+}
+
+@test "faces with a node twice make no segment inside" {
+    surface cube off >cube.off
+    tetgen-mesh --no-history cube.off >expected.tm
+    # between opposite corners: a segment that would cut the cube
+    sed '2s/12/14/' cube.off >twice.off
+    printf '3 0 0 6\n4 1 7 7 1\n' >>twice.off
+    run -0 --separate-stderr tetgen-mesh --no-history twice.off
+    [ "$stderr" = 'tetgen-mesh: faces with two corners in the same place: 2, which lose one, or are dropped' ]
+    cmp expected.tm <<<"$output"
+    # and one that has a corner too many
+    surface box off | sed '$s/^4 \([0-9]*\)/5 \1 \1/' | tetgen-mesh --no-history |
+        cmp - <(surface box off | tetgen-mesh --no-history)
+}
+
+@test "binary STL with bytes behind the last triangle" {
+    surface sphere stl-binary >exact.stl
+    tetgen-mesh --no-history exact.stl >expected.tm
+    for more in 1 3 50 1000; do
+        { cat exact.stl; head -c $more /dev/zero | tr '\0' x; } >more.stl
+        run -0 --separate-stderr tetgen-mesh --no-history -o got.tm more.stl
+        [ "$stderr" = "tetgen-mesh: more.stl: $more bytes behind the last triangle are skipped" ]
+        cmp got.tm expected.tm
+        tetgen-mesh --no-history <more.stl | cmp - expected.tm
+    done
 }
 
 @test "flat surfaces, flat points and too few points are refused" {

@@ -84,12 +84,12 @@ static tm_status read_rows(const char *bytes, size_t size, tm_text *meaning,
     enum { NODES = 99 };
     tm_stream stream;
     tm_error error;
-    unsigned base = 1;
+    tm_tetgen_nodes nodes = {.base = 1, .count = NODES};
     tm_stream_init(&stream);
     tm_block *block = tm_stream_add(&stream, name);
     assert_non_null(block);
-    const tm_status status =
-        tm_tetgen_read(block, bytes, size, "file", &base, NODES, &error);
+    const tm_status status = tm_tetgen_read(block, bytes, size, "file", &nodes, &error);
+    tm_tetgen_nodes_free(&nodes);
     if (status == TM_OK)
         write_stream(&stream, meaning);
     tm_stream_free(&stream);

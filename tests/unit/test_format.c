@@ -323,8 +323,8 @@ static void test_defects(void **state)
     assert_int_equal(d.unused_nodes, 1);
     assert_int_equal(d.repeated_corners, 1);
     assert_int_equal(d.open_edges, 2);
-    assert_int_equal(d.open_edge[0], 0);
-    assert_int_equal(d.open_edge[1], 2);
+    assert_int_equal(d.open_edge[0][0], 0);
+    assert_int_equal(d.open_edge[0][1], 2);
     assert_int_equal(d.crowded_edges, 1); /* 2-3: a triangle, and twice the bad one */
     assert_false(d.flat);
     assert_true(defects_of("OFF\n4 0 0\n0 0 1\n3 0 1\n0 1 1\n1 1 1\n").flat);

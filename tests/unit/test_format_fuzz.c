@@ -119,8 +119,8 @@ static void read_rows(const char *bytes, size_t size, const char *name)
     tm_block *block = tm_stream_add(&stream, name);
     assert_non_null(block);
     tm_error error = {.status = TM_OK};
-    unsigned base = 1;
-    if (tm_tetgen_read(block, copy, size, "file", &base, NODES, &error) == TM_OK) {
+    tm_tetgen_nodes nodes = {.base = 1, .count = NODES};
+    if (tm_tetgen_read(block, copy, size, "file", &nodes, &error) == TM_OK) {
         size_t integers = block->count * tm_block_integers(block->kind);
         for (size_t i = 0; i < integers; i++)
             assert_true(block->integer[i] < NODES);
@@ -128,7 +128,8 @@ static void read_rows(const char *bytes, size_t size, const char *name)
         assert_int_equal(error.status, TM_ERROR_INPUT);
         assert_int_equal(block->count, 0);
     }
-    assert_true(base <= 1);
+    assert_true(nodes.base <= 1);
+    tm_tetgen_nodes_free(&nodes);
     tm_stream_free(&stream);
     free(copy);
 }

@@ -2,6 +2,9 @@
 /* Searches in the tree of a surface against what looks at every triangle. */
 #include "../../lib/geom/predicates.h"
 #include "../../lib/surface/surface.h"
+#include "../../lib/surface/surface_apart.h"
+#include "../../lib/surface/surface_crossings.h"
+#include "../../lib/surface/surface_seeds.h"
 #include "random.h"
 #include "surface_shapes.h"
 
@@ -346,6 +349,92 @@ static void test_soup(void **state)
     assert_true(taken > POINTS / 2);
 }
 
+/* Whether all have areas and no two meet, pair by pair. */
+static bool are_apart(const double (*xyz)[3], const uint32_t (*triangle)[3], size_t count)
+{
+    for (size_t t = 0; t < count; t++)
+        for (size_t k = 0; k < t; k++)
+            if (tm_triangles_meet(xyz, triangle[k], triangle[t]))
+                return false;
+    return true;
+}
+
+/* Small triangles in a large box: about half of the soups are apart. */
+static void test_apart(void **state)
+{
+    (void)state;
+    enum { SOUPS = 400, MOST = 60 };
+    size_t apart_count = 0;
+    for (int soup = 0; soup < SOUPS; soup++) {
+        const size_t count = random_below(MOST);
+        const double size = 0.5 * random_unit() * random_unit();
+        double xyz[3 * MOST][3] = {{0}};
+        uint32_t triangle[MOST][3];
+        for (size_t t = 0; t < count; t++) {
+            const double at[3] = {random_unit(), random_unit(), random_unit()};
+            for (uint32_t i = 0; i < 3; i++) {
+                const uint32_t v = 3 * (uint32_t)t + i;
+                triangle[t][i] = v > 3 && random_below(8) == 0 ? v - 3 : v;
+                for (int x = 0; x < 3; x++)
+                    xyz[v][x] = at[x] + size * random_unit();
+            }
+        }
+        tm_error error;
+        bool apart = false;
+        assert_int_equal(tm_triangles_are_apart((const double(*)[3])xyz, 3 * count,
+                                                (const uint32_t(*)[3])triangle, count,
+                                                &apart, &error),
+                         TM_OK);
+        assert_int_equal(apart, are_apart((const double(*)[3])xyz,
+                                          (const uint32_t(*)[3])triangle, count));
+        apart_count += apart;
+    }
+    assert_in_range(apart_count, SOUPS / 8, SOUPS - SOUPS / 8);
+    const double line[3][3] = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}};
+    const uint32_t flat[1][3] = {{0, 1, 2}};
+    bool apart = true;
+    assert_int_equal(tm_triangles_are_apart(line, 3, flat, 1, &apart, NULL), TM_OK);
+    assert_false(apart);
+}
+
+/* Boxes within boxes, beside others, turned any way: each seed is in its own box and in
+ * none that this has in it. */
+static void test_seeds(void **state)
+{
+    (void)state;
+    const double side[4][2] = {{0, 10}, {1, 9}, {2, 4}, {5, 8}};
+    const bool turned[4] = {false, true, false, true};
+    const tm_surface_options options = {
+        .feature_angle = TM_FEATURE_ANGLE, .regions = true, .walls = true};
+    tm_polygon_surface p;
+    tm_surface surface;
+    tm_surface_seed seed[4];
+    tm_error error = {0};
+    tm_polygon_surface_init(&p);
+    for (int b = 0; b < 4; b++) {
+        const double low[3] = {side[b][0], side[b][0], side[b][0]};
+        const double high[3] = {side[b][1], side[b][1], side[b][1]};
+        add_box(&p, low, high, turned[b]);
+    }
+    assert_int_equal(tm_surface_build(&surface, &p, &options, &error), TM_OK);
+    assert_int_equal(tm_surface_seeds(&surface), 4);
+    assert_int_equal(tm_surface_find_seeds(&surface, &p, seed, &error), TM_OK);
+    for (int b = 0; b < 4; b++) {
+        assert_int_equal(seed[b].nested, b > 0);
+        assert_int_equal(seed[b].inward, b > 0 && turned[b]);
+        assert_true(seed[b].clearance > 0.1);
+        for (int k = 0; k < 4; k++) {
+            bool within = true;
+            for (int x = 0; x < 3; x++)
+                within = within && seed[b].point[x] > side[k][0] &&
+                         seed[b].point[x] < side[k][1];
+            assert_int_equal(within, k == b || k == 0 || (k == 1 && b > 1));
+        }
+    }
+    tm_surface_free(&surface);
+    tm_polygon_surface_free(&p);
+}
+
 int main(void)
 {
     random_start();
@@ -353,7 +442,8 @@ int main(void)
         cmocka_unit_test(test_closest), cmocka_unit_test(test_closest_on_curve),
         cmocka_unit_test(test_inside),  cmocka_unit_test(test_winding),
         cmocka_unit_test(test_boxes),   cmocka_unit_test(test_touching_boxes),
-        cmocka_unit_test(test_soup),
+        cmocka_unit_test(test_soup),    cmocka_unit_test(test_apart),
+        cmocka_unit_test(test_seeds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

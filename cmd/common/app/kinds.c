@@ -24,7 +24,7 @@ static const struct {
     const char *filter;
     unsigned kinds;
 } table[] = {
-    {"tetgen-mesh", POINTS | SURFACE | PART},
+    {"tetgen-mesh", POINTS | SURFACE | TETRAHEDRA | PART},
     {"surface-import", POINTS | SURFACE | PART},
     {"surface-mend", SURFACE | PART},
     {"octree-mesh", SURFACE | PART},
@@ -35,7 +35,7 @@ static const struct {
     {"tet-stats", TETRAHEDRA},
     {"jens-stats", TETRAHEDRA | MIXED},
     {"poly-stats", POLYHEDRA},
-    {"mesh-check", CELLS},
+    {"mesh-check", SURFACE | CELLS | PART},
     {"mesh-view", ALL},
     {"getfem-export", SURFACE | TETRAHEDRA | MIXED},
     {"gmsh-export", POINTS | SURFACE | TETRAHEDRA | MIXED},

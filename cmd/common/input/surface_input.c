@@ -154,7 +154,7 @@ static tm_format read_surface(const filter *f, tm_polygon_surface *surface,
             status = kinds_check(f->name, stream, name, &error);
         if (status == TM_OK) {
             rename_surface(stream);
-            if (!mesh_too || tm_stream_find(stream, "surface.node") ||
+            if (tm_stream_find(stream, "surface.node") ||
                 tm_content_of(stream) <= TM_CONTENT_SURFACE)
                 status = surface_input_of_stream(stream, name, surface, &error);
         }
@@ -171,6 +171,9 @@ static tm_format read_surface(const filter *f, tm_polygon_surface *surface,
     if (status != TM_OK)
         filter_fail(f, &error);
     tm_text_free(&bytes);
+    if (surface->left_bytes > 0)
+        filter_note(f, "%s: %zu bytes behind the last triangle are skipped", name,
+                    surface->left_bytes);
     filter_verbose(f, "%s: %s, %zu nodes, %zu faces", name, tm_format_name(format),
                    surface->nodes, surface->facets);
     return format;

@@ -11,12 +11,12 @@
 /* Reads FILE or standard input; exits on failure. Of a stream, its blocks and history
  * are in *stream, and surface.node and surface.face in *surface as well; where it has
  * none of them and is .node and .face alone, these have become they. Else *stream is
- * empty. The nodes of a .poly or .smesh file may be in the .node file beside it. */
+ * empty. The nodes of a .poly or .smesh file may be in the .node file beside it. Of
+ * a stream with elements that the filter takes, but no surface, *surface stays empty. */
 tm_format surface_input_read(const filter *f, tm_polygon_surface *surface,
                              tm_stream *stream);
 
-/* The same where a mesh is taken, too: of a stream without surface.node that has elements
- * *surface stays empty. */
+/* The same where any mesh is taken, too. */
 tm_format surface_input_read_any(const filter *f, tm_polygon_surface *surface,
                                  tm_stream *stream);
 

@@ -10,7 +10,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 /* Signals -------------------------------------------------------------------------- */
@@ -85,6 +87,57 @@ void private_signals_release(void)
 
 /* The folder ----------------------------------------------------------------------- */
 
+static void remove_folder(const char *path)
+{
+    DIR *listing = opendir(path);
+    if (listing) {
+        for (struct dirent *entry; (entry = readdir(listing));)
+            if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0)
+                unlinkat(dirfd(listing), entry->d_name, 0);
+        closedir(listing);
+    }
+    rmdir(path);
+}
+
+/* Removes a folder of ours that nobody has locked: who made it was killed. One that is
+ * young may not be locked yet. */
+static void remove_left(const char *path)
+{
+    static const time_t young = 60; /* seconds */
+    struct stat about;
+    const int fd = open(path, O_DIRECTORY | O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+    if (fd < 0)
+        return;
+    if (fstat(fd, &about) == 0 && about.st_uid == geteuid() &&
+        (about.st_mode & (S_IRWXG | S_IRWXO)) == 0 &&
+        about.st_mtime < time(NULL) - young && flock(fd, LOCK_EX | LOCK_NB) == 0)
+        remove_folder(path);
+    close(fd);
+}
+
+/* Removes what others that were killed have left: termesh-NAME.XXXXXX beside
+ * folder->path. */
+static void remove_all_left(const private_folder *folder)
+{
+    enum { RANDOM = 6 };
+    char parent[sizeof folder->path], path[2 * sizeof folder->path];
+    memcpy(parent, folder->path, sizeof parent);
+    char *name = strrchr(parent, '/');
+    *name++ = '\0';
+    const size_t size = strlen(name);
+    DIR *listing = opendir(parent);
+    if (!listing)
+        return;
+    for (struct dirent *entry; (entry = readdir(listing));)
+        if (strlen(entry->d_name) == size &&
+            strncmp(entry->d_name, name, size - RANDOM) == 0 &&
+            strcmp(entry->d_name, name) != 0) {
+            snprintf(path, sizeof path, "%s/%s", parent, entry->d_name);
+            remove_left(path);
+        }
+    closedir(listing);
+}
+
 tm_status private_folder_open(private_folder *folder, const char *name, tm_error *error)
 {
     const char *parent = getenv("TMPDIR");
@@ -95,13 +148,18 @@ tm_status private_folder_open(private_folder *folder, const char *name, tm_error
                        "the path in TMPDIR has a line break, which TetGen's files cannot "
                        "name");
     /* A program takes what begins with - for an option. */
-    int size = snprintf(folder->path, sizeof folder->path, "%s%s/%s.XXXXXX",
+    int size = snprintf(folder->path, sizeof folder->path, "%s%s/termesh-%s.XXXXXX",
                         parent[0] == '-' ? "./" : "", parent, name);
     if (size < 0 || (size_t)size >= sizeof folder->path)
         return tm_fail(error, TM_ERROR_SYSTEM, "the path in TMPDIR is too long");
     private_signals_hold();
-    if (mkdtemp(folder->path))
+    if (mkdtemp(folder->path)) {
+        folder->lock = open(folder->path, O_DIRECTORY | O_RDONLY | O_CLOEXEC);
+        if (folder->lock >= 0)
+            flock(folder->lock, LOCK_EX | LOCK_NB);
+        remove_all_left(folder);
         return TM_OK;
+    }
     tm_status status =
         tm_fail(error, TM_ERROR_SYSTEM, "cannot make a folder in %s: %s%s", parent,
                 strerror(errno), getenv("TMPDIR") ? " (TMPDIR says where)" : "");
@@ -130,12 +188,17 @@ static tm_status fail_file(const private_folder *folder, const char *file,
                    strerror(errno));
 }
 
+int private_folder_create(const private_folder *folder, const char *file)
+{
+    return open_file(folder, file, O_WRONLY | O_CREAT | O_EXCL);
+}
+
 tm_status private_folder_write(const private_folder *folder, const char *file,
                                const tm_text *text, tm_error *error)
 {
     if (text->failed)
         return tm_fail_memory(error);
-    int fd = open_file(folder, file, O_WRONLY | O_CREAT | O_EXCL);
+    int fd = private_folder_create(folder, file);
     if (fd < 0)
         return fail_file(folder, file, "cannot make", error);
     tm_status status = tm_write_all(fd, text->byte, text->size, NULL);
@@ -174,14 +237,9 @@ int private_folder_full(const private_folder *folder)
 
 void private_folder_close(private_folder *folder)
 {
-    DIR *listing = opendir(folder->path);
-    if (listing) {
-        for (struct dirent *entry; (entry = readdir(listing));)
-            if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0)
-                unlinkat(dirfd(listing), entry->d_name, 0);
-        closedir(listing);
-    }
-    rmdir(folder->path);
+    remove_folder(folder->path);
+    if (folder->lock >= 0)
+        close(folder->lock);
     folder->path[0] = '\0';
     private_signals_release();
 }

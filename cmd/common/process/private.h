@@ -29,14 +29,19 @@ void private_signals_release(void);
 /* A folder that only the user can look into, in which another program works on files of
  * ours. It is gone when private_folder_close() returns, and also where a signal ends
  * the filter before: SIGINT, SIGTERM and SIGHUP kill the program, private_folder_close()
- * then raises them again. One at a time. */
+ * then raises them again. Where the filter is killed it stays, until the next one makes
+ * a folder of that name in the same place. One at a time. */
 typedef struct private_folder {
     char path[768];
+    int lock; /* the folder, locked as long as it is in use */
 } private_folder;
 
-/* Makes $TMPDIR/NAME.XXXXXX, or that in /tmp, with mode 0700. The path, which may be
- * relative, does not begin with -. */
+/* Makes $TMPDIR/termesh-NAME.XXXXXX, or that in /tmp, with mode 0700. The path, which may
+ * be relative, does not begin with -. */
 tm_status private_folder_open(private_folder *folder, const char *name, tm_error *error);
+
+/* Makes a file of the folder, to write; -1 with errno where that fails. */
+int private_folder_create(const private_folder *folder, const char *file);
 
 /* Writes a file of the folder. */
 tm_status private_folder_write(const private_folder *folder, const char *file,

@@ -6,12 +6,15 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
+#include <poll.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <termios.h>
-#include <sys/prctl.h>
+#include <time.h>
 #include <unistd.h>
 
 /* A pair of descriptors: what is written to `write` can be read from `read`. */
@@ -54,10 +57,12 @@ static bool open_terminal(channel *c)
 }
 
 /* In the new process: never returns. */
-_Noreturn static void become(char *const argv[], int output, int failure)
+_Noreturn static void become(char *const argv[], pid_t parent, int output, int failure)
 {
     setpgid(0, 0);
     prctl(PR_SET_PDEATHSIG, SIGKILL); /* where we are killed ourselves */
+    if (getppid() != parent)          /* or were, before that */
+        _exit(EXIT_FAILURE);
     int nothing = open("/dev/null", O_RDONLY);
     if (nothing >= 0 && dup2(nothing, STDIN_FILENO) >= 0 &&
         dup2(output, STDOUT_FILENO) >= 0 && dup2(output, STDERR_FILENO) >= 0) {
@@ -70,21 +75,65 @@ _Noreturn static void become(char *const argv[], int output, int failure)
     _exit(EXIT_FAILURE);
 }
 
+static double now(void)
+{
+    static const double nanosecond = 1e-9;
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + nanosecond * (double)t.tv_nsec;
+}
+
+/* The times of one run; HUGE_VAL: never. */
+typedef struct {
+    double end;    /* when it is killed */
+    double silent; /* when it has been silent for too long */
+} moments;
+
+/* Waits until there is something to read, or for a signal; kills the program when its
+ * time is over. */
+static void wait_to_read(int fd, pid_t child, const program_watch *watch, moments *at,
+                         program_end *end)
+{
+    static const double milliseconds = 1e3, longest = 1e6;
+    struct pollfd one = {.fd = fd, .events = POLLIN};
+    for (;;) {
+        const double until = fmin(fmin(at->end, at->silent) - now(), longest);
+        const int wait = (int)ceil(fmax(until, 0) * milliseconds);
+        const int ready = poll(&one, 1, wait);
+        if (ready > 0 || (ready < 0 && errno != EINTR))
+            return;
+        if (now() >= at->silent) {
+            at->silent = HUGE_VAL;
+            watch->silent(watch->context);
+        }
+        if (now() >= at->end) {
+            at->end = HUGE_VAL;
+            end->timed_out = true;
+            kill(-child, SIGKILL);
+        }
+    }
+}
+
 /* Reads until no process can write any more; a terminal says so by EIO. */
-static tm_status listen_to(int fd, program_listener *listener, void *context,
-                           tm_text *output, tm_error *error)
+static tm_status listen_to(int fd, pid_t child, const program_watch *watch,
+                           program_end *end, tm_error *error)
 {
     enum { STEP = 4096 };
     char bytes[STEP];
+    moments at = {.end = watch->timeout > 0 ? now() + watch->timeout : HUGE_VAL,
+                  .silent = now() + watch->silence};
     for (;;) {
+        wait_to_read(fd, child, watch, &at, end);
         ptrdiff_t got = tm_read_some(fd, bytes, sizeof bytes);
         if (got == 0 || (got < 0 && errno == EIO))
             return TM_OK;
         if (got < 0)
             return tm_fail(error, TM_ERROR_SYSTEM, "cannot read from a program: %s",
                            strerror(errno));
-        tm_text_append(output, bytes, (size_t)got);
-        listener(context, bytes, (size_t)got);
+        tm_text_append(&end->output, bytes, (size_t)got);
+        watch->listen(watch->context, bytes, (size_t)got);
+        if (at.silent < HUGE_VAL)
+            at.silent = now() + watch->silence;
     }
 }
 
@@ -104,10 +153,11 @@ static tm_status wait_for(pid_t child, program_end *end, tm_error *error)
 
 static pid_t start(char *const argv[], const channel *output, const channel *failure)
 {
+    const pid_t parent = getpid();
     private_signals_block();
     pid_t child = private_signals_came() ? -1 : fork();
     if (child == 0)
-        become(argv, output->write, failure->write);
+        become(argv, parent, output->write, failure->write);
     int cause = errno;
     if (child > 0) {
         setpgid(child, child);
@@ -118,8 +168,8 @@ static pid_t start(char *const argv[], const channel *output, const channel *fai
     return child;
 }
 
-tm_status run_program(char *const argv[], program_listener *listener, void *context,
-                      program_end *end, tm_error *error)
+tm_status run_program(char *const argv[], const program_watch *watch, program_end *end,
+                      tm_error *error)
 {
     channel output, failure;
     *end = (program_end){0};
@@ -140,7 +190,7 @@ tm_status run_program(char *const argv[], program_listener *listener, void *cont
                          private_signals_came() ? "interrupted" : strerror(cause));
     } else {
         tm_read_some(failure.read, (char *)&end->cannot_start, sizeof end->cannot_start);
-        status = listen_to(output.read, listener, context, &end->output, error);
+        status = listen_to(output.read, child, watch, end, error);
         tm_status waited = wait_for(child, end, error);
         private_signals_kill(0);
         status = status == TM_OK ? waited : status;

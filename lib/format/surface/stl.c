@@ -19,9 +19,29 @@ static uint64_t binary_size(const char *bytes)
     return HEADER + COUNT + triangles * TRIANGLE;
 }
 
+/* Whether what would be a triangle has a unit normal, or none. */
+static bool has_normal(const char *bytes)
+{
+    const double least = 0.98, most = 1.02; /* squared: of float, rounded somehow */
+    double norm2 = 0;
+    for (int k = 0; k < 3; k++) {
+        const double x = (double)tm_binary_float(bytes + FLOAT * k, false);
+        norm2 += x * x;
+    }
+    return norm2 == 0 || (norm2 >= least && norm2 <= most);
+}
+
+/* Some programs write more behind the last triangle. Then the first triangle and the last
+ * have to look like some. */
 bool tm_stl_is_binary(const char *bytes, size_t size)
 {
-    return size >= HEADER + COUNT && binary_size(bytes) == size;
+    if (size < HEADER + COUNT || binary_size(bytes) > size)
+        return false;
+    const uint64_t end = binary_size(bytes);
+    if (end == size)
+        return true;
+    return end > HEADER + COUNT && memchr(bytes, '\0', HEADER + COUNT) &&
+           has_normal(bytes + HEADER + COUNT) && has_normal(bytes + end - TRIANGLE);
 }
 
 /* Appends the point as a node if it is new. */
@@ -69,14 +89,15 @@ static tm_status read_binary(tm_polygon_surface *surface, tm_point_table *table,
         return tm_fail_at(error, TM_ERROR_INPUT, name, 0, NULL,
                           "%zu bytes are too few for a binary STL file (84 or more)",
                           size);
-    if (binary_size(bytes) != size)
+    if (binary_size(bytes) > size)
         return tm_fail_at(error, TM_ERROR_INPUT, name, 0, NULL,
                           "the binary STL file has %zu bytes, but claims %llu triangles "
                           "(which are %llu bytes)",
                           size,
                           (unsigned long long)((binary_size(bytes) - HEADER) / TRIANGLE),
                           (unsigned long long)binary_size(bytes));
-    size_t triangles = (size - HEADER - COUNT) / TRIANGLE;
+    const size_t triangles = (size_t)(binary_size(bytes) - HEADER - COUNT) / TRIANGLE;
+    surface->left_bytes = size - (size_t)binary_size(bytes);
     tm_status status = TM_OK;
     for (size_t t = 0; t < triangles && status == TM_OK; t++)
         status = read_binary_triangle(

@@ -64,11 +64,12 @@ tm_status tm_ply_read(tm_polygon_surface *surface, const char *bytes, size_t siz
 /* STL, text and binary. Triangles come with coordinates; points with equal ones become
  * one node, in the order in which they come first. The solids of a text file are its
  * groups, but for a single one without a name. Normals, attribute bytes and colours are
- * skipped. */
+ * skipped, and bytes behind the last triangle of a binary file: left_bytes. */
 tm_status tm_stl_read(tm_polygon_surface *surface, const char *bytes, size_t size,
                       const char *name, tm_error *error);
 
-/* True for a binary file that is as long as its count says, whatever its first word. */
+/* True for a binary file that is as long as its count says, whatever its first word; and
+ * for one that goes on behind that, where it looks like triangles. */
 bool tm_stl_is_binary(const char *bytes, size_t size);
 
 /* The .mdl surface of the mixed-element octree mesher: sections in any order, of which

@@ -67,6 +67,26 @@ bool tm_soup_has_flat(const tm_soup *soup, double within)
     return false;
 }
 
+/* Triangles with the same nodes have all edges in common, so also the first one's. */
+bool tm_soup_has_doubles(const tm_soup *soup)
+{
+    enum { MANY = 16 };
+    const tm_polygon_edges *edges = &soup->edges;
+    for (size_t t = 0; t < soup->triangles; t++) {
+        const size_t e = edges->edge_of[3 * t];
+        const size_t first = edges->start[e], end = edges->start[e + 1];
+        const uint32_t apex = soup->triangle[t][2];
+        if (end - first > MANY)
+            return true;
+        for (size_t i = first; i < end; i++) {
+            const uint32_t *v = soup->triangle[edges->polygon[i]];
+            if (edges->polygon[i] != t && (v[0] == apex || v[1] == apex || v[2] == apex))
+                return true;
+        }
+    }
+    return false;
+}
+
 /* The nodes ascending; whether that turns the same way. */
 static bool sorted(const uint32_t v[3], uint32_t to[3])
 {

@@ -21,17 +21,21 @@ static double hair(const mender *m)
     return relative * m->soup.diagonal;
 }
 
-/* Drops what has become too many, and finds the edges of the rest. */
-static tm_status clean(mender *m, tm_mend_report *report)
+/* Drops what has become too many, and finds the edges of the rest, where they are not
+ * known of the triangles as they are. */
+static tm_status clean(mender *m, tm_mend_report *report, bool edges_known)
 {
     const bool all = m->options->all_doubles;
     tm_mended *doubles = &report->step[TM_MEND_DOUBLE];
-    tm_status status =
-        tm_soup_drop_degenerate(&m->soup, &report->step[TM_MEND_DEGENERATE], m->error);
-    if (status == TM_OK)
+    tm_mended *degenerate = &report->step[TM_MEND_DEGENERATE];
+    const size_t before = degenerate->count;
+    tm_status status = tm_soup_drop_degenerate(&m->soup, degenerate, m->error);
+    edges_known = edges_known && degenerate->count == before;
+    if (status == TM_OK && !(edges_known && !tm_soup_has_doubles(&m->soup))) {
         status = tm_soup_drop_doubles(&m->soup, all, doubles, m->error);
-    if (status == TM_OK)
-        status = tm_soup_find_edges(&m->soup, m->error);
+        if (status == TM_OK)
+            status = tm_soup_find_edges(&m->soup, m->error);
+    }
     if (status != TM_OK || m->soup.crowded == 0)
         return status;
     status = tm_soup_drop_quads(&m->soup, hair(m), all, doubles, m->error);
@@ -46,21 +50,21 @@ static tm_status weld_all(mender *m, tm_mend_report *report, double size)
     tm_mended *welded = &report->step[TM_MEND_WELDED];
     const size_t before = welded->count;
     const tm_status status = tm_soup_weld(&m->soup, size, true, welded, m->error);
-    return status == TM_OK && welded->count > before ? clean(m, report) : status;
+    return status == TM_OK && welded->count > before ? clean(m, report, false) : status;
 }
 
 static tm_status weld_open(mender *m, tm_mend_report *report, double size)
 {
     const tm_status status =
         tm_soup_weld(&m->soup, size, false, &report->step[TM_MEND_WELDED], m->error);
-    return status == TM_OK ? clean(m, report) : status;
+    return status == TM_OK ? clean(m, report, false) : status;
 }
 
 static tm_status split(mender *m, tm_mend_report *report, double size)
 {
     const tm_status status =
         tm_soup_split(&m->soup, size, &report->step[TM_MEND_SPLIT], m->error);
-    return status == TM_OK ? clean(m, report) : status;
+    return status == TM_OK ? clean(m, report, false) : status;
 }
 
 /* Triangles without area go, and those beside their longest edges are divided. */
@@ -73,14 +77,14 @@ static tm_status flatten(mender *m, tm_mend_report *report, double size)
         status = tm_soup_find_edges(&m->soup, m->error);
     if (status == TM_OK)
         status = tm_soup_split(&m->soup, 2 * size, &parts, m->error);
-    return status == TM_OK ? clean(m, report) : status;
+    return status == TM_OK ? clean(m, report, false) : status;
 }
 
 static tm_status fill(mender *m, tm_mend_report *report, double size)
 {
     const tm_status status =
         tm_soup_fill(&m->soup, size, &report->step[TM_MEND_FILLED], m->error);
-    return status == TM_OK ? clean(m, report) : status;
+    return status == TM_OK ? clean(m, report, false) : status;
 }
 
 static size_t wrong(const tm_soup *soup)
@@ -201,7 +205,7 @@ static tm_status mend(mender *m)
     tm_status status =
         tm_soup_weld(&m->soup, 0, true, &r->step[TM_MEND_WELDED], m->error);
     if (status == TM_OK)
-        status = clean(m, r);
+        status = clean(m, r, r->step[TM_MEND_WELDED].count == 0);
     if (status == TM_OK && r->weld > 0)
         status = try(m, weld_all, r->weld, NO_MORE_OPEN, &better);
     if (status == TM_OK && m->soup.open > 0)
@@ -211,7 +215,7 @@ static tm_status mend(mender *m)
     if (status == TM_OK && m->options->islands > 0)
         status = drop_islands(m);
     if (status == TM_OK)
-        status = tm_soup_turn(&m->soup, &r->step[TM_MEND_TURNED], m->error);
+        status = tm_soup_turn(&m->soup, &r->step[TM_MEND_TURNED], &r->manifold, m->error);
     r->open_edges = m->soup.open;
     return status;
 }

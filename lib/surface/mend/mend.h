@@ -7,6 +7,7 @@
 
 #include "../../base/extern_c.h"
 #include "../../stream/stream.h"
+#include "../surface.h"
 
 #include <stdbool.h>
 
@@ -45,6 +46,7 @@ typedef struct tm_mend_report {
     tm_mended step[TM_MEND_STEPS];
     double weld;                    /* the distance that was taken */
     size_t open_before, open_edges; /* edges of one triangle */
+    bool manifold;                  /* each edge has two triangles, which turn alike */
 } tm_mend_report;
 
 /* Mends the triangles of .face, whose nodes are in .node. A step that leaves more open or
@@ -55,6 +57,12 @@ typedef struct tm_mend_report {
  * out. Expected O(n) but for the nodes near open edges. */
 tm_status tm_mend(tm_stream *stream, const tm_mend_options *options,
                   tm_mend_report *report, tm_error *error);
+
+/* Turns the triangles of .face that bound the outside outward, of a surface with walls
+ * that was built of them as `polygons`: tm_mend() cannot, where pieces end at walls. Adds
+ * to *turned. O(n). */
+void tm_mend_turn_outward(tm_block *face, const tm_surface *surface,
+                          const tm_polygon_surface *polygons, tm_mended *turned);
 
 TM_EXTERN_C_END
 

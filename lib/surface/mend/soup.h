@@ -81,13 +81,17 @@ tm_status tm_soup_drop_flat(tm_soup *soup, double within, tm_mended *dropped,
 bool tm_soup_has_flat(const tm_soup *soup, double within);
 tm_status tm_soup_drop_doubles(tm_soup *soup, bool all, tm_mended *dropped,
                                tm_error *error);
+/* Whether two triangles have the same nodes, or many an edge: by the edges, which are to
+ * be those of the triangles as they are. */
+bool tm_soup_has_doubles(const tm_soup *soup);
 tm_status tm_soup_drop_quads(tm_soup *soup, double within, bool all, tm_mended *dropped,
                              tm_error *error);
 tm_status tm_soup_split(tm_soup *soup, double within, tm_mended *split, tm_error *error);
 tm_status tm_soup_fill(tm_soup *soup, double most, tm_mended *filled, tm_error *error);
 tm_status tm_soup_drop_islands(tm_soup *soup, double most, tm_mended *dropped,
                                tm_error *error);
-tm_status tm_soup_turn(tm_soup *soup, tm_mended *turned, tm_error *error);
+/* *closed becomes whether each edge has two triangles, which turn alike now. */
+tm_status tm_soup_turn(tm_soup *soup, tm_mended *turned, bool *closed, tm_error *error);
 
 /* near.c: nodes by cells of a grid */
 

@@ -159,7 +159,7 @@ static tm_status find_pieces(turner *w, tm_error *error)
     return TM_OK;
 }
 
-tm_status tm_soup_turn(tm_soup *soup, tm_mended *turned, tm_error *error)
+tm_status tm_soup_turn(tm_soup *soup, tm_mended *turned, bool *closed, tm_error *error)
 {
     const size_t triangles = soup->triangles;
     turner w = {.soup = soup,
@@ -177,6 +177,9 @@ tm_status tm_soup_turn(tm_soup *soup, tm_mended *turned, tm_error *error)
     for (size_t i = 0; i < w.count && status == TM_OK; i++)
         if (w.pieces[i].orientable)
             turn_piece(&w, &w.pieces[i], turned);
+    *closed = status == TM_OK;
+    for (size_t i = 0; i < w.count && *closed; i++)
+        *closed = w.pieces[i].orientable && w.pieces[i].closed;
     free(w.order);
     free(w.met);
     free(w.flip);
