@@ -90,9 +90,9 @@ bool tm_numbers_whole(const tm_numbers *n, size_t i, int64_t lo, int64_t hi,
 tm_status tm_numbers_room(tm_numbers *numbers, tm_number_type type, size_t count,
                           tm_error *error)
 {
-    if (!tm_text_room(&numbers->own, count * TM_NUMBER_ROOM))
+    if (!tm_text_room(&numbers->own, count * TM_NUMBERS_BYTES))
         return tm_fail_memory(error);
-    numbers->own.size = count * TM_NUMBER_ROOM;
+    numbers->own.size = count * TM_NUMBERS_BYTES;
     numbers->bytes = numbers->own.byte;
     numbers->count = count;
     numbers->type = tm_number_is_whole(type) ? TM_INT64 : TM_FLOAT64;
@@ -144,7 +144,7 @@ tm_status tm_numbers_scan(tm_numbers *numbers, tm_scan *scan, tm_number_type typ
             scan, error, "there are not %zu numbers in the rest of it (%s)", count, what);
     tm_status status = tm_numbers_room(numbers, type, count, error);
     for (size_t i = 0; i < count && status == TM_OK; i++) {
-        char *to = numbers->own.byte + i * TM_NUMBER_ROOM;
+        char *to = numbers->own.byte + i * TM_NUMBERS_BYTES;
         status =
             whole ? scan_whole(scan, what, to, error) : scan_real(scan, what, to, error);
     }

@@ -51,7 +51,7 @@ bool tm_numbers_whole(const tm_numbers *numbers, size_t i, int64_t lo, int64_t h
 
 /* Makes room for `count` numbers in `own`, each int64_t where the type is whole, else
  * double: whoever calls this writes them there. TM_ERROR_SYSTEM where memory is out. */
-enum { TM_NUMBER_ROOM = 8 };
+enum { TM_NUMBERS_BYTES = 8 };
 tm_status tm_numbers_room(tm_numbers *numbers, tm_number_type type, size_t count,
                           tm_error *error);
 

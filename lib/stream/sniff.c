@@ -74,7 +74,7 @@ static const row words[] = {
     {"mesh3d", {"a Netgen mesh", NONE_YET}},
     {"BEGIN POINTS LIST", {"a GetFEM mesh", NONE_YET}},
     {"*KEYWORD", {"an LS-DYNA input file", NONE_YET}},
-    {"*", {"an Abaqus or CalculiX input file", NONE_YET}},
+    {"*", {"an Abaqus or CalculiX input file", "use abaqus-import"}},
     {"SOL ", {"a Nastran input file", GMSH " of a file named .bdf"}},
     {"CEND", {"a Nastran input file", GMSH " of a file named .bdf"}},
     {"BEGIN BULK", {"a Nastran input file", GMSH " of a file named .bdf"}},

@@ -55,6 +55,7 @@ status_of() {
 expected() {
     cat <<'END'
                 nothing part points surface tetrahedra no-tetrahedra mixed mixed-facets polyhedra
+abaqus-export   3 3 0 0 0 0 0 0 3
 getfem-export   3 3 3 0 0 3 0 0 3
 gmsh-export     3 3 0 0 0 0 0 0 3
 jens-stats      3 3 3 3 0 0 0 0 3

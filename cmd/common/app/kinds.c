@@ -37,6 +37,7 @@ static const struct {
     {"poly-stats", POLYHEDRA},
     {"mesh-check", CELLS},
     {"mesh-view", ALL},
+    {"abaqus-export", POINTS | SURFACE | TETRAHEDRA | MIXED},
     {"getfem-export", SURFACE | TETRAHEDRA | MIXED},
     {"gmsh-export", POINTS | SURFACE | TETRAHEDRA | MIXED},
     {"m3d-export", TETRAHEDRA | MIXED},

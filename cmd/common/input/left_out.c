@@ -39,6 +39,8 @@ static const struct {
     const char *format;
     unsigned keeps;
 } formats[] = {
+    {"abaqus-export",
+     NODE_MARKERS | FACES | FACES_BELOW_0 | REGIONS | REGIONS_BELOW_0 | NAMES},
     {"getfem-export", FACES | REGIONS | FACE_NAMES | REGION_NAMES},
     {"gmsh-export bdf", EDGES | FACES | REGIONS},
     {"gmsh-export cgns", NODE_MARKERS | EDGES | FACES | REGIONS | NAMES},

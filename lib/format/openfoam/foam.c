@@ -299,7 +299,7 @@ static tm_status take_item(tm_foam *foam, const list *of, size_t i, tm_numbers *
         status = tm_foam_expect(foam, '(', error);
     for (size_t c = 0; c < of->components && status == TM_OK; c++)
         status = take_number(
-            foam, of, numbers->own.byte + (i * of->components + c) * TM_NUMBER_ROOM,
+            foam, of, numbers->own.byte + (i * of->components + c) * TM_NUMBERS_BYTES,
             error);
     if (of->components > 1 && status == TM_OK)
         status = tm_foam_expect(foam, ')', error);
@@ -323,7 +323,7 @@ static tm_status take_text(tm_foam *foam, const list *of, size_t count,
 static tm_status take_alike(tm_foam *foam, const list *of, size_t count,
                             tm_numbers *numbers, tm_error *error)
 {
-    const size_t size = of->components * TM_NUMBER_ROOM;
+    const size_t size = of->components * TM_NUMBERS_BYTES;
     tm_status status =
         tm_numbers_room(numbers, of->type, (count + 1) * of->components, error);
     if (status == TM_OK)
