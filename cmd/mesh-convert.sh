@@ -24,9 +24,9 @@ suffix tells, by an importer and an exporter of termesh.
   -V, --version  print the version
 
 in:  .tm; .off .stl .ply .obj .mdl .poly .smesh; .node .ele; .m3d .mvm; .oct; .visf;
-     .vtu; .vtk; .inp; .msh .mesh .bdf .nas .unv .med .cgns .ply2; a folder polyMesh
+     .vtu; .vtk; .inp; .mesh .meshb; .msh .bdf .nas .unv .med .cgns .ply2; a folder polyMesh
 out: .tm; .off; .stl; .ply; .obj; .node .ele; .m3d; .mvm; .oct; .visf; .vtu; .vtk;
-     .html; .inp; .msh .mesh .bdf .nas .unv .su2 .key .med .cgns; a folder polyMesh
+     .html; .inp; .mesh .meshb; .msh .bdf .nas .unv .su2 .key .med .cgns; a folder polyMesh
 END
 }
 
@@ -51,8 +51,9 @@ importer_of() {
     vtu) echo vtu-import ;;
     vtk) echo vtk-import ;;
     inp) echo abaqus-import ;;
+    mesh | meshb) echo medit-import ;;
     polymesh) echo openfoam-import ;;
-    msh | mesh | meshb | bdf | nas | unv | med | cgns | ply2) echo gmsh-import ;;
+    msh | bdf | nas | unv | med | cgns | ply2) echo gmsh-import ;;
     esac
 }
 
@@ -61,10 +62,11 @@ exporter_of() {
     tm) echo stream ;;
     off | stl | ply | obj | m3d | mvm | oct | visf | vtu | vtk) echo "$(suffix_of "$1")-export" ;;
     inp) echo abaqus-export ;;
+    mesh | meshb) echo medit-export ;;
     node | ele) echo tetgen-export ;;
     html) echo mesh-view ;;
     polymesh) echo openfoam-export ;;
-    msh | mesh | bdf | nas | unv | su2 | key | med | cgns) echo gmsh-export ;;
+    msh | bdf | nas | unv | su2 | key | med | cgns) echo gmsh-export ;;
     esac
 }
 
@@ -74,6 +76,10 @@ export_mesh() {
     tetgen-export) tetgen-export "${out%.*}" "$@" ;;
     openfoam-export | gmsh-export) "$exporter" "$out" "$@" ;;
     mesh-view) mesh-view --title "${in##*/}" -o "$out" "$@" ;;
+    medit-export)
+        case $(suffix_of "$out") in meshb) set -- --binary "$@" ;; esac
+        medit-export -o "$out" "$@"
+        ;;
     *) "$exporter" -o "$out" "$@" ;;
     esac
 }

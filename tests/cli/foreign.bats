@@ -65,6 +65,8 @@ write_samples() {
     vtu-export mixed.tm >a.vtu-import
     vtk-export --no-quality mixed.tm >a.vtk-import
     abaqus-export mixed.tm >a.abaqus-import
+    medit-export mixed.tm >a.medit-import
+    medit-export --binary mixed.tm >b.medit-import
     printf '*HEADING\n*NODE\n1, 0, 0, 0\n' >b.abaqus-import
     printf '** made by hand\n*Node\n1, 0, 0, 0\n' >c.abaqus-import
     getfem-export mixed.tm >'a GetFEM mesh.none'
@@ -147,7 +149,7 @@ is_refused() {
             case $sample:$filter in
             *."$filter":* | node.surface:tetgen-import) continue ;;
             poly.surface:tetgen-import | smesh.surface:tetgen-import) continue ;;
-            *'use gmsh-import of a file':gmsh-import) continue ;;
+            *'use gmsh-import of a file':gmsh-import | *.medit-import:gmsh-import) continue ;;
             *.surface:surface-import | *.mdl-import:surface-import | *.stream:surface-import) continue ;;
             *'its folder':openfoam-import) continue ;;
             *:tetgen-import)

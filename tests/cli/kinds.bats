@@ -61,6 +61,7 @@ gmsh-export     3 3 0 0 0 0 0 0 3
 jens-stats      3 3 3 3 0 0 0 0 3
 lepp-improve    3 3 3 3 0 0 3 3 3
 m3d-export      3 3 3 3 0 3 0 0 3
+medit-export    3 3 0 0 0 0 0 0 3
 mesh-check      3 3 3 3 0 0 0 0 0
 mesh-view       3 3 0 0 0 0 0 0 0
 mvm-export      3 3 3 3 0 3 0 0 3

@@ -41,6 +41,7 @@ static const struct {
     {"getfem-export", SURFACE | TETRAHEDRA | MIXED},
     {"gmsh-export", POINTS | SURFACE | TETRAHEDRA | MIXED},
     {"m3d-export", TETRAHEDRA | MIXED},
+    {"medit-export", POINTS | SURFACE | TETRAHEDRA | MIXED},
     {"mvm-export", TETRAHEDRA | MIXED},
     {"obj-export", SURFACE | CELLS},
     {"oct-export", MIXED},
