@@ -47,10 +47,11 @@ static tm_status take_range(tm_inp_reader *r, tm_inp_set *set, uint32_t instance
     if (status == TM_OK && i < 2)
         status = tm_inp_fail(r->text, "the line ends where the last number of GENERATE "
                                       "should be");
-    tm_inp_chunk *chunk =
-        status == TM_OK ? tm_inp_add_chunk(r->model, set, TM_INP_RANGE) : NULL;
+    if (status != TM_OK)
+        return status;
+    tm_inp_chunk *chunk = tm_inp_add_chunk(r->model, set, TM_INP_RANGE);
     if (!chunk)
-        return r->model->error->status;
+        return r->model->status;
     chunk->instance = instance;
     chunk->is.range.first = r->model->ids;
     for (i = 0; i < 3; i++)
@@ -75,14 +76,14 @@ static tm_status take_members(tm_inp_reader *r, tm_inp_set *set, uint32_t instan
     if (!row_is_of_numbers(r->text)) {
         tm_inp_chunk *chunk = tm_inp_add_chunk(r->model, set, TM_INP_LINE);
         if (!chunk)
-            return r->model->error->status;
+            return r->model->status;
         chunk->instance = instance;
         chunk->is.row = r->text->row;
         return TM_OK;
     }
     tm_inp_chunk *chunk = open_ids(r, set, instance, is_new);
     if (!chunk)
-        return r->model->error->status;
+        return r->model->status;
     while (tm_inp_field(r->text, &field)) {
         int32_t id;
         if (field.size == 0)
@@ -127,14 +128,14 @@ static tm_inp_set *open_set(tm_inp_reader *r, tm_inp_set_kind kind, const char *
     tm_inp_model *model = r->model;
     *instance = TM_INP_NONE;
     if (name.size == 0) {
-        tm_inp_fail_keyword(r, "has no name", nothing);
+        model->status = tm_inp_fail_keyword(r, "has no name", nothing);
         return NULL;
     }
     if (of.size > 0) {
         tm_word *moved =
             tm_grow(model->word, &model->word_room, model->words + 1, sizeof *moved);
         if (!moved) {
-            tm_fail_memory(model->error);
+            model->status = tm_fail_memory(model->error);
             return NULL;
         }
         model->word = moved;
@@ -158,7 +159,7 @@ static tm_status take_nodes_of(tm_inp_reader *r, tm_inp_set *set, uint32_t insta
         return TM_OK;
     tm_inp_chunk *chunk = tm_inp_add_chunk(r->model, set, TM_INP_OF);
     if (!chunk)
-        return r->model->error->status;
+        return r->model->status;
     chunk->instance = instance;
     chunk->is.row = of;
     return TM_OK;
@@ -169,9 +170,11 @@ tm_status tm_inp_take_set(tm_inp_reader *r, tm_inp_set_kind kind, const char *ke
     const bool ranges = tm_inp_parameter(&r->keyword, "GENERATE") != NULL;
     uint32_t instance;
     tm_status status = tm_inp_check_input(r);
-    tm_inp_set *set = status == TM_OK ? open_set(r, kind, key, &instance) : NULL;
+    if (status != TM_OK)
+        return status;
+    tm_inp_set *set = open_set(r, kind, key, &instance);
     if (!set)
-        return r->model->error->status;
+        return r->model->status;
     if (kind == TM_INP_NODES)
         status = take_nodes_of(r, set, instance);
     for (bool is_new = true; status == TM_OK && r->text->kind == TM_INP_DATA;
@@ -193,7 +196,7 @@ static tm_status take_faces(tm_inp_reader *r, tm_inp_set *set, bool is_new)
     if (!tm_inp_is_number(member)) {
         tm_inp_chunk *chunk = tm_inp_add_chunk(r->model, set, TM_INP_LINE);
         if (!chunk)
-            return r->model->error->status;
+            return r->model->status;
         chunk->is.row = row;
         return TM_OK;
     }
@@ -203,7 +206,7 @@ static tm_status take_faces(tm_inp_reader *r, tm_inp_set *set, bool is_new)
         return status;
     tm_inp_chunk *chunk = open_ids(r, set, TM_INP_NONE, is_new);
     if (!chunk)
-        return r->model->error->status;
+        return r->model->status;
     if (!add_number(r->model, id) || !add_number(r->model, tm_inp_face_label(label)))
         return tm_fail_memory(r->model->error);
     chunk->is.range.count++;
@@ -224,7 +227,7 @@ tm_status tm_inp_take_surface(tm_inp_reader *r)
     tm_inp_set *set =
         open_set(r, of_nodes ? TM_INP_NODES : TM_INP_FACES, "NAME", &instance);
     if (!set)
-        return r->model->error->status;
+        return r->model->status;
     tm_status status = TM_OK;
     for (bool is_new = true; status == TM_OK && r->text->kind == TM_INP_DATA;
          tm_inp_next(r->text), is_new = false) {

@@ -14,7 +14,7 @@ tm_status tm_inp_model_new(tm_inp_model *model, tm_abaqus_report *report, tm_err
     tm_group_init(&model->group, ".group");
     const bool done =
         tm_inp_add_scope(model, (tm_word){0}) && tm_inp_add_instance(model, (tm_word){0});
-    return done ? TM_OK : error->status;
+    return done ? TM_OK : model->status;
 }
 
 static void free_ids(tm_inp_ids *ids)
@@ -55,7 +55,7 @@ tm_inp_scope *tm_inp_add_scope(tm_inp_model *model, tm_word name)
         moved[model->scopes] = (tm_inp_scope){.name = name};
     }
     if (!moved || !tm_lists_begin(&moved[model->scopes].of)) {
-        tm_fail_memory(model->error);
+        model->status = tm_fail_memory(model->error);
         return NULL;
     }
     return &moved[model->scopes++];
@@ -66,7 +66,7 @@ tm_inp_instance *tm_inp_add_instance(tm_inp_model *model, tm_word name)
     tm_inp_instance *moved = tm_grow(model->instance, &model->instance_room,
                                      model->instances + 1, sizeof *moved);
     if (!moved) {
-        tm_fail_memory(model->error);
+        model->status = tm_fail_memory(model->error);
         return NULL;
     }
     model->instance = moved;
@@ -134,7 +134,7 @@ tm_inp_set *tm_inp_add_set(tm_inp_model *model, tm_inp_set_kind kind, size_t sco
     if (moved)
         model->set = moved;
     if (!moved || !reserve_sets(model)) {
-        tm_fail_memory(model->error);
+        model->status = tm_fail_memory(model->error);
         return NULL;
     }
     *slot_of(model, kind, scope, name) = (uint32_t)model->sets;
@@ -152,7 +152,7 @@ tm_inp_chunk *tm_inp_add_chunk(tm_inp_model *model, tm_inp_set *set, tm_inp_memb
     tm_inp_chunk *moved =
         tm_grow(model->chunk, &model->chunk_room, model->chunks + 1, sizeof *moved);
     if (!moved) {
-        tm_fail_memory(model->error);
+        model->status = tm_fail_memory(model->error);
         return NULL;
     }
     model->chunk = moved;

@@ -87,6 +87,7 @@ typedef struct tm_inp_model {
     tm_inp_text text;
     tm_abaqus_report *report;
     tm_error *error;
+    tm_status status; /* of what returned NULL last */
     size_t scopes, scope_room;
     tm_inp_scope *scope;
     size_t instances, instance_room;

@@ -81,7 +81,7 @@ static tm_status name_rows(tm_inp_reader *r, tm_inp_set_kind kind, const char *k
     tm_inp_set *set = tm_inp_add_set(r->model, kind, r->scope, name);
     tm_inp_chunk *chunk = set ? tm_inp_add_chunk(r->model, set, TM_INP_ROWS) : NULL;
     if (!chunk)
-        return r->model->error->status;
+        return r->model->status;
     chunk->is.range.first = first;
     chunk->is.range.count = past - first;
     return TM_OK;
@@ -207,7 +207,7 @@ static tm_status begin_part(tm_inp_reader *r)
         return tm_inp_fail_keyword(r, "stands in another part or instance", nothing);
     const tm_word name = tm_inp_value(r, "NAME");
     if (!tm_inp_add_scope(r->model, name))
-        return r->model->error->status;
+        return r->model->status;
     r->scope = r->model->scopes - 1;
     return TM_OK;
 }
@@ -233,7 +233,7 @@ static tm_status begin_instance(tm_inp_reader *r)
         return tm_inp_fail_keyword(r, "stands in another part or instance", nothing);
     tm_inp_instance *instance = tm_inp_add_instance(r->model, name);
     if (!instance || !tm_inp_add_scope(r->model, name))
-        return r->model->error->status;
+        return r->model->status;
     r->instance = r->model->instances - 1;
     r->scope = r->model->scopes - 1;
     instance->scope = r->scope;
@@ -293,7 +293,7 @@ static tm_status place_parts(tm_inp_reader *r)
     for (size_t s = 1; s < model->scopes; s++) {
         tm_inp_instance *instance = tm_inp_add_instance(model, model->scope[s].name);
         if (!instance)
-            return model->error->status;
+            return model->status;
         instance->scope = s;
     }
     return TM_OK;
