@@ -24,9 +24,9 @@ suffix tells, by an importer and an exporter of termesh.
   -V, --version  print the version
 
 in:  .tm; .off .stl .ply .obj .mdl .poly .smesh; .node .ele; .m3d .mvm; .oct; .visf;
-     .vtu; .vtk; .msh .mesh .bdf .nas .unv .med .cgns .ply2; a folder polyMesh
+     .vtu; .vtk; .inp; .mesh .meshb; .msh .bdf .nas .unv .med .cgns .ply2; a folder polyMesh
 out: .tm; .off; .stl; .ply; .obj; .node .ele; .m3d; .mvm; .oct; .visf; .vtu; .vtk;
-     .html; .msh .mesh .inp .bdf .nas .unv .su2 .key .med .cgns; a folder polyMesh
+     .html; .inp; .mesh .meshb; .msh .bdf .nas .unv .su2 .key .med .cgns; a folder polyMesh
 END
 }
 
@@ -50,8 +50,10 @@ importer_of() {
     visf) echo visf-import ;;
     vtu) echo vtu-import ;;
     vtk) echo vtk-import ;;
+    inp) echo abaqus-import ;;
+    mesh | meshb) echo medit-import ;;
     polymesh) echo openfoam-import ;;
-    msh | mesh | meshb | bdf | nas | unv | med | cgns | ply2) echo gmsh-import ;;
+    msh | bdf | nas | unv | med | cgns | ply2) echo gmsh-import ;;
     esac
 }
 
@@ -59,10 +61,12 @@ exporter_of() {
     case $(suffix_of "$1") in
     tm) echo stream ;;
     off | stl | ply | obj | m3d | mvm | oct | visf | vtu | vtk) echo "$(suffix_of "$1")-export" ;;
+    inp) echo abaqus-export ;;
+    mesh | meshb) echo medit-export ;;
     node | ele) echo tetgen-export ;;
     html) echo mesh-view ;;
     polymesh) echo openfoam-export ;;
-    msh | mesh | inp | bdf | nas | unv | su2 | key | med | cgns) echo gmsh-export ;;
+    msh | bdf | nas | unv | su2 | key | med | cgns) echo gmsh-export ;;
     esac
 }
 
@@ -72,6 +76,10 @@ export_mesh() {
     tetgen-export) tetgen-export "${out%.*}" "$@" ;;
     openfoam-export | gmsh-export) "$exporter" "$out" "$@" ;;
     mesh-view) mesh-view --title "${in##*/}" -o "$out" "$@" ;;
+    medit-export)
+        case $(suffix_of "$out") in meshb) set -- --binary "$@" ;; esac
+        medit-export -o "$out" "$@"
+        ;;
     *) "$exporter" -o "$out" "$@" ;;
     esac
 }

@@ -78,6 +78,8 @@
 #include "examine/tet_statistics.h"
 
 /* format: files of other programs */
+#include "format/abaqus/abaqus.h"
+#include "format/medit/medit.h"
 #include "format/mesh_format.h"
 #include "format/oct.h"
 #include "format/openfoam/openfoam.h"

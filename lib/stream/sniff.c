@@ -65,7 +65,7 @@ static const row words[] = {
     {"usemtl ", {"an OBJ surface", SURFACE}},
     {"n_regions", {"a file of boxes", "use octree-mesh -b"}},
     {"MIXED", {"an .mvm mesh", "use m3d-import"}},
-    {"MeshVersionFormatted", {"a Medit mesh", GMSH}},
+    {"MeshVersionFormatted", {"a Medit mesh", "use medit-import"}},
     {"$MeshFormat", {"a Gmsh mesh", GMSH}},
     {"$Comments", {"a Gmsh mesh", GMSH}},
     {"$NOD", {"a Gmsh mesh of version 1", GMSH}},
@@ -74,7 +74,7 @@ static const row words[] = {
     {"mesh3d", {"a Netgen mesh", NONE_YET}},
     {"BEGIN POINTS LIST", {"a GetFEM mesh", NONE_YET}},
     {"*KEYWORD", {"an LS-DYNA input file", NONE_YET}},
-    {"*", {"an Abaqus or CalculiX input file", NONE_YET}},
+    {"*", {"an Abaqus or CalculiX input file", "use abaqus-import"}},
     {"SOL ", {"a Nastran input file", GMSH " of a file named .bdf"}},
     {"CEND", {"a Nastran input file", GMSH " of a file named .bdf"}},
     {"BEGIN BULK", {"a Nastran input file", GMSH " of a file named .bdf"}},
@@ -246,6 +246,17 @@ static bool is_visf(const char *bytes, const char *end)
 
 /* Binary --------------------------------------------------------------------------- */
 
+/* The numbers 1, a version from 1 to 4, and 3 for Dimension, of four bytes each. */
+static bool is_medit(const char *bytes, size_t size)
+{
+    enum { HEAD = 12, LAST = 3, VERSION = 4, VERSIONS = 4, CODE = 8, DIMENSION = 3 };
+    if (size < HEAD || bytes[1] != 0 || bytes[2] != 0)
+        return false;
+    const size_t low = bytes[0] == 1 ? 0 : LAST;
+    return bytes[low] == 1 && bytes[LAST - low] == 0 && bytes[VERSION + low] >= 1 &&
+           bytes[VERSION + low] <= VERSIONS && bytes[CODE + low] == DIMENSION;
+}
+
 static bool is_binary(const char *bytes, size_t size)
 {
     enum { ENOUGH = 256 };
@@ -281,6 +292,8 @@ tm_look tm_look_at(const char *bytes, size_t size)
         return (tm_look){"a ViSF mesh", "use visf-import"};
     if (is_off(at, end))
         return (tm_look){"an OFF surface", SURFACE};
+    if (is_medit(bytes, size))
+        return (tm_look){"a Medit mesh", "use medit-import"};
     if (is_tar(bytes, size))
         return (tm_look){"a tar archive", "unpack it with tar"};
     if (is_binary(bytes, size))

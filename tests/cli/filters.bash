@@ -82,6 +82,10 @@ END
         >corner.msh
     printf '%s\n' '# vtk DataFile Version 2.0' point ASCII 'DATASET POLYDATA' 'POINTS 1 float' \
         '1 2 3' 'VERTICES 1 2' '1 0' >point.vtk
+    printf '%s\n' '*NODE' '1, 0, 0, 0' '2, 1, 0, 0' '3, 0, 1, 0' '4, 0, 0, 1' \
+        '*ELEMENT, TYPE=C3D4' '1, 1, 2, 3, 4' >corner.inp
+    printf '%s\n' 'MeshVersionFormatted 2' 'Dimension 3' Vertices 4 '0 0 0 0' '1 0 0 0' \
+        '0 1 0 0' '0 0 1 0' Tetrahedra 1 '1 2 3 4 5' End >corner.mesh
     mkdir polyMesh
     echo '4((0 0 0) (1 0 0) (0 1 0) (0 0 1))' >polyMesh/points
     echo '4(3(0 2 1) 3(0 1 3) 3(1 2 3) 3(2 0 3))' >polyMesh/faces
@@ -121,6 +125,8 @@ input() {
     visf-import) echo corner.visf ;;
     vtu-import) echo point.vtu ;;
     vtk-import) echo point.vtk ;;
+    abaqus-import) echo corner.inp ;;
+    medit-import) echo corner.mesh ;;
     openfoam-import) echo polyMesh ;;
     mdl-import) echo corner.mdl ;;
     m3d-import) echo corner.mvm ;;

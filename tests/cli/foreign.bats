@@ -64,6 +64,11 @@ write_samples() {
     write_oct >a.oct-import
     vtu-export mixed.tm >a.vtu-import
     vtk-export --no-quality mixed.tm >a.vtk-import
+    abaqus-export mixed.tm >a.abaqus-import
+    medit-export mixed.tm >a.medit-import
+    medit-export --binary mixed.tm >b.medit-import
+    printf '*HEADING\n*NODE\n1, 0, 0, 0\n' >b.abaqus-import
+    printf '** made by hand\n*Node\n1, 0, 0, 0\n' >c.abaqus-import
     getfem-export mixed.tm >'a GetFEM mesh.none'
     if [ -x "$TM_BUILD/bin/gmsh-export" ]; then
         for format in msh4 msh2 msh1; do
@@ -99,8 +104,6 @@ write_others() {
     printf '# made by hand\nmesh3d\n' >'a Netgen mesh.none'
     printf 'ISO-10303-21;\nHEADER;\n' >'a STEP file.none'
     printf '%72sS%7d\n%72sG%7d\n' '' 1 '' 1 >'an IGES file.none'
-    printf '*HEADING\n*NODE\n1, 0, 0, 0\n' >'an Abaqus.none'
-    printf '** made by hand\n*Node\n1, 0, 0, 0\n' >'an Abaqus or CalculiX.none'
     printf '*KEYWORD\n*NODE\n' >'an LS-DYNA.none'
     printf '$ made by hand\nSOL 101\nCEND\nBEGIN BULK\n' >'a Nastran.use gmsh-import of a file'
     printf 'GRID,1,,0.,0.,0.\n' >'a Nastran input file.use gmsh-import of a file'
@@ -146,7 +149,7 @@ is_refused() {
             case $sample:$filter in
             *."$filter":* | node.surface:tetgen-import) continue ;;
             poly.surface:tetgen-import | smesh.surface:tetgen-import) continue ;;
-            *'use gmsh-import of a file':gmsh-import) continue ;;
+            *'use gmsh-import of a file':gmsh-import | *.medit-import:gmsh-import) continue ;;
             *.surface:surface-import | *.mdl-import:surface-import | *.stream:surface-import) continue ;;
             *'its folder':openfoam-import) continue ;;
             *:tetgen-import)

@@ -130,7 +130,7 @@ load filters
         visf-export) command="visf-export many-nodes.tm" ;;
         visf-import) command="visf-import many.visf" ;;
         m3d-import) command="m3d-import many.mvm" ;;
-        vtk-export | m3d-export | mvm-export | getfem-export) command="$1 many.tm" ;;
+        abaqus-export | medit-export | vtk-export | m3d-export | mvm-export | getfem-export) command="$1 many.tm" ;;
         *) return 0 ;; # writes less than a pipe holds
         esac
         run -0 --separate-stderr bash -c "{ $command; echo \$? >status; } | head -n 1"

@@ -105,6 +105,20 @@ print('\n'.join(out + ['.end']))
 END
 }
 
+# Copies a stream of meshes() without what most formats have no place for: attributes of
+# elements behind the region, and those of nodes, unless: without_attributes [elements].
+without_attributes() {
+    awk -v nodes="${1:-all}" '/^\./ { block = $1; print; if ((getline) <= 0) exit
+            if (block == ".ele") $3 = 1
+            if (block == ".mix") $2 = 1
+            if (block == ".node" && nodes == "all") $3 = 0
+            print; next }
+        block == ".ele" { print $1, $2, $3, $4, $5, $6; next }
+        block == ".mix" { NF = 3 + $2 }
+        block == ".node" && nodes == "all" { print $1, $2, $3, $4, $7; next }
+        { print }'
+}
+
 # Prints a stream of polyhedra of many facets, with regions, markers and names.
 dual() {
     meshes tetrahedra | awk '/^\.ele/ { ele = 1 } /^\.face/ { ele = 0 }

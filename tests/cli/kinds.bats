@@ -55,11 +55,13 @@ status_of() {
 expected() {
     cat <<'END'
                 nothing part points surface tetrahedra no-tetrahedra mixed mixed-facets polyhedra
+abaqus-export   3 3 0 0 0 0 0 0 3
 getfem-export   3 3 3 0 0 3 0 0 3
 gmsh-export     3 3 0 0 0 0 0 0 3
 jens-stats      3 3 3 3 0 0 0 0 3
 lepp-improve    3 3 3 3 0 0 3 3 3
 m3d-export      3 3 3 3 0 3 0 0 3
+medit-export    3 3 0 0 0 0 0 0 3
 mesh-check      3 0 3 0 0 0 0 0 0
 mesh-view       3 3 0 0 0 0 0 0 0
 mvm-export      3 3 3 3 0 3 0 0 3

@@ -45,7 +45,7 @@ print('.end')
 END
 }
 
-exporters='getfem m3d mvm off openfoam tetgen visf vtk vtu'
+exporters='abaqus getfem m3d medit mvm off openfoam tetgen visf vtk vtu'
 
 # Runs an exporter on with.tm with options; what it wrote is in the folder made.
 export_it() {
@@ -108,27 +108,27 @@ region name
 part
 unknown block
 END
-    # getfem m3d mvm off openfoam tetgen visf vtk vtu
+    # abaqus getfem m3d medit mvm off openfoam tetgen visf vtk vtu
     diff - table <<'END'
-nothing               . . . . . . . . .
-unmarked              . . . . . . . . .
-node attribute        x x x x x . x . .
-node marker           x x x x x . x . .
-nodes of a set        x x x x x . x . .
-face marker           . x x x . . x . .
-negative face marker  x x x x . . x . .
-some faces            . x x x . . x . .
-edge marker           x x x x x . x . .
-some edges            x x x x x . x . .
-region                . x x . . . x . .
-odd region            x x x . x . x . .
-other attribute       x x x . x . x . .
-node name             x x x x x . x . .
-edge name             x x x x x . x . .
-face name             . x x x . . x . .
-region name           . x x . . . x . .
-part                  x x x x x . x x x
-unknown block         x x x x x x x x x
+nothing               . . . . . . . . . . .
+unmarked              . . . . . . . . . . .
+node attribute        x x x x x x x . x . .
+node marker           . x x . x x x . x . .
+nodes of a set        . x x . x x x . x . .
+face marker           . . x . x x . . x . .
+negative face marker  . x x . x x . . x . .
+some faces            . . x . x x . . x . .
+edge marker           x x x . x x x . x . .
+some edges            x x x . x x x . x . .
+region                . . x . x . . . x . .
+odd region            x x x x x . x . x . .
+other attribute       x x x x x . x . x . .
+node name             . x x . x x x . x . .
+edge name             . x x . x x x . x . .
+face name             . . x . x x . . x . .
+region name           . . x . x . . . x . .
+part                  x x x x x x x . x x x
+unknown block         x x x x x x x x x x x
 END
 }
 

@@ -229,6 +229,12 @@ END
     [ -s case/polyMesh/owner ]
     mesh-convert cubes.tm cubes.vtu
     vtu-export cubes.tm | cmp - cubes.vtu
+    mixed >mixed.tm
+    mesh-convert mixed.tm mixed.inp
+    mesh-convert mixed.inp mixed.meshb
+    mesh-convert mixed.meshb mixed.mesh
+    abaqus-import mixed.inp | medit-export | cmp - mixed.mesh
+    abaqus-import mixed.inp | medit-export --binary | cmp - mixed.meshb
     run -4 mesh-convert none.stl cube.obj
     [[ "$output" == *'surface-import: none.stl: cannot open: '* ]]
     run -4 mesh-convert cube.stl none/cube.obj

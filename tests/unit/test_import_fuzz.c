@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* No input makes the readers of VTK's and OpenFOAM's files crash, or return a mesh whose
- * blocks contradict each other: every beginning of a good file, and good files with bytes
- * changed, TM_CASES of each. */
+/* No input makes the readers of VTK's, OpenFOAM's, Abaqus' and Medit's files crash, or
+ * return a mesh whose blocks contradict each other: every beginning of a good file, and
+ * good files with bytes changed, TM_CASES of each. */
+#include "../../lib/format/abaqus/abaqus.h"
+#include "../../lib/format/medit/medit.h"
 #include "../../lib/format/mesh_format.h"
 #include "../../lib/format/openfoam/openfoam.h"
 #include "../../lib/format/visf.h"
@@ -15,6 +17,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -181,6 +184,120 @@ static void test_vtk(void **state)
     }
 }
 
+/* All that an input file can hold that is read. */
+static const char inp_text[] =
+    "*PART, NAME=P\n*NODE, NSET=N\n4, 0, 0, 0\n2, 1, 0\n3, 0, 1D0, 0\n1, 0, 0, 1\n"
+    "5, .5, 0, 0\n*ELEMENT, TYPE=C3D4, ELSET=A\n7, 4, 2,\n3, 1\n*ELEMENT, TYPE=S3\n"
+    "8, 4, 2, 3\n*ELEMENT, TYPE=B32\n9, 4, 5, 2\n*ELEMENT, TYPE=MASS\n3, 1\n*ELSET, "
+    "ELSET=B, GENERATE\n1, 9, 2\n*ELSET, ELSET=C\nA, 8, B\n*NSET, NSET=M, ELSET=B\n"
+    "*SOLID SECTION, ELSET=B\n1\n*END PART\n*ASSEMBLY\n*INSTANCE, NAME=I, PART=P\n"
+    "1, 2, 3\n0, 0, 0, 0, 0, 1, 30\n*END INSTANCE\n*INSTANCE, NAME=J, PART=P\n*END "
+    "INSTANCE\n*NSET, NSET=X, INSTANCE=I\nN, 3\n*SURFACE, NAME=S\nI.B, S2\nJ.7, S1\n"
+    "*SURFACE, NAME=T, TYPE=NODE\nX, 1.\n*END ASSEMBLY\n";
+
+static tm_status read_abaqus(tm_stream *stream, const char *bytes, size_t size,
+                             const char *name, const tm_vtk_read_options *options,
+                             tm_vtk_read_report *report, tm_error *error)
+{
+    tm_abaqus_report said;
+    (void)options;
+    *report = (tm_vtk_read_report){0};
+    const tm_status status = tm_abaqus_read(stream, bytes, size, name, &said, error);
+    tm_abaqus_report_free(&said);
+    return status;
+}
+
+static const char mesh_text[] =
+    "MeshVersionFormatted 2\nDimension 3\n# termesh 3 5 a\n# termesh 2 6 b\nVertices\n6\n"
+    "0 0 0 1\n1 0 0 2\n0 1 0 0\n0 0 1 -1\n.5 0 0 0\n9 9 9 9\nTetrahedra\n1\n1 2 3 4 5\n"
+    "TrianglesP2\n1\n1 3 2 5 5 5 6\nEdges\n1\n1 2 7\nCorners\n1\n1\nNormals\n1\n0 0 1\n"
+    "End\n";
+
+/* The mesh itself, and as the solution of one. */
+static tm_status read_medit(tm_stream *stream, const char *bytes, size_t size,
+                            const char *name, const tm_vtk_read_options *options,
+                            tm_vtk_read_report *report, tm_error *error)
+{
+    const tm_medit_bytes mesh = {name, bytes, size};
+    tm_medit_report said;
+    (void)options;
+    *report = (tm_vtk_read_report){0};
+    const tm_status status = tm_medit_read(stream, &mesh, NULL, &said, error);
+    tm_medit_report_free(&said);
+    return status;
+}
+
+static tm_status read_solution(tm_stream *stream, const char *bytes, size_t size,
+                               const char *name, const tm_vtk_read_options *options,
+                               tm_vtk_read_report *report, tm_error *error)
+{
+    static const char two[] =
+        "MeshVersionFormatted 2 Dimension 3 Vertices 2 0 0 0 0 1 1 1 "
+        "0 End";
+    const tm_medit_bytes mesh = {"mesh", two, sizeof two - 1};
+    const tm_medit_bytes solution = {name, bytes, size};
+    tm_medit_report said;
+    (void)options;
+    *report = (tm_vtk_read_report){0};
+    const tm_status status = tm_medit_read(stream, &mesh, &solution, &said, error);
+    tm_medit_report_free(&said);
+    return status;
+}
+
+static void test_abaqus(void **state)
+{
+    tm_stream stream[2];
+    tm_text text = {0};
+    tm_error error;
+    size_t loose;
+    (void)state;
+    make_streams(stream);
+    for (size_t cut = 0; cut < sizeof inp_text; cut++)
+        read_grid(read_abaqus, inp_text, cut);
+    read_damaged(read_abaqus, inp_text, sizeof inp_text - 1);
+    assert_int_equal(tm_abaqus_write(&text, &stream[1], 1, &loose, &error), TM_OK);
+    read_damaged(read_abaqus, text.byte, text.size);
+    tm_text_free(&text);
+    tm_stream_free(&stream[0]);
+    tm_stream_free(&stream[1]);
+}
+
+static void test_medit(void **state)
+{
+    static const char points[] =
+        "termesh 1\n.node\n2 3 10 0\n1 0 0 0 1 2 3 4 5 6 7 8 9 10\n"
+        "2 1 1 1 1 2 3 4 5 6 7 8 9 10\n.end\n";
+    static const tm_medit_kind kinds[] = {TM_MEDIT_VECTOR, TM_MEDIT_SCALAR,
+                                          TM_MEDIT_TENSOR};
+    tm_stream stream[2], with_attributes;
+    tm_error error;
+    (void)state;
+    make_streams(stream);
+    const int fd = memfd_create("points", MFD_CLOEXEC);
+    assert_int_equal(write(fd, points, sizeof points - 1), sizeof points - 1);
+    assert_int_equal(lseek(fd, 0, SEEK_SET), 0);
+    tm_stream_init(&with_attributes);
+    assert_int_equal(tm_stream_read(&with_attributes, fd, "points", &error), TM_OK);
+    close(fd);
+    read_damaged(read_medit, mesh_text, sizeof mesh_text - 1);
+    for (int binary = 0; binary < 2; binary++) {
+        tm_text text = {0}, values = {0};
+        size_t polygons;
+        assert_int_equal(tm_medit_write(&text, &stream[1], binary, 1, &polygons, &error),
+                         TM_OK);
+        read_damaged(read_medit, text.byte, text.size);
+        assert_int_equal(tm_medit_write_solution(&values, &with_attributes, kinds, 3,
+                                                 binary, 1, &error),
+                         TM_OK);
+        read_damaged(read_solution, values.byte, values.size);
+        tm_text_free(&text);
+        tm_text_free(&values);
+    }
+    tm_stream_free(&with_attributes);
+    tm_stream_free(&stream[0]);
+    tm_stream_free(&stream[1]);
+}
+
 /* OpenFOAM, of which one file is damaged. */
 static void read_foam(const tm_text whole[TM_OPENFOAM_FILES], int damaged,
                       const char *bytes, size_t size)
@@ -243,8 +360,8 @@ static void test_openfoam(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_vtu),
-        cmocka_unit_test(test_vtk),
+        cmocka_unit_test(test_vtu),      cmocka_unit_test(test_vtk),
+        cmocka_unit_test(test_abaqus),   cmocka_unit_test(test_medit),
         cmocka_unit_test(test_openfoam),
     };
     const char *cases = getenv("TM_CASES");

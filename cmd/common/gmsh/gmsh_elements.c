@@ -24,17 +24,44 @@ static int compare(const void *a, const void *b)
     return (p->index > q->index) - (p->index < q->index);
 }
 
+/* At most so many times as many numbers as there are makes them dense. */
+enum { DENSE = 4 };
+
+/* Puts the indices of dense numbers in order, by counting; false where memory is out. */
+static bool count_tags(tagged *order, const size_t *tag, size_t count, size_t most)
+{
+    uint32_t *start = calloc(most + 2, sizeof *start);
+    if (!start)
+        return false;
+    for (size_t i = 0; i < count; i++)
+        start[tag[i] + 1]++;
+    for (size_t t = 0; t < most; t++)
+        start[t + 1] += start[t];
+    for (size_t i = 0; i < count; i++)
+        order[start[tag[i]]++] = (tagged){tag[i], (uint32_t)i};
+    free(start);
+    return true;
+}
+
 /* Numbers in ascending order, malloc'ed; NULL where memory is out. */
 static tagged *sort_tags(const size_t *tag, size_t count)
 {
     tagged *order = tm_new(count, sizeof *order);
     bool is_sorted = true;
+    size_t most = 0;
     for (size_t i = 0; order && i < count; i++) {
         order[i] = (tagged){tag[i], (uint32_t)i};
         is_sorted &= i == 0 || tag[i - 1] <= tag[i];
+        most = tag[i] > most ? tag[i] : most;
     }
-    if (order && !is_sorted)
+    if (!order || is_sorted)
+        return order;
+    if (most / DENSE > count)
         qsort(order, count, sizeof *order, compare);
+    else if (!count_tags(order, tag, count, most)) {
+        free(order);
+        return NULL;
+    }
     return order;
 }
 
@@ -48,7 +75,6 @@ typedef struct node_index {
 
 static tm_status index_nodes(node_index *find, const gmsh_model *model, tm_error *error)
 {
-    enum { DENSE = 4 };
     find->nodes = model->nodes;
     find->order = sort_tags(model->node_tag, model->nodes);
     if (!find->order)

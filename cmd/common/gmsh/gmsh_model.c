@@ -143,7 +143,7 @@ static tm_status map_records(gmsh_model *model, int fd, tm_error *error)
     model->size = (size_t)file.st_size;
     if (model->size == 0)
         return TM_OK;
-    model->map = mmap(NULL, model->size, PROT_READ, MAP_PRIVATE, fd, 0);
+    model->map = mmap(NULL, model->size, PROT_READ, MAP_PRIVATE | MAP_POPULATE, fd, 0);
     if (model->map != MAP_FAILED)
         return take_records(model, error);
     model->map = NULL;

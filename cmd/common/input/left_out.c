@@ -29,6 +29,7 @@ enum {
     PARTS = 1 << 13,      /* of .node, .ele, .face, .edge and .group */
     TETRAHEDRA = 1 << 14, /* .ele whatever else there is, and nothing else */
     OF_CELLS = ALL_REGIONS | ATTRIBUTES | REGION_NAMES,
+    OF_MEDIT = NODE_MARKERS | EDGES | FACES | FACES_BELOW_0 | REGIONS | REGIONS_BELOW_0,
     GROUPS_OF_FACES = FACES | FACES_BELOW_0 | FACE_NAMES | OF_CELLS
 };
 
@@ -39,6 +40,8 @@ static const struct {
     const char *format;
     unsigned keeps;
 } formats[] = {
+    {"abaqus-export",
+     NODE_MARKERS | FACES | FACES_BELOW_0 | REGIONS | REGIONS_BELOW_0 | NAMES},
     {"getfem-export", FACES | REGIONS | FACE_NAMES | REGION_NAMES},
     {"gmsh-export bdf", EDGES | FACES | REGIONS},
     {"gmsh-export cgns", NODE_MARKERS | EDGES | FACES | REGIONS | NAMES},
@@ -53,6 +56,10 @@ static const struct {
     {"gmsh-export su2", FACES | FACE_NAMES},
     {"gmsh-export unv", EDGES | FACES | REGIONS | EDGE_NAMES | FACE_NAMES | REGION_NAMES},
     {"m3d-export", 0},
+    {"medit-export", OF_MEDIT | NAMES},
+    {"medit-export --binary", OF_MEDIT},
+    {"medit-export --binary --sol", OF_MEDIT | NODE_ATTRIBUTES},
+    {"medit-export --sol", OF_MEDIT | NAMES | NODE_ATTRIBUTES},
     {"mesh-view", ~0u & ~(unsigned)(PARTS | TETRAHEDRA)},
     {"mvm-export", 0},
     {"obj-export", GROUPS_OF_FACES},
