@@ -306,3 +306,30 @@ END
     run -0 jens-stats --fail-below 0.1 walls.tm
     [ "$(json report.json held_back)" -lt 200 ]
 }
+
+@test "--resolve: where walls meet at a curve nothing is too close together" {
+    shapes cells >walls.off
+    octree-mesh -q --no-history -s 4 --resolve 0 -o plain.tm walls.off
+    octree-mesh -q --no-history -s 4 --resolve 3 walls.off | cmp - plain.tm
+}
+
+@test "--resolve: fewer levels where more hold back more nodes" {
+    # a box in four wedges around its middle line
+    python3 - >walls.off <<'END'
+import math
+n = 4
+print('OFF', 2 * n + 2, 4 * n, 0)
+for z in (0, 1):
+    print(0, 0, z)
+    for k in range(n):
+        a = 2 * math.pi * (k + 0.3) / n
+        print(math.cos(a), math.sin(a), z)
+m = n + 1
+for k in range(n):
+    a, b = 1 + k, 1 + (k + 1) % n
+    print(3, 0, b, a, '\n3', m, m + a, m + b, '\n4', a, b, m + b, m + a, '\n4', 0, a, m + a, m)
+END
+    run -0 --separate-stderr octree-mesh -s 4 --resolve 3 --json report.json -o fine.tm walls.off
+    [ "$(json report.json held_back)" -eq 0 ]
+    [[ "$stderr" == *"with more levels more nodes would be held back"* ]]
+}
