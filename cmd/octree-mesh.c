@@ -13,6 +13,7 @@
 #include "../lib/poly/octant/join_octants.h"
 #include "../lib/surface/measure/surface_curvature.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -108,6 +109,16 @@ static void add_size(const filter *f, settings *o, const char *option,
         filter_fail(f, &error);
 }
 
+/* Splits octants by so many levels more where that is needed, at most. */
+static void set_resolve(settings *o, unsigned levels)
+{
+    o->resolve = levels;
+    o->deeper = o->deeper > 0 ? levels : 0;
+    for (size_t r = 0; r < o->rules.rules.count; r++)
+        o->rules.rules.rule[r].deeper =
+            o->rules.rules.rule[r].kind == TM_RULE_SURFACE ? o->deeper : 0;
+}
+
 static settings read_options(filter *f)
 {
     const double most_default = 5e7, most_ids = 4e9, least_turn = 0.1, most_turn = 90;
@@ -148,9 +159,7 @@ static settings read_options(filter *f)
     o.surface.walls = o.surface.regions && !o.surface.lenient;
     if (o.rules.rules.count == 0)
         octree_rules_add_level(f, &o.rules, TM_RULE_SURFACE, default_level);
-    for (size_t r = 0; r < o.rules.rules.count; r++)
-        o.rules.rules.rule[r].deeper =
-            o.rules.rules.rule[r].kind == TM_RULE_SURFACE ? o.deeper : 0;
+    set_resolve(&o, o.resolve);
     return o;
 }
 
@@ -333,6 +342,64 @@ static unsigned level_of(const settings *o, const tm_octree *octree, const tm_su
     return o->deeper > 0 && asked < deepest ? asked : deepest;
 }
 
+/* The octree, and its mesh. */
+static void make_mesh(filter *f, const settings *o, tm_surface *surface,
+                      tm_octree *octree, tm_octree_mesh *mesh)
+{
+    tm_error error;
+    filter_stage(f, "splitting octants");
+    if (tm_octree_build(octree, surface, o->rules.rules.rule, o->rules.rules.count,
+                        &error) != TM_OK ||
+        tm_octree_mesh_refine_lost(mesh, octree, surface, level_of(o, octree, surface),
+                                   o->resolve, filter_progress(f), &error) != TM_OK)
+        filter_fail(f, &error);
+}
+
+/* Whether a mesh has fewer nodes off the surface than another one, and nothing is worse.
+ */
+static bool is_better(const tm_octree_mesh_report *a, const tm_octree_mesh_report *b,
+                      const tm_surface *surface)
+{
+    const int64_t euler = surface->euler;
+    return a->off_surface < b->off_surface && a->invalid <= b->invalid &&
+           a->lost <= b->lost && a->rounded <= b->rounded && a->dropped <= b->dropped &&
+           a->corners_lost <= b->corners_lost && a->curves_lost <= b->curves_lost &&
+           a->regions_lost <= b->regions_lost && a->components <= b->components &&
+           imaxabs(a->euler - euler) <= imaxabs(b->euler - euler);
+}
+
+/* Where walls meet, and nodes are held back: with fewer levels more, while some are, and
+ * the best is kept. */
+static void try_fewer_levels(filter *f, settings *o, tm_surface *surface,
+                             tm_octree *octree, tm_octree_mesh *mesh)
+{
+    const unsigned most = o->resolve;
+    unsigned best = most;
+    for (unsigned n = most; n-- > 0 && mesh->report.off_surface > 0;) {
+        tm_octree other;
+        tm_octree_mesh made;
+        set_resolve(o, n);
+        make_mesh(f, o, surface, &other, &made);
+        if (is_better(&made.report, &mesh->report, surface)) {
+            const tm_octree_mesh worse = *mesh;
+            const tm_octree coarser = other;
+            best = n;
+            other = *octree;
+            *octree = coarser;
+            *mesh = made;
+            made = worse;
+        }
+        tm_octree_mesh_free(&made);
+        tm_octree_free(&other);
+    }
+    set_resolve(o, best);
+    if (best < most)
+        filter_note(f,
+                    "octants are split up to %u times more, not %u (--resolve): with "
+                    "more levels more nodes would be held back",
+                    best, most);
+}
+
 typedef struct {
     tm_octree_mesh_report mesh;
     size_t octants, nodes, boundary_nodes;
@@ -422,13 +489,9 @@ int main(int argc, char **argv)
     refuse_many(&f, &o, &surface);
     note_outside(&f, &o.rules, &surface);
     mpi_environment_set(&f);
-    filter_stage(&f, "splitting octants");
-    if (tm_octree_build(&octree, &surface, o.rules.rules.rule, o.rules.rules.count,
-                        &error) != TM_OK ||
-        tm_octree_mesh_refine_lost(&mesh, &octree, &surface,
-                                   level_of(&o, &octree, &surface), o.resolve,
-                                   filter_progress(&f), &error) != TM_OK)
-        filter_fail(&f, &error);
+    make_mesh(&f, &o, &surface, &octree, &mesh);
+    if (surface.walls)
+        try_fewer_levels(&f, &o, &surface, &octree, &mesh);
     octree_rules_free(&o.rules);
     free(largest);
     note_losses(&f, &surface, &mesh.report,

@@ -279,3 +279,57 @@ END
     expect mended.tm 1 2.0778 2 2.0778
     python3 regions.py interfaces mended.tm | diff - <(printf '%s\n' '0 1' '0 2' '1 2')
 }
+
+# tetrahedra ANGLE: the cube in six tetrahedra around a diagonal, turned (OFF).
+tetrahedra() {
+    python3 - "$1" <<'END'
+import itertools, math, sys
+c, s = math.cos(float(sys.argv[1])), math.sin(float(sys.argv[1]))
+faces = set()
+for way in itertools.permutations((1, 2, 4)):
+    t = [0, way[0], way[0] + way[1], 7]
+    faces |= {tuple(sorted(t[:i] + t[i + 1:])) for i in range(4)}
+print('OFF', 8, len(faces), 0)
+for n in range(8):
+    x, y, z = n & 1, n >> 1 & 1, n >> 2
+    print(c * x - s * y, s * x + c * y, z)
+for f in sorted(faces):
+    print(3, *f)
+END
+}
+
+@test "six regions at a curve, more than octants can follow: most nodes are on the surface" {
+    tetrahedra 0 >walls.off
+    run -0 --separate-stderr octree-mesh -s 4 --json report.json -o walls.tm walls.off
+    [[ "$stderr" == *"more regions meet there than octants can follow"* ]]
+    run -0 mesh-check walls.tm
+    run -0 jens-stats --fail-below 0.1 walls.tm
+    [ "$(json report.json held_back)" -lt 200 ]
+}
+
+@test "--resolve: where walls meet at a curve nothing is too close together" {
+    shapes cells >walls.off
+    octree-mesh -q --no-history -s 4 --resolve 0 -o plain.tm walls.off
+    octree-mesh -q --no-history -s 4 --resolve 3 walls.off | cmp - plain.tm
+}
+
+@test "--resolve: fewer levels where more hold back more nodes" {
+    # a box in four wedges around its middle line
+    python3 - >walls.off <<'END'
+import math
+n = 4
+print('OFF', 2 * n + 2, 4 * n, 0)
+for z in (0, 1):
+    print(0, 0, z)
+    for k in range(n):
+        a = 2 * math.pi * (k + 0.3) / n
+        print(math.cos(a), math.sin(a), z)
+m = n + 1
+for k in range(n):
+    a, b = 1 + k, 1 + (k + 1) % n
+    print(3, 0, b, a, '\n3', m, m + a, m + b, '\n4', a, b, m + b, m + a, '\n4', 0, a, m + a, m)
+END
+    run -0 --separate-stderr octree-mesh -s 4 --resolve 3 --json report.json -o fine.tm walls.off
+    [ "$(json report.json held_back)" -eq 0 ]
+    [[ "$stderr" == *"with more levels more nodes would be held back"* ]]
+}

@@ -4,6 +4,7 @@
 #include "../../lib/element/jens.h"
 #include "../../lib/examine/element_examine.h"
 #include "../../lib/examine/mixed_volume.h"
+#include "../../lib/octree/interior/region_layout.h"
 #include "../../lib/octree/interior/region_leaves.h"
 #include "../../lib/octree/layer/adaptive_refinement.h"
 #include "../../lib/octree/layer/octree_mesh_parts.h"
@@ -247,6 +248,80 @@ static void test_leaves(void **state)
     assert_true(shared > 0);
 }
 
+/* Gives leaves the labels that their centres have, and lays corners and curves out. */
+static void lay_out(tm_region_layout *layout, const uint32_t *label)
+{
+    tm_error error;
+    for (uint32_t l = 0; l < layout->lattice.octree->leaves; l++)
+        tm_interior_set_label(layout->interior, layout->lattice.octree, l, label[l]);
+    assert_ok(tm_region_lay_out(layout, &error), &error);
+}
+
+/* What is laid out again, after some nodes cost more, is as if it were the first time. */
+static void check_layout(const tm_octree *octree, const tm_surface *surface,
+                         tm_interior *interior, const uint32_t *label)
+{
+    tm_region_layout layout;
+    tm_error error;
+    uint32_t *again = malloc(octree->leaves * sizeof *again);
+    bool *taken = malloc(octree->nodes * sizeof *taken);
+    float *history = calloc(octree->nodes, sizeof *history);
+    assert_ok(tm_region_layout_make(&layout, octree, surface, interior, &error), &error);
+    lay_out(&layout, label);
+    for (size_t n = 0; n < octree->nodes; n++)
+        if (layout.taken[n] && random_below(8) == 0)
+            history[n] = 2;
+    memcpy(layout.history, history, octree->nodes * sizeof *history);
+    for (int time = 0; time < 2; time++) {
+        lay_out(&layout, label);
+        memcpy(again, interior->label, octree->leaves * sizeof *again);
+        memcpy(taken, layout.taken, octree->nodes * sizeof *taken);
+    }
+    const size_t lost = layout.lost;
+    tm_region_layout_free(&layout);
+    assert_ok(tm_region_layout_make(&layout, octree, surface, interior, &error), &error);
+    memcpy(layout.history, history, octree->nodes * sizeof *history);
+    lay_out(&layout, label);
+    assert_int_equal(layout.lost, lost);
+    assert_memory_equal(interior->label, again, octree->leaves * sizeof *again);
+    assert_memory_equal(layout.taken, taken, octree->nodes * sizeof *taken);
+    tm_region_layout_free(&layout);
+    free(again);
+    free(taken);
+    free(history);
+}
+
+static void test_layout(void **state)
+{
+    (void)state;
+    for (int round = 0; round < ROUNDS / 3; round++) {
+        const uint64_t seed = random_state;
+        unsigned cube[CUBES];
+        tm_polygon_surface p;
+        tm_surface surface;
+        tm_octree octree;
+        tm_interior interior;
+        tm_error error;
+        make_surface(&surface, cube, &p);
+        make_random_octree(&octree, &surface);
+        printf("layout %d (TM_SEED=%" PRIu64 "): %zu leaves\n", round, seed,
+               octree.leaves);
+        assert_ok(tm_interior_choose(&interior, &octree, &surface, &error), &error);
+        uint32_t *label = malloc(octree.leaves * sizeof *label);
+        for (size_t l = 0; l < octree.leaves; l++) {
+            double centre[3];
+            tm_leaf_centre(&octree, &octree.leaf[l], centre);
+            label[l] = tm_surface_region_at(&surface, centre);
+        }
+        check_layout(&octree, &surface, &interior, label);
+        free(label);
+        tm_interior_free(&interior);
+        tm_octree_free(&octree);
+        tm_surface_free(&surface);
+        tm_polygon_surface_free(&p);
+    }
+}
+
 /* Meshes of cubes at odd angles, too: no element is inverted, whatever comes together. */
 static void test_meshes(void **state)
 {
@@ -295,6 +370,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_regions),
         cmocka_unit_test(test_leaves),
+        cmocka_unit_test(test_layout),
         cmocka_unit_test(test_meshes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -6,8 +6,9 @@
 #include <math.h>
 #include <string.h>
 
-/* Patches that are told apart: two meet at an edge, more at a corner. */
-enum { PATCHES = 3 };
+/* Patches that are told apart: two meet at an edge, more at a corner, or, where walls
+ * meet, at an edge too. */
+enum { PATCHES = 8 };
 
 /* Directions that are remembered: more than eight that differ by 37° are rare, and only
  * make the octant smaller later. */
@@ -101,21 +102,60 @@ static bool is_in(const tm_surface *surface, uint32_t v, const double low[3], do
     return true;
 }
 
-/* Whether three patches come together without a corner, or there are two corners. */
+/* Patches, a bit each. */
+typedef struct {
+    unsigned count;
+    uint32_t patch[PATCHES];
+} patch_list;
+
+static unsigned bit_of(const patch_list *list, uint32_t patch)
+{
+    unsigned p = 0;
+    while (p < list->count && list->patch[p] != patch)
+        p++;
+    return p;
+}
+
+static bool has_node(const uint32_t node[3], uint32_t v)
+{
+    return node[0] == v || node[1] == v || node[2] == v;
+}
+
+/* Whether all patches come together at an edge of the triangles. */
+static bool meet_at_edge(const tm_surface *surface, const patch_list *list,
+                         const uint32_t *triangle, size_t count)
+{
+    for (size_t i = 0; i < 3 * count; i++) {
+        const uint32_t *v = surface->triangle[triangle[i / 3]];
+        const uint32_t a = v[i % 3], b = v[(i + 1) % 3];
+        unsigned met = 0;
+        if (surface->across[triangle[i / 3]][i % 3] != TM_NONE)
+            continue;
+        for (size_t k = 0; k < count; k++) {
+            const uint32_t t = triangle[k];
+            if (has_node(surface->triangle[t], a) && has_node(surface->triangle[t], b))
+                met |= 1u << bit_of(list, surface->patch[t]);
+        }
+        if (met == (1u << list->count) - 1)
+            return true;
+    }
+    return false;
+}
+
+/* Whether patches come together without a corner, more than two and not at an edge, or
+ * there are two corners. */
 static bool has_many(const tm_surface *surface, const bool *is_corner,
                      const uint32_t *triangle, size_t count, const double low[3],
                      double side)
 {
-    uint32_t patch[PATCHES], corner = TM_NONE;
-    unsigned patches = 0;
+    const unsigned most = surface->walls ? PATCHES : 3;
+    patch_list list = {0};
+    uint32_t corner = TM_NONE;
     bool corner_near = false;
     for (size_t i = 0; i < count; i++) {
         const uint32_t t = triangle[i];
-        unsigned p = 0;
-        while (p < patches && patch[p] != surface->patch[t])
-            p++;
-        if (p == patches && patches < PATCHES)
-            patch[patches++] = surface->patch[t];
+        if (bit_of(&list, surface->patch[t]) == list.count && list.count < most)
+            list.patch[list.count++] = surface->patch[t];
         for (int c = 0; c < 3; c++) {
             const uint32_t v = surface->triangle[t][c];
             if (!is_corner[v] || !is_in(surface, v, low, side, side))
@@ -128,7 +168,8 @@ static bool has_many(const tm_surface *surface, const bool *is_corner,
             corner = v;
         }
     }
-    return patches == PATCHES && !corner_near;
+    return list.count > 2 && !corner_near &&
+           !(surface->walls && meet_at_edge(surface, &list, triangle, count));
 }
 
 bool tm_octant_is_crowded(const tm_surface *surface, const bool *is_corner,

@@ -18,12 +18,13 @@ static tm_status allocate(tm_region_layout *layout, const tm_octree *octree,
     const tm_surface *s = layout->surface;
     layout->corner_at = tm_new(s->nodes, sizeof *layout->corner_at);
     layout->history = calloc(octree->nodes + 1, sizeof *layout->history);
+    layout->line = calloc(s->curves + 1, sizeof *layout->line);
     layout->fixed = tm_new(octree->leaves, sizeof *layout->fixed);
     layout->taken = tm_new(octree->nodes, sizeof *layout->taken);
     layout->sharp = tm_new(octree->nodes, sizeof *layout->sharp);
     layout->corner_node = tm_new(s->corners, sizeof *layout->corner_node);
-    return layout->corner_at && layout->history && layout->fixed && layout->taken &&
-                   layout->sharp && layout->corner_node
+    return layout->corner_at && layout->history && layout->line && layout->fixed &&
+                   layout->taken && layout->sharp && layout->corner_node
                ? TM_OK
                : tm_fail_memory(error);
 }
@@ -71,6 +72,11 @@ void tm_region_layout_free(tm_region_layout *layout)
         tm_line_patterns_free(&layout->patterns[i]);
     free(layout->corner_at);
     free(layout->history);
+    for (size_t c = 0; layout->line && c < layout->surface->curves; c++) {
+        free(layout->line[c].node);
+        free(layout->line[c].state);
+    }
+    free(layout->line);
     free(layout->fixed);
     free(layout->taken);
     free(layout->sharp);

@@ -7,10 +7,19 @@
 #define TM_INTERIOR_REGION_LAYOUT_H
 
 #include "interior_leaves.h"
-#include "line_patterns.h"
+#include "line_states.h"
 #include "node_lattice.h"
 #include "region_sets.h"
 #include "wall_sectors.h"
+
+/* The line of a curve that was found last, and the nodes that the search for it saw: it
+ * is found again where all is as it was at these. */
+typedef struct tm_laid_line {
+    uint64_t seen; /* a hash of what was there; two are the same once in 2^64 times */
+    size_t nodes, node_room, states, state_room;
+    uint32_t *node;
+    tm_line_state *state; /* the last one first; none where there was no line */
+} tm_laid_line;
 
 typedef struct tm_region_layout {
     const tm_surface *surface;
@@ -20,7 +29,8 @@ typedef struct tm_region_layout {
     tm_wall_sectors sectors;
     tm_line_patterns patterns[2]; /* of 3 and of 4 sectors */
     uint32_t *corner_at;          /* [nodes of the surface]: the corner, or TM_NONE */
-    float *history; /* [nodes]: what it costs more to go by it; 0 at first */
+    float *history;     /* [nodes]: what it costs more to go by it; 0 at first */
+    tm_laid_line *line; /* [curves] */
     /* What is laid out: */
     bool *fixed;           /* [leaves]: it has its label */
     bool *taken;           /* [nodes]: it stands for a corner, or is on a line */
@@ -37,7 +47,8 @@ tm_status tm_region_layout_make(tm_region_layout *layout, const tm_octree *octre
                                 tm_error *error);
 void tm_region_layout_free(tm_region_layout *layout);
 
-/* Lays out all corners and curves that can be, anew. The leaves of *interior have labels
+/* Lays out all corners and curves that can be, anew; lines are looked for only where
+ * something is not as it was the last time. The leaves of *interior have labels
  * (region_leaves.h), and some of them get another. TM_ERROR_SYSTEM where memory is out.
  * O(leaves), and O(n log n) in the nodes near curves. */
 tm_status tm_region_lay_out(tm_region_layout *layout, tm_error *error);

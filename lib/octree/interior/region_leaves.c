@@ -56,6 +56,14 @@ typedef struct {
     tm_contacts contacts;
 } cleaner;
 
+static bool is_uniform(const uint32_t octant[OCTANTS])
+{
+    bool same = true;
+    for (unsigned o = 1; o < OCTANTS; o++)
+        same &= octant[o] == octant[0];
+    return same;
+}
+
 /* The set of some of the octants' labels, and how many there are. */
 static uint64_t set_of(const uint32_t *octant, const uint8_t *which, unsigned count,
                        unsigned *labels)
@@ -74,16 +82,27 @@ static uint64_t set_of(const uint32_t *octant, const uint8_t *which, unsigned co
     return set;
 }
 
+/* Whether some of the octants have more than two labels. */
+static bool has_three(const uint32_t *octant, const uint8_t *which, unsigned count)
+{
+    const uint32_t first = octant[which[0]];
+    unsigned i = 1;
+    while (i < count && octant[which[i]] == first)
+        i++;
+    for (unsigned k = i + 1; k < count; k++)
+        if (octant[which[k]] != first && octant[which[k]] != octant[which[i]])
+            return true;
+    return false;
+}
+
 /* How many of the six edges from a node, and whether the node, bring together regions
  * that the surface does not. */
 static unsigned count_strange(const cleaner *c, const uint32_t octant[OCTANTS])
 {
     unsigned labels, strange = 0;
     uint64_t set = set_of(octant, all_octants, OCTANTS, &labels);
-    if (labels == 1)
-        return 0;
     strange += !tm_walls_have(&c->layout.walls, set);
-    for (int e = 0; labels > 1 && e < 6; e++) {
+    for (int e = 0; e < 6; e++) {
         unsigned few;
         set = set_of(octant, tm_side_octants[e], 4, &few);
         strange += few > 1 && !tm_walls_have(&c->layout.walls, set);
@@ -95,6 +114,8 @@ static unsigned node_badness(const cleaner *c, uint32_t node)
 {
     const unsigned mask_weight = 6, strange_weight = 2; /* a flat face is 1 */
     const uint32_t *octant = c->interior->octant[node];
+    if (is_uniform(octant))
+        return 0;
     return mask_weight * count_bad(octant) +
            (c->strict ? strange_weight * count_strange(c, octant) : 0);
 }
@@ -109,9 +130,7 @@ static bool is_edge_of_walls(const cleaner *c, size_t l, unsigned f, unsigned e,
     const uint8_t which[4] = {(uint8_t)own, (uint8_t)(own ^ 1u << f / 2),
                               (uint8_t)(own ^ 1u << e),
                               (uint8_t)(own ^ 1u << f / 2 ^ 1u << e)};
-    unsigned labels;
-    set_of(octant, which, 4, &labels);
-    return labels > 2;
+    return has_three(octant, which, 4);
 }
 
 /* Whether walls meet at the node that is corner i of face f of a leaf. */
@@ -119,10 +138,8 @@ static bool is_node_of_walls(const cleaner *c, size_t l, unsigned f, unsigned i)
 {
     const unsigned corner =
         f % 2 << f / 2 | (i & 1) << (f / 2 + 1) % 3 | i >> 1 << (f / 2 + 2) % 3;
-    unsigned labels;
-    set_of(c->interior->octant[c->octree->node[l][corner]], all_octants, OCTANTS,
-           &labels);
-    return labels > 2;
+    return has_three(c->interior->octant[c->octree->node[l][corner]], all_octants,
+                     OCTANTS);
 }
 
 /* The faces of a leaf, as parts of walls, that would be flat or folded: walls meet along

@@ -24,30 +24,17 @@ static const double tube = 2.5, loose_end = 2;
 static const double step_cost = 0.3, distance_weight = 0.25, octant_weight = 0.5,
                     length_cost = 0.7;
 
-typedef struct {
-    uint32_t node;
-    tm_line_code code;
-    uint8_t to;
-    bool done;
-    uint32_t from; /* the state before, or TM_NONE */
-    double cost;
-} state;
-
 /* A node as the line of one curve sees it. */
 typedef struct {
     uint32_t node;
     bool near;
     double distance, param; /* to the curve in shortest edges; along it */
     double size;            /* shortest edge */
+    uint32_t row;           /* of its states */
     uint8_t may[OCTANTS];   /* bit s: octant may be in sector s */
     uint8_t same[OCTANTS];  /* the first octant in the same leaf */
     float beside[OCTANTS][TM_SECTORS];
 } view;
-
-typedef struct {
-    double cost;
-    uint32_t state;
-} entry;
 
 typedef struct {
     tm_region_layout *layout;
@@ -55,11 +42,7 @@ typedef struct {
     uint32_t *view_of; /* [nodes]: where view[view_of[n]].node is n */
     size_t views, view_room;
     view *view;
-    size_t states, state_room;
-    state *state;
-    tm_hash_table table; /* of states */
-    size_t entries, entry_room;
-    entry *heap;
+    tm_line_states states;
     double *length; /* along the curve up to each of its nodes */
     size_t length_room;
     /* of the curve */
@@ -79,63 +62,6 @@ static const tm_line_patterns *patterns_of(const finder *f)
     return &f->layout->patterns[f->sectors - 3];
 }
 
-static bool before(entry a, entry b)
-{
-    return a.cost < b.cost || (a.cost == b.cost && a.state < b.state);
-}
-
-static tm_status push(finder *f, entry e)
-{
-    void *more = tm_grow(f->heap, &f->entry_room, f->entries + 1, sizeof *f->heap);
-    if (!more)
-        return tm_fail_memory(f->error);
-    f->heap = more;
-    size_t i = f->entries++;
-    for (; i > 0 && before(e, f->heap[(i - 1) / 2]); i = (i - 1) / 2)
-        f->heap[i] = f->heap[(i - 1) / 2];
-    f->heap[i] = e;
-    return TM_OK;
-}
-
-static entry pop(finder *f)
-{
-    const entry top = f->heap[0], last = f->heap[--f->entries];
-    size_t i = 0;
-    for (size_t child; (child = 2 * i + 1) < f->entries; i = child) {
-        if (child + 1 < f->entries && before(f->heap[child + 1], f->heap[child]))
-            child++;
-        if (!before(f->heap[child], last))
-            break;
-        f->heap[i] = f->heap[child];
-    }
-    f->heap[i] = last;
-    return top;
-}
-
-static uint64_t key_of(uint32_t node, tm_line_code code)
-{
-    return (uint64_t)node << 16 | code;
-}
-
-static uint32_t *slot_of(const finder *f, uint32_t node, tm_line_code code)
-{
-    uint32_t *slot = tm_hash_slot(&f->table, tm_hash(0, key_of(node, code)));
-    while (*slot != TM_HASH_FREE &&
-           (f->state[*slot].node != node || f->state[*slot].code != code))
-        slot = tm_hash_next(&f->table, slot);
-    return slot;
-}
-
-static tm_status make_table(finder *f, size_t count)
-{
-    tm_hash_free(&f->table);
-    if (!tm_hash_make(&f->table, count))
-        return tm_fail_memory(f->error);
-    for (uint32_t i = 0; i < f->states; i++)
-        *slot_of(f, f->state[i].node, f->state[i].code) = i;
-    return TM_OK;
-}
-
 static double along_curve(const finder *f, double a, double b)
 {
     const double d = fabs(a - b);
@@ -143,26 +69,22 @@ static double along_curve(const finder *f, double a, double b)
 }
 
 /* Enters a state that costs so much, if none as cheap is there. */
-static tm_status reach(finder *f, const view *v, const tm_line_pattern *p, uint32_t from,
-                       double cost)
+static tm_status reach(finder *f, view *v, uint32_t pattern, uint32_t from, double cost)
 {
-    const uint32_t node = v->node;
+    const tm_line_patterns *patterns = patterns_of(f);
+    const tm_line_pattern *p = &patterns->pattern[pattern];
+    const tm_line_state made = {
+        .node = v->node, .code = p->code, .to = p->to, .from = from, .cost = cost};
     const double left = length_cost * along_curve(f, v->param, f->goal_param) / v->size;
-    if (2 * (f->states + 1) > f->table.mask && make_table(f, 2 * f->states + 2) != TM_OK)
-        return TM_ERROR_SYSTEM;
-    uint32_t *slot = slot_of(f, node, p->code);
-    if (*slot != TM_HASH_FREE && f->state[*slot].cost <= cost)
-        return TM_OK;
-    if (*slot == TM_HASH_FREE) {
-        void *more = tm_grow(f->state, &f->state_room, f->states + 1, sizeof *f->state);
-        if (!more)
-            return tm_fail_memory(f->error);
-        f->state = more;
-        *slot = (uint32_t)f->states++;
-    }
-    f->state[*slot] =
-        (state){.node = node, .code = p->code, .to = p->to, .from = from, .cost = cost};
-    return push(f, (entry){cost + left, *slot});
+    return tm_line_states_reach(&f->states, patterns->count, pattern, &v->row, &made,
+                                left, f->error);
+}
+
+/* Whether the leaf of an octant has a label that it keeps. */
+static bool is_given(const tm_region_layout *layout, uint32_t leaf, double size)
+{
+    return leaf == TM_NONE || layout->fixed[leaf] ||
+           tm_node_lattice_is_large(&layout->lattice, leaf, size);
 }
 
 /* Which sectors the octants around a node may be in, and how far they are from each. */
@@ -174,8 +96,7 @@ static void look_at_octants(const finder *f, view *v, const tm_sector_frame *fra
     const uint32_t *label = layout->sectors.label[f->curve];
     for (unsigned o = 0; o < OCTANTS; o++) {
         const uint32_t leaf = around[o];
-        const bool given = leaf == TM_NONE || layout->fixed[leaf] ||
-                           tm_node_lattice_is_large(&layout->lattice, leaf, v->size);
+        const bool given = is_given(layout, leaf, v->size);
         const uint32_t own = leaf == TM_NONE ? 0 : layout->interior->label[leaf];
         double direction[3];
         for (int c = 0; c < 3; c++)
@@ -192,7 +113,7 @@ static void look_at_octants(const finder *f, view *v, const tm_sector_frame *fra
     }
 }
 
-static tm_status view_node(finder *f, uint32_t node, const view **found)
+static tm_status view_node(finder *f, uint32_t node, view **found)
 {
     const tm_surface *s = f->layout->surface;
     const tm_octree *octree = f->layout->lattice.octree;
@@ -206,7 +127,9 @@ static tm_status view_node(finder *f, uint32_t node, const view **found)
     f->view = more;
     f->view_of[node] = (uint32_t)f->views;
     view *v = &f->view[f->views++];
-    *v = (view){.node = node, .size = tm_node_lattice_size(&f->layout->lattice, node)};
+    *v = (view){.node = node,
+                .size = tm_node_lattice_size(&f->layout->lattice, node),
+                .row = TM_NONE};
     double at[3], closest[3];
     size_t segment;
     tm_octree_point(octree, octree->grid[node], at);
@@ -237,6 +160,13 @@ static double cost_of(const finder *f, const view *v, tm_line_code code)
            distance_weight * v->distance * v->distance + octant_weight * sum;
 }
 
+/* Whether the line may go by a node. */
+static bool is_passable(const finder *f, const view *v)
+{
+    return !f->layout->taken[v->node] && v->near &&
+           along_curve(f, v->param, f->middle) <= f->half + tube * v->size;
+}
+
 /* Goes on from a node towards side `to`. */
 static tm_status step(finder *f, uint32_t node, tm_line_code code, unsigned to,
                       uint32_t from, double cost, bool *arrived)
@@ -247,12 +177,12 @@ static tm_status step(finder *f, uint32_t node, tm_line_code code, unsigned to,
     if (next == TM_NONE)
         return TM_OK;
     *arrived = next == f->goal && (f->goal_side == SIDES || f->goal_side == side);
-    if (*arrived || layout->taken[next])
+    view *v;
+    if (*arrived)
         return TM_OK;
-    const view *v;
     if (view_node(f, next, &v) != TM_OK)
         return TM_ERROR_SYSTEM;
-    if (!v->near || along_curve(f, v->param, f->middle) > f->half + tube * v->size)
+    if (!is_passable(f, v))
         return TM_OK;
     unsigned around = 0;
     for (unsigned i = 0; i < 4; i++)
@@ -261,14 +191,14 @@ static tm_status step(finder *f, uint32_t node, tm_line_code code, unsigned to,
     const unsigned bucket = TM_SIDE_CODES * side + around;
     for (uint32_t i = p->start[bucket]; i < p->start[bucket + 1]; i++) {
         const double more = cost_of(f, v, p->pattern[i].code);
-        if (more < INFINITY && reach(f, v, &p->pattern[i], from, cost + more) != TM_OK)
+        if (more < INFINITY && reach(f, v, i, from, cost + more) != TM_OK)
             return TM_ERROR_SYSTEM;
     }
     return TM_OK;
 }
 
 /* Whether a line may end with a state where there is no goal. */
-static bool is_at_end(finder *f, const state *s)
+static bool is_at_end(finder *f, const tm_line_state *s)
 {
     const view *v = &f->view[f->view_of[s->node]];
     return f->goal == TM_NONE &&
@@ -280,13 +210,8 @@ static bool is_at_end(finder *f, const state *s)
 static tm_status search(finder *f, uint32_t *last)
 {
     *last = TM_NONE;
-    while (f->entries > 0) {
-        const entry next = pop(f);
-        const uint32_t i = next.state;
-        if (f->state[i].done)
-            continue;
-        f->state[i].done = true;
-        const state s = f->state[i];
+    for (uint32_t i; (i = tm_line_states_next(&f->states)) != TM_NONE;) {
+        const tm_line_state s = f->states.state[i];
         bool arrived = is_at_end(f, &s);
         if (!arrived && step(f, s.node, s.code, s.to, i, s.cost, &arrived) != TM_OK)
             return TM_ERROR_SYSTEM;
@@ -300,26 +225,74 @@ static tm_status search(finder *f, uint32_t *last)
 
 static void clear(finder *f)
 {
-    f->states = f->views = f->entries = 0;
-    for (size_t i = 0; f->table.slot && i <= f->table.mask; i++)
-        f->table.slot[i] = TM_HASH_FREE;
+    tm_line_states_clear(&f->states);
+    f->views = 0;
 }
 
-/* Gives the leaves around the states up to the last one their labels. */
-static void lay_states(finder *f, uint32_t last)
+/* Gives the leaves around the node of a state their labels. */
+static void lay_state(const finder *f, const tm_line_state *s)
 {
     tm_region_layout *layout = f->layout;
     const uint32_t *label = layout->sectors.label[f->curve];
-    for (uint32_t i = last; i != TM_NONE; i = f->state[i].from) {
-        const state *s = &f->state[i];
-        layout->taken[s->node] = true;
-        layout->sharp[s->node] = layout->sectors.sharp[f->curve];
+    layout->taken[s->node] = true;
+    layout->sharp[s->node] = layout->sectors.sharp[f->curve];
+    for (unsigned o = 0; o < OCTANTS; o++) {
+        const uint32_t leaf = layout->lattice.leaf[s->node][o];
+        if (leaf != TM_NONE && !layout->fixed[leaf])
+            tm_region_lay(layout, leaf, label[tm_code_at(s->code, o)]);
+    }
+}
+
+/* The same of all states up to the last one. */
+static void lay_states(const finder *f, uint32_t last)
+{
+    for (uint32_t i = last; i != TM_NONE; i = f->states.state[i].from)
+        lay_state(f, &f->states.state[i]);
+}
+
+/* All that a search saw at its nodes, and that may change, after the hash of its ends. */
+static uint64_t look_again(const finder *f, const tm_laid_line *line, uint64_t hash)
+{
+    const tm_region_layout *layout = f->layout;
+    for (size_t i = 0; i < line->nodes; i++) {
+        const uint32_t node = line->node[i];
+        const double size = tm_node_lattice_size(&layout->lattice, node);
+        uint32_t history;
+        memcpy(&history, &layout->history[node], sizeof history);
+        hash = tm_hash(hash, (uint64_t)history << 1 | layout->taken[node]);
         for (unsigned o = 0; o < OCTANTS; o++) {
-            const uint32_t leaf = layout->lattice.leaf[s->node][o];
-            if (leaf != TM_NONE && !layout->fixed[leaf])
-                tm_region_lay(layout, leaf, label[tm_code_at(s->code, o)]);
+            const uint32_t leaf = layout->lattice.leaf[node][o];
+            const bool given = is_given(layout, leaf, size);
+            const uint32_t own = leaf == TM_NONE ? 0 : layout->interior->label[leaf];
+            hash = tm_hash(hash, given ? own + UINT64_C(1) : 0);
         }
     }
+    return hash;
+}
+
+/* Keeps what was found, and what was seen for it. */
+static tm_status keep_line(const finder *f, tm_laid_line *line, uint64_t hash,
+                           uint32_t last)
+{
+    line->nodes = line->states = 0;
+    for (uint32_t i = last; i != TM_NONE; i = f->states.state[i].from)
+        line->states++;
+    void *node = tm_grow(line->node, &line->node_room, f->views, sizeof *line->node);
+    line->node = node ? node : line->node;
+    void *state =
+        tm_grow(line->state, &line->state_room, line->states, sizeof *line->state);
+    line->state = state ? state : line->state;
+    if (!node || !state) {
+        line->states = 0;
+        return tm_fail_memory(f->error);
+    }
+    for (; line->nodes < f->views; line->nodes++)
+        line->node[line->nodes] = f->view[line->nodes].node;
+    size_t k = 0;
+    for (uint32_t i = last; i != TM_NONE; i = f->states.state[i].from)
+        line->state[k++] = f->states.state[i];
+    line->seen = look_again(f, line, hash);
+    return TM_OK;
 }
 
 /* Begins at a node that stands for a corner, on the side where its octants turn as the
@@ -354,14 +327,14 @@ static tm_status begin_near(finder *f, const double point[3])
     const unsigned count = tm_node_lattice_near(&f->layout->lattice, point, STEPS, near);
     const tm_line_patterns *p = patterns_of(f);
     for (unsigned i = 0; i < count; i++) {
-        const view *v;
-        if (f->layout->taken[near[i]])
-            continue;
+        view *v;
         if (view_node(f, near[i], &v) != TM_OK)
             return TM_ERROR_SYSTEM;
+        if (f->layout->taken[near[i]])
+            continue;
         for (uint32_t k = 0; v->near && k < p->count; k++) {
             const double cost = cost_of(f, v, p->pattern[k].code);
-            if (cost < INFINITY && reach(f, v, &p->pattern[k], TM_NONE, cost) != TM_OK)
+            if (cost < INFINITY && reach(f, v, k, TM_NONE, cost) != TM_OK)
                 return TM_ERROR_SYSTEM;
         }
     }
@@ -400,9 +373,9 @@ static tm_status go_around(finder *f, const double start[3])
         return TM_OK;
     lay_states(f, last);
     uint32_t first = last;
-    while (f->state[first].from != TM_NONE)
-        first = f->state[first].from;
-    const state from = f->state[last], to = f->state[first];
+    while (f->states.state[first].from != TM_NONE)
+        first = f->states.state[first].from;
+    const tm_line_state from = f->states.state[last], to = f->states.state[first];
     bool arrived = false;
     clear(f);
     f->goal = to.node;
@@ -424,11 +397,13 @@ static tm_status go_around(finder *f, const double start[3])
     return TM_OK;
 }
 
-/* The line of a curve from corner to corner, whose nodes may be TM_NONE. */
+/* The line of a curve from corner to corner, whose nodes may be TM_NONE. Where all is as
+ * it was when the line was found it is the same. */
 static tm_status go_along(finder *f, const double start[3], uint32_t from, uint32_t to)
 {
-    tm_line_code code;
-    unsigned side;
+    tm_laid_line *line = &f->layout->line[f->curve];
+    tm_line_code code = 0;
+    unsigned side = SIDES;
     uint32_t last;
     bool arrived = false;
     f->goal = to;
@@ -438,12 +413,20 @@ static tm_status go_along(finder *f, const double start[3], uint32_t from, uint3
     if (to != TM_NONE && !find_side(f, to, true, &f->goal_side, &code))
         f->goal = TM_NONE;
     const bool begins = from != TM_NONE && find_side(f, from, false, &side, &code);
+    uint64_t hash = tm_hash(0, (uint64_t)f->goal << 8 | f->goal_side);
+    hash = tm_hash(hash, begins ? (uint64_t)from << 32 | side << 16 | code : UINT64_MAX);
+    if (line->nodes > 0 && line->seen == look_again(f, line, hash)) {
+        f->layout->lost += line->states == 0;
+        for (size_t i = 0; i < line->states; i++)
+            lay_state(f, &line->state[i]);
+        return TM_OK;
+    }
     if (begins ? step(f, from, code, side, TM_NONE, 0, &arrived) != TM_OK
                : begin_near(f, start) != TM_OK)
         return TM_ERROR_SYSTEM;
     if (arrived)
         return TM_OK;
-    if (search(f, &last) != TM_OK)
+    if (search(f, &last) != TM_OK || keep_line(f, line, hash, last) != TM_OK)
         return TM_ERROR_SYSTEM;
     f->layout->lost += last == TM_NONE;
     lay_states(f, last);
@@ -472,11 +455,9 @@ static tm_status lay_line(finder *f, uint32_t curve)
 
 static void free_finder(finder *f)
 {
-    tm_hash_free(&f->table);
+    tm_line_states_free(&f->states);
     free(f->view_of);
     free(f->view);
-    free(f->state);
-    free(f->heap);
     free(f->length);
 }
 

@@ -265,18 +265,24 @@ static tm_status try_rings(releaser *r, const tm_boundary *boundary,
     return TM_OK;
 }
 
+/* What makes elements valid, with so many measurements. */
+static tm_optimise_options to_be_valid(const tm_mixed_mesh *mesh,
+                                       const tm_progress *progress)
+{
+    const double valid = 0.05;
+    const size_t least = 500000, each = 2;
+    return (tm_optimise_options){.threshold = valid,
+                                 .effort = 1,
+                                 .most_measured = least + each * mesh->elements,
+                                 .progress = progress};
+}
+
 static tm_status release_and_return(releaser *r, const tm_octree *octree,
                                     const tm_boundary *boundary,
                                     const tm_progress *progress, tm_error *error)
 {
-    const double valid = 0.05;
-    const size_t least = 500000, each = 2;
     tm_octree_mesh *m = r->m;
-    tm_optimise_options options = {.threshold = valid,
-                                   .effort = 1,
-                                   .most_measured =
-                                       least + each * m->assembly.mesh.elements,
-                                   .progress = progress};
+    tm_optimise_options options = to_be_valid(&m->assembly.mesh, progress);
     tm_optimise_report report;
     if (!r->ring || !r->base || !r->kept)
         return tm_fail_memory(error);
@@ -284,7 +290,7 @@ static tm_status release_and_return(releaser *r, const tm_octree *octree,
                                          &m->boundary, r->base, error);
     if (status == TM_OK)
         status = try_rings(r, boundary, &options, error);
-    options.off_surface_threshold = valid;
+    options.off_surface_threshold = options.threshold;
     if (status == TM_OK)
         status = tm_mixed_optimise(&m->assembly.mesh, r->rule, boundary, &options,
                                    &report, error);
@@ -309,6 +315,66 @@ static tm_status release(tm_octree_mesh *m, const tm_octree *octree, tm_node_rul
     return status;
 }
 
+static size_t count_off_surface(const tm_octree_mesh *m)
+{
+    size_t count = 0;
+    for (size_t s = 0; s < m->boundary.nodes; s++)
+        count += m->off_surface[s];
+    return count;
+}
+
+/* Brings outer nodes to the surface that are not there, as far as they can go, and
+ * improves what is around them. */
+static tm_status bring_back(tm_octree_mesh *m, const tm_octree *octree,
+                            tm_node_rule *rule, const tm_boundary *boundary,
+                            const tm_progress *progress, tm_error *error)
+{
+    tm_mixed_mesh *mesh = &m->assembly.mesh;
+    tm_optimise_options options = to_be_valid(mesh, progress);
+    tm_optimise_report report;
+    double worst;
+    for (size_t s = 0; s < m->boundary.nodes; s++)
+        rule[m->assembly.outer + s].off_surface = m->off_surface[s];
+    options.off_surface_threshold = options.threshold;
+    tm_status status = tm_mixed_optimise(mesh, rule, boundary, &options, &report, error);
+    if (status == TM_OK)
+        status = improve(m, rule, boundary, progress, &worst, error);
+    for (size_t s = 0; s < m->boundary.nodes; s++)
+        m->off_surface[s] = rule[m->assembly.outer + s].off_surface;
+    if (status == TM_OK && count_invalid(mesh) > 0)
+        status = hold_back(m, octree, error);
+    return status;
+}
+
+/* The same; but all is as before where an element is not valid then, or no fewer nodes
+ * are off the surface. */
+static tm_status try_to_bring_back(tm_octree_mesh *m, const tm_octree *octree,
+                                   tm_node_rule *rule, const tm_boundary *boundary,
+                                   const tm_progress *progress, tm_error *error)
+{
+    tm_mixed_mesh *mesh = &m->assembly.mesh;
+    const size_t bytes = mesh->nodes * sizeof *mesh->xyz;
+    const size_t before = count_off_surface(m);
+    double(*kept)[3] = tm_new(mesh->nodes, sizeof *kept);
+    bool *off_surface = tm_new(m->boundary.nodes, sizeof *off_surface);
+    if (!kept || !off_surface) {
+        free(kept);
+        free(off_surface);
+        return tm_fail_memory(error);
+    }
+    memcpy(kept, mesh->xyz, bytes);
+    memcpy(off_surface, m->off_surface, m->boundary.nodes * sizeof *off_surface);
+    const tm_status status = bring_back(m, octree, rule, boundary, progress, error);
+    if (status == TM_OK && (m->report.invalid > 0 || count_off_surface(m) >= before)) {
+        memcpy(mesh->xyz, kept, bytes);
+        memcpy(m->off_surface, off_surface, m->boundary.nodes * sizeof *off_surface);
+        m->report.invalid = 0;
+    }
+    free(kept);
+    free(off_surface);
+    return status;
+}
+
 tm_status tm_untangle_layer(tm_octree_mesh *mesh, const tm_octree *octree,
                             const tm_surface *surface, const tm_progress *progress,
                             tm_error *error)
@@ -328,10 +394,12 @@ tm_status tm_untangle_layer(tm_octree_mesh *mesh, const tm_octree *octree,
             valid = status != TM_OK || count_invalid(&mesh->assembly.mesh) == 0;
         }
     }
-    free(rule);
     if (!valid)
         status = hold_back(mesh, octree, error);
-    for (size_t s = 0; s < mesh->boundary.nodes; s++)
-        mesh->report.off_surface += mesh->off_surface[s];
+    if (status == TM_OK && surface->walls && mesh->report.invalid == 0 &&
+        count_off_surface(mesh) > 0)
+        status = try_to_bring_back(mesh, octree, rule, &boundary, progress, error);
+    free(rule);
+    mesh->report.off_surface = count_off_surface(mesh);
     return status;
 }
