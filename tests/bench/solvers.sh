@@ -12,10 +12,11 @@
 # Programs and options that are not there are left out, with a note. A quarter of an hour.
 # The environment:
 #   TM_DATA   a folder with knot.off, femur.off, fandisk.off and anchor_dense.off; those
-#             that are there are used, besides a generated gear
+#             that are there are used, besides a generated gear; others are left out,
+#             with a note
 #   PARTS     which of: errors unknowns volumes; all
 #   MODELS    which of these surfaces; all
-#   LEVELS    of octants at surfaces; 4 5
+#   LEVELS    of octants, at surfaces alone (-s) and everywhere (-a); 4 5
 #   VOLUMES   of the cube's tetrahedra, at most, for the errors; 0.00026 0.000033, which
 #             make about 400 and 3 000 polyhedra
 # shellcheck source-path=SCRIPTDIR source=peers.inc
@@ -380,8 +381,10 @@ volumes() {
     fi
     judge_foam_dual
     for level in ${LEVELS:-4 5}; do
-        judged "octants, level $level" octants -s "$level" "$2"
-        aims "octants, level $level"
+        for where in -s -a; do
+            judged "octants $where $level" octants $where "$level" "$2"
+            aims "octants $where $level"
+        done
     done
 }
 
@@ -406,7 +409,13 @@ for part in ${PARTS:-errors unknowns volumes}; do
         for name in ${MODELS:-gear knot femur fandisk anchor_dense}; do
             case $name in
             gear) volumes gear "$work/gear.off" ;;
-            *) [ ! -r "$data/$name.off" ] || volumes "$name" "$data/$name.off" ;;
+            *)
+                if [ -r "$data/$name.off" ]; then
+                    volumes "$name" "$data/$name.off"
+                else
+                    note "$name: no $name.off in TM_DATA (${TM_DATA:-which is not set})"
+                fi
+                ;;
             esac
         done
         ;;

@@ -7,7 +7,7 @@
  * one's. */
 static double height(const tm_poly_centroids *m, size_t f, const double from[3])
 {
-    const double area = tm_norm(m->face[f].area);
+    const double area = m->face[f].size;
     return area > 0 ? fabs(tm_facet_pyramid(&m->face[f], from, 1)) / area : 0;
 }
 
@@ -33,7 +33,7 @@ static double least_sight(const tm_poly_centroids *m, size_t f, int from, int to
                           const double point[3], size_t base)
 {
     const size_t count = tm_facet_corners(m->mesh, f);
-    const double area = tm_norm(m->face[f].area);
+    const double area = m->face[f].size;
     double least = HUGE_VAL, line[2][3], p[3], q[3], normal[3];
     for (int s = from; s < to; s++) {
         tm_subtract(line[s], point, m->cell[m->mesh->side[f][s]].centre);
@@ -118,7 +118,7 @@ double tm_facet_beyond(const tm_poly_centroids *m, size_t f, size_t other, size_
     const tm_facet_centroid *at = &m->face[f];
     double to[3];
     tm_subtract(to, m->face[other].centre, at->centre);
-    const double lengths = tm_norm(to) * tm_norm(at->area);
+    const double lengths = tm_norm(to) * at->size;
     const double sign = m->mesh->side[f][0] == c ? 1 : -1;
     return lengths > 0 ? sign * tm_dot(to, at->area) / lengths : -1;
 }

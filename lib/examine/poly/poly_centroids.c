@@ -17,6 +17,7 @@ static double measure_triangle(const tm_poly_arrays *mesh, size_t f,
         out->area[x] /= 2;
         out->centre[x] = (a[x] + b[x] + c[x]) / 3;
     }
+    out->size = tm_norm(out->area);
     return 0;
 }
 
@@ -28,7 +29,7 @@ static double measure_face(const tm_poly_arrays *mesh, size_t f, tm_facet_centro
     double mean[3] = {0}, moment[3] = {0}, sum = 0;
     if (count == 3)
         return measure_triangle(mesh, f, out);
-    *out = (tm_facet_centroid){{0}, {0}};
+    *out = (tm_facet_centroid){.size = 0};
     for (size_t i = 0; i < count; i++)
         for (int x = 0; x < 3; x++)
             mean[x] += tm_facet_corner(mesh, f, i)[x] / (double)count;
@@ -46,6 +47,7 @@ static double measure_face(const tm_poly_arrays *mesh, size_t f, tm_facet_centro
     }
     for (int x = 0; x < 3; x++)
         out->centre[x] = sum > 0 ? moment[x] / sum : mean[x];
+    out->size = tm_norm(out->area);
     return sum;
 }
 
@@ -111,7 +113,7 @@ tm_status tm_poly_centroids_find(tm_poly_centroids *c, const tm_poly_arrays *mes
     for (size_t f = 0; f < mesh->facets; f++) {
         const double sum = measure_face(mesh, f, &c->face[f]);
         if (sum > 0)
-            c->max_bend = fmax(c->max_bend, 1 - tm_norm(c->face[f].area) / sum);
+            c->max_bend = fmax(c->max_bend, 1 - c->face[f].size / sum);
     }
     measure_cells(c);
     return TM_OK;

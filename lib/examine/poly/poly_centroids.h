@@ -15,6 +15,7 @@
 typedef struct tm_facet_centroid {
     double centre[3];
     double area[3]; /* outward from its first cell */
+    double size;    /* |area| */
 } tm_facet_centroid;
 
 typedef struct tm_cell_centroid {

@@ -54,7 +54,7 @@ static void judge_inner(const tm_poly_centroids *m, size_t f, tm_poly_finite_vol
                            *e = &m->cell[m->mesh->side[f][1]];
     double d[3];
     tm_subtract(d, e->centre, c->centre);
-    double lengths = tm_norm(d) * tm_norm(m->face[f].area);
+    double lengths = tm_norm(d) * m->face[f].size;
     double cosine = lengths > 0 ? tm_dot(d, m->face[f].area) / lengths : 1;
     double angle = acos(fmax(-1, fmin(1, cosine))) * half_turn / pi;
     out->max_non_orthogonality = fmax(out->max_non_orthogonality, angle);

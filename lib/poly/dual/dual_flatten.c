@@ -17,7 +17,7 @@ enum { ITERATIONS = 6 };
 /* How many times the squared distance to the centroid counts; the least barycentric
  * coordinate that a point gets. Of what was tried, these left the fewest cells that are
  * not convex. */
-static const double weight_of_centroid = 3, least_coordinate = 0.1;
+static const double weight_of_centroid = 1, least_coordinate = 0.06;
 
 /* The sums of n nᵀ and of n (n·x) for the planes that a point should be in. */
 typedef struct {

@@ -191,7 +191,6 @@ static bool move_node(fitter *w, uint32_t v, int round)
     const double *corner[DIRECTIONS];
     const int corners = find_corners(w, v, corner), directions = corners ? corners : 3;
     const double side = corners ? 0 : shortest_side(w, v);
-    bool moved = false;
     for (int k = 0, gain = 0; k < 2 * directions && w->a.now.bad > 0; k += 1 + gain) {
         double to[3];
         bool inside = true;
@@ -203,11 +202,9 @@ static bool move_node(fitter *w, uint32_t v, int round)
                 to[x] += (k % 2 ? -step : step) * side * axis[k / 2][x];
         for (int i = 0; i < corners && inside; i++)
             inside = coordinate(corner, corners, i, to) >= w->o->least;
-        const bool gains = inside && tm_fit_around_move(&w->a, v, to);
-        gain = gains && k % 2 == 0; /* not back again */
-        moved |= gains;
+        gain = inside && tm_fit_around_move(&w->a, v, to) && k % 2 == 0; /* not back */
     }
-    return moved;
+    return tm_fit_around_settle(&w->a, v);
 }
 
 /* Rounds over the nodes at what is bad, then over those around them, too, until as many

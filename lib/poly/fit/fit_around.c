@@ -65,14 +65,22 @@ tm_status tm_fit_around_make(tm_fit_around *a, const tm_poly_arrays *mesh,
     return TM_OK;
 }
 
+static void free_state(tm_fit_state *state)
+{
+    free(state->facet);
+    free(state->cell);
+    free(state->sums);
+    free(state->verdict);
+}
+
 void tm_fit_around_free(tm_fit_around *a)
 {
-    void *const all[] = {a->start,   a->facet,    a->verdict,    a->sums,
-                         a->near,    a->fresh,    a->cell,       a->facet_stamp,
-                         a->rest,    a->old_cell, a->cell_stamp, a->old_facet,
-                         a->old_sums};
+    void *const all[] = {a->start, a->facet, a->verdict,     a->sums,       a->near,
+                         a->fresh, a->cell,  a->facet_stamp, a->cell_stamp, a->rest};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         free(all[i]);
+    free_state(&a->first);
+    free_state(&a->last);
     tm_poly_centroids_free(&a->m);
 }
 
@@ -149,21 +157,53 @@ static void find_watched(tm_fit_around *a)
     }
 }
 
+static bool make_room_for(const tm_fit_around *a, tm_fit_state *s)
+{
+    tm_facet_centroid *facet = tm_grow(s->facet, &s->facet_room, a->own, sizeof *facet);
+    s->facet = facet ? facet : s->facet;
+    tm_cell_centroid *cell = tm_grow(s->cell, &s->cell_room, a->cells, sizeof *cell);
+    s->cell = cell ? cell : s->cell;
+    tm_fit_cell *sums = tm_grow(s->sums, &s->sums_room, a->cells, sizeof *sums);
+    s->sums = sums ? sums : s->sums;
+    tm_fit_verdict *verdict =
+        tm_grow(s->verdict, &s->verdict_room, a->nears, sizeof *verdict);
+    s->verdict = verdict ? verdict : s->verdict;
+    return facet && cell && sums && verdict;
+}
+
 static bool make_room(tm_fit_around *a)
 {
     tm_fit_verdict *fresh = tm_grow(a->fresh, &a->fresh_room, a->nears, sizeof *fresh);
     a->fresh = fresh ? fresh : a->fresh;
-    tm_facet_centroid *facet =
-        tm_grow(a->old_facet, &a->old_facet_room, a->own, sizeof *facet);
-    a->old_facet = facet ? facet : a->old_facet;
-    tm_cell_centroid *cell =
-        tm_grow(a->old_cell, &a->old_cell_room, a->cells, sizeof *cell);
-    a->old_cell = cell ? cell : a->old_cell;
     tm_fit_cell *rest = tm_grow(a->rest, &a->rest_room, a->cells, sizeof *rest);
     a->rest = rest ? rest : a->rest;
-    tm_fit_cell *sums = tm_grow(a->old_sums, &a->old_sums_room, a->cells, sizeof *sums);
-    a->old_sums = sums ? sums : a->old_sums;
-    return fresh && facet && cell && rest && sums;
+    return fresh && rest && make_room_for(a, &a->first) && make_room_for(a, &a->last);
+}
+
+static void keep(const tm_fit_around *a, uint32_t v, tm_fit_state *state)
+{
+    memcpy(state->at, a->xyz[v], sizeof state->at);
+    for (size_t k = 0; k < a->own; k++)
+        state->facet[k] = a->m.face[a->near[k]];
+    for (size_t k = 0; k < a->cells; k++) {
+        state->cell[k] = a->m.cell[a->cell[k]];
+        state->sums[k] = a->sums[a->cell[k]];
+    }
+    for (size_t k = 0; k < a->watched; k++)
+        state->verdict[k] = a->verdict[a->near[k]];
+}
+
+static void put_back(const tm_fit_around *a, uint32_t v, const tm_fit_state *state)
+{
+    memcpy(a->xyz[v], state->at, sizeof state->at);
+    for (size_t k = 0; k < a->own; k++)
+        a->m.face[a->near[k]] = state->facet[k];
+    for (size_t k = 0; k < a->cells; k++) {
+        a->m.cell[a->cell[k]] = state->cell[k];
+        a->sums[a->cell[k]] = state->sums[k];
+    }
+    for (size_t k = 0; k < a->watched; k++)
+        a->verdict[a->near[k]] = state->verdict[k];
 }
 
 /* The pairs of cell c with at least one facet of the node. */
@@ -210,8 +250,12 @@ bool tm_fit_around_find(tm_fit_around *a, uint32_t v)
         tm_fit_add_facet(&a->now, &a->verdict[a->near[k]]);
     for (size_t k = 0; k < a->cells; k++)
         tm_fit_add_cell(&a->now, &a->sums[a->cell[k]]);
-    for (size_t k = 0; k < a->cells && a->now.bad > 0; k++)
+    a->before = a->now;
+    if (a->now.bad == 0)
+        return true;
+    for (size_t k = 0; k < a->cells; k++)
         find_rest(a, a->cell[k], &a->rest[k]);
+    keep(a, v, &a->first);
     return true;
 }
 
@@ -241,12 +285,12 @@ static bool is_better(const tm_fit_sum *after, const tm_fit_sum *before)
     return after->missing < before->missing;
 }
 
-/* Adds the facets near[from … to) again, as long as less is missing than before. */
-static void add_facets(const tm_fit_around *a, size_t from, size_t to, tm_fit_sum *sum)
+/* Adds the facets near[from … to) again, as long as less is missing than so much. */
+static void add_facets(const tm_fit_around *a, size_t from, size_t to, double missing,
+                       tm_fit_sum *sum)
 {
-    for (size_t k = from; k < to && sum->missing < a->now.missing; k++) {
-        a->fresh[k] =
-            tm_fit_judge_facet(&a->m, a->near[k], a->now.missing - sum->missing);
+    for (size_t k = from; k < to && sum->missing < missing; k++) {
+        a->fresh[k] = tm_fit_judge_facet(&a->m, a->near[k], missing - sum->missing);
         tm_fit_add_facet(sum, &a->fresh[k]);
     }
 }
@@ -265,55 +309,39 @@ static void add_cells(const tm_fit_around *a, tm_fit_sum *sum)
     }
 }
 
-/* Whether all is better where the node is now; then that is how it is. */
-static bool judge(tm_fit_around *a)
+static void take_verdicts(const tm_fit_around *a, size_t from, size_t to)
 {
-    tm_fit_sum after = {{0}, 0, 0};
-    add_facets(a, 0, a->watched, &after);
-    add_cells(a, &after);
-    if (!is_better(&after, &a->now))
-        return false;
-    /* What was not watched was good by far. */
-    const tm_fit_sum watched = after;
-    add_facets(a, a->watched, a->nears, &after);
-    if (!is_better(&after, &a->now))
-        return false;
-    for (size_t k = 0; k < a->nears; k++)
+    for (size_t k = from; k < to; k++)
         a->verdict[a->near[k]] = a->fresh[k];
-    a->now = watched;
-    return true;
-}
-
-static void keep(const tm_fit_around *a)
-{
-    for (size_t k = 0; k < a->own; k++)
-        a->old_facet[k] = a->m.face[a->near[k]];
-    for (size_t k = 0; k < a->cells; k++) {
-        a->old_cell[k] = a->m.cell[a->cell[k]];
-        a->old_sums[k] = a->sums[a->cell[k]];
-    }
-}
-
-static void put_back(const tm_fit_around *a)
-{
-    for (size_t k = 0; k < a->own; k++)
-        a->m.face[a->near[k]] = a->old_facet[k];
-    for (size_t k = 0; k < a->cells; k++) {
-        a->m.cell[a->cell[k]] = a->old_cell[k];
-        a->sums[a->cell[k]] = a->old_sums[k];
-    }
 }
 
 bool tm_fit_around_move(tm_fit_around *a, uint32_t v, const double to[3])
 {
-    double from[3];
-    memcpy(from, a->xyz[v], sizeof from);
-    keep(a);
-    memcpy(a->xyz[v], to, sizeof from);
+    tm_fit_sum after = {{0}, 0, 0};
+    keep(a, v, &a->last);
+    memcpy(a->xyz[v], to, sizeof *a->xyz);
     measure(a);
-    if (judge(a))
-        return true;
-    memcpy(a->xyz[v], from, sizeof from);
-    put_back(a);
-    return false;
+    add_facets(a, 0, a->watched, a->now.missing, &after);
+    add_cells(a, &after);
+    if (!is_better(&after, &a->now)) {
+        put_back(a, v, &a->last);
+        return false;
+    }
+    take_verdicts(a, 0, a->watched);
+    a->now = after;
+    return true;
+}
+
+bool tm_fit_around_settle(tm_fit_around *a, uint32_t v)
+{
+    tm_fit_sum after = a->now;
+    if (!(after.missing < a->before.missing))
+        return false;
+    add_facets(a, a->watched, a->nears, a->before.missing, &after);
+    if (!is_better(&after, &a->before)) {
+        put_back(a, v, &a->first);
+        return false;
+    }
+    take_verdicts(a, a->watched, a->nears);
+    return true;
 }

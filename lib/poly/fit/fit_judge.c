@@ -52,7 +52,7 @@ static double sine(const tm_poly_centroids *m, size_t f, int s)
 {
     double to[3];
     tm_subtract(to, m->face[f].centre, m->cell[m->mesh->side[f][s]].centre);
-    const double lengths = tm_norm(to) * tm_norm(m->face[f].area);
+    const double lengths = tm_norm(to) * m->face[f].size;
     return lengths > 0 ? (s == 0 ? 1 : -1) * tm_dot(m->face[f].area, to) / lengths : 0;
 }
 
@@ -61,7 +61,7 @@ static double cosine_of_line(const tm_poly_centroids *m, size_t f)
     double d[3];
     tm_subtract(d, m->cell[m->mesh->side[f][1]].centre,
                 m->cell[m->mesh->side[f][0]].centre);
-    const double lengths = tm_norm(d) * tm_norm(m->face[f].area);
+    const double lengths = tm_norm(d) * m->face[f].size;
     return lengths > 0 ? tm_dot(d, m->face[f].area) / lengths : 0;
 }
 
@@ -82,8 +82,9 @@ tm_fit_verdict tm_fit_judge_facet(const tm_poly_centroids *m, size_t f, double e
         ask(&v, TM_FIT_SKEW, -tm_facet_skewness(m, f));
     if (v.missing >= enough)
         return v;
+    const double sights = tm_facet_sights(m, f), good = scales[TM_FIT_TETRAHEDRA].good;
     ask(&v, TM_FIT_TETRAHEDRA,
-        fmin(tm_facet_sights(m, f), tm_facet_fan(m, f, scales[TM_FIT_TETRAHEDRA].good)));
+        fmin(sights, tm_facet_fan(m, f, sights < good ? sights : good)));
     return v;
 }
 
@@ -104,7 +105,7 @@ void tm_fit_cell_add(tm_fit_cell *sums, const tm_poly_centroids *m, size_t f, si
     if (m->mesh->side[f][1] == TM_NONE)
         return;
     sums->inside++;
-    sums->area += tm_norm(face->area);
+    sums->area += face->size;
     for (int x = 0; x < 3; x++)
         for (int y = 0; y < 3; y++)
             sums->spread[x][y] += face->area[x] * face->area[y];
@@ -138,7 +139,7 @@ static void add_pair(tm_fit_pairs *pairs, const tm_poly_centroids *m, size_t f, 
     double to[3];
     tm_subtract(to, m->face[g].centre, m->face[f].centre);
     const double along = -sign * tm_dot(to, area);
-    const double lengths2 = tm_norm2(area) * tm_norm2(to);
+    const double lengths2 = m->face[f].size * m->face[f].size * tm_norm2(to);
     if ((along > 0 && along * along >= good * good * lengths2) || !(lengths2 > 0))
         return;
     const double value = along / sqrt(lengths2), x = scaled(TM_FIT_CONCAVE, value);

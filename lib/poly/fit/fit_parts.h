@@ -66,6 +66,16 @@ void tm_fit_add_pairs(tm_fit_pairs *pairs, const tm_poly_centroids *m, size_t f,
 void tm_fit_add_facet(tm_fit_sum *sum, const tm_fit_verdict *verdict);
 void tm_fit_add_cell(tm_fit_sum *sum, const tm_fit_cell *cell);
 
+/* What changes where a node moves: of its facets, its cells, and what is watched. */
+typedef struct tm_fit_state {
+    double at[3];
+    tm_facet_centroid *facet;
+    tm_cell_centroid *cell;
+    tm_fit_cell *sums;
+    tm_fit_verdict *verdict;
+    size_t facet_room, cell_room, sums_room, verdict_room;
+} tm_fit_state;
+
 /* All that is known of a mesh, and what moves with a node. */
 typedef struct tm_fit_around {
     tm_poly_centroids m;
@@ -84,11 +94,9 @@ typedef struct tm_fit_around {
     uint32_t *cell;
     size_t cells, cell_room;
     tm_fit_cell *rest; /* [cells]: without the node's facets, if something is bad */
-    tm_facet_centroid *old_facet;
-    tm_cell_centroid *old_cell;
-    tm_fit_cell *old_sums;
-    size_t fresh_room, rest_room, old_facet_room, old_cell_room, old_sums_room;
-    tm_fit_sum now; /* of the node's facets, its cells, and what is watched */
+    size_t fresh_room, rest_room;
+    tm_fit_state first, last; /* where the node was found, and before the last move */
+    tm_fit_sum before, now;   /* of the node's facets, its cells, and what is watched */
 } tm_fit_around;
 
 /* Judges all facets and cells. *a is to be freed, after an error too. O(corners), and
@@ -104,9 +112,13 @@ tm_fit_sum tm_fit_sum_up(const tm_fit_around *a);
  * convex. */
 bool tm_fit_around_find(tm_fit_around *a, uint32_t v);
 
-/* Moves the node if no fault around it becomes more and less is missing. Facets of its
- * cells that are good by far are looked at only before it is accepted. O(own), O(own *
- * facets) if convex. */
+/* Moves the node if no fault around it becomes more and less is missing, as far as facets
+ * are watched. O(own), O(own * facets) if convex. */
 bool tm_fit_around_move(tm_fit_around *a, uint32_t v, const double to[3]);
+
+/* Looks at the facets that are not watched, too, which were good by far; if not all is
+ * better than where the node was found, it goes back there. Whether it has moved.
+ * O(facets of its cells). */
+bool tm_fit_around_settle(tm_fit_around *a, uint32_t v);
 
 #endif
