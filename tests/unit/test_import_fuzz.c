@@ -277,7 +277,7 @@ static void test_medit(void **state)
     assert_int_equal(write(fd, points, sizeof points - 1), sizeof points - 1);
     assert_int_equal(lseek(fd, 0, SEEK_SET), 0);
     tm_stream_init(&with_attributes);
-    assert_int_equal(tm_stream_read(&with_attributes, fd, "points", &error), TM_OK);
+    assert_int_equal(tm_stream_read(&with_attributes, fd, "points", 1, &error), TM_OK);
     close(fd);
     read_damaged(read_medit, mesh_text, sizeof mesh_text - 1);
     for (int binary = 0; binary < 2; binary++) {
