@@ -7,7 +7,8 @@
  * must be written and read back alike; polyhedra are examined and measured, mixed
  * elements examined; tetrahedra must stay a mesh when they are improved.
  * Every FILTER_EVERY-th case goes through the filters: no signal, no report of a
- * sanitizer, no other exit status than 0, 1 and 3. No case may take longer than SECONDS.
+ * sanitizer, no other exit status than 0, 1 and 3. No case may take longer than SECONDS
+ * of processor time, or stand still.
  * TM_SEED repeats a run. The first case that fails is kept in a file. */
 #include "../../lib/examine/element_examine.h"
 #include "../../lib/examine/poly/poly_examine.h"
@@ -23,10 +24,11 @@
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { FILTER_EVERY = 50, SECONDS = 20 };
+enum { FILTER_EVERY = 50, SECONDS = 20, PATIENCE = 600 };
 
 typedef struct {
     const char *name;
@@ -323,6 +325,14 @@ static void write_tetgen_files(const tm_text *text)
     }
 }
 
+/* Ends this process after so many seconds of processor time, or of any; 0: never. */
+static void limit_time(time_t processor, unsigned any)
+{
+    const struct itimerval timer = {.it_value = {.tv_sec = processor}};
+    setitimer(ITIMER_PROF, &timer, NULL);
+    alarm(any);
+}
+
 /* Runs a filter in the work folder. Returns wait()'s status, or 0 where the filter was
  * not built, as there is no p4est. */
 static int run(const command *c)
@@ -337,7 +347,7 @@ static int run(const command *c)
     if (child < 0)
         give_up("fork");
     if (child == 0) {
-        alarm(SECONDS);
+        limit_time(SECONDS, PATIENCE);
         if (!freopen("/dev/null", "r", stdin) || !freopen("/dev/null", "w", stdout) ||
             !freopen("messages", "w", stderr))
             _exit(SECONDS);
@@ -386,9 +396,9 @@ static void run_cases(uint64_t seed, uint64_t cases, volatile uint64_t *current)
     for (; *current < cases; ++*current) {
         tm_text text = {0};
         make_damaged(&text, seed, *current);
-        alarm(SECONDS);
+        limit_time(SECONDS, PATIENCE);
         check_library(&text);
-        alarm(0);
+        limit_time(0, 0);
         if (*current % FILTER_EVERY == 0)
             check_filters(&text);
         tm_text_free(&text);
