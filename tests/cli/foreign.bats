@@ -251,6 +251,8 @@ same() {
     tetgen-mesh --no-history apart.poly.gz | cmp - plain.out
     tetgen-import --no-history cube | cmp - from-files
     tetgen-import --no-history cube.ele.gz cube.node.gz cube.face.gz | cmp - from-files
+    tetgen-import --no-history cube.ele.gz | grep -qx .ele
+    mv cube.node.gz away.gz
     run -3 --separate-stderr tetgen-import cube.ele.gz
     [ "$stderr" = 'tetgen-import: cube.ele.gz: its .node file is not among the files' ]
     [ -x "$TM_BUILD/bin/octree-mesh" ] || return 0
