@@ -492,7 +492,8 @@ static void test_soup(void **state)
         expect_nodes(&s, &expected);
         expect_components(&s, &expected);
         expect_rows(&s, &expected);
-        assert_int_equal(tm_element_examine(&found, &s.mesh, 1 + random_below(3), &error), TM_OK);
+        assert_int_equal(tm_element_examine(&found, &s.mesh, 1 + random_below(3), &error),
+                         TM_OK);
         for (tm_defect d = 0; d < TM_DEFECTS; d++) {
             if (found.defect[d].count != expected.defect[d].count)
                 fail_msg("round %d, TM_SEED=%" PRIu64

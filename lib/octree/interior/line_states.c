@@ -24,9 +24,11 @@ static tm_status push(tm_line_states *s, tm_line_entry e, tm_error *error)
     return TM_OK;
 }
 
-static tm_line_entry pop(tm_line_states *s)
+/* The state of the least entry, which is taken out. */
+static uint32_t pop(tm_line_states *s)
 {
-    const tm_line_entry top = s->heap[0], last = s->heap[--s->entries];
+    const uint32_t state = s->heap[0].state;
+    const tm_line_entry last = s->heap[--s->entries];
     size_t i = 0;
     for (size_t child; (child = 2 * i + 1) < s->entries; i = child) {
         if (child + 1 < s->entries && before(s->heap[child + 1], s->heap[child]))
@@ -36,7 +38,7 @@ static tm_line_entry pop(tm_line_states *s)
         s->heap[i] = s->heap[child];
     }
     s->heap[i] = last;
-    return top;
+    return state;
 }
 
 static tm_status add_row(tm_line_states *s, uint32_t patterns, uint32_t *row,
@@ -89,7 +91,7 @@ tm_status tm_line_states_reach(tm_line_states *s, uint32_t patterns, uint32_t p,
 uint32_t tm_line_states_next(tm_line_states *states)
 {
     while (states->entries > 0) {
-        const uint32_t next = pop(states).state;
+        const uint32_t next = pop(states);
         if (states->state[next].done)
             continue;
         states->state[next].done = true;

@@ -174,9 +174,9 @@ static int compare(const void *a, const void *b)
 static bool have_same_region(const tm_tet_mesh *mesh, uint32_t h, uint32_t g)
 {
     const size_t width = mesh->regions, compared = width - mesh->has_set;
-    return compared == 0 || memcmp(mesh->region + h / 4 * width,
-                                   mesh->region + g / 4 * width,
-                                   compared * sizeof *mesh->region) == 0;
+    return compared == 0 ||
+           memcmp(mesh->region + h / 4 * width, mesh->region + g / 4 * width,
+                  compared * sizeof *mesh->region) == 0;
 }
 
 /* A face between two parts, seen from both: it is one that stays, or none. */
