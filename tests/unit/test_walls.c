@@ -307,7 +307,8 @@ static void test_layout(void **state)
         printf("layout %d (TM_SEED=%" PRIu64 "): %zu leaves\n", round, seed,
                octree.leaves);
         assert_ok(tm_interior_choose(&interior, &octree, &surface, &error), &error);
-        uint32_t *label = malloc(octree.leaves * sizeof *label);
+        uint32_t *label = calloc(octree.leaves, sizeof *label);
+        assert_non_null(label);
         for (size_t l = 0; l < octree.leaves; l++) {
             double centre[3];
             tm_leaf_centre(&octree, &octree.leaf[l], centre);
