@@ -17,7 +17,7 @@
 
 /* Bytes of a window that all threads read at a time, at most; and below which starting
  * them costs more than they save. */
-enum { STEP_MAX = 1 << 24, WORTH_THREADS = 1 << 16 };
+enum { CHUNKS_OF_THREAD = 4, STEP_MAX = 1 << 24, WORTH_THREADS = 1 << 16 };
 
 static const char magic[] = "termesh 1\n";
 
@@ -426,7 +426,7 @@ tm_status tm_stream_read(tm_stream *stream, int fd, const char *name, unsigned t
                          tm_error *error)
 {
     tm_error unused;
-    const size_t step = (size_t)threads * TM_CHUNK_BYTES;
+    const size_t step = CHUNKS_OF_THREAD * (size_t)threads * TM_CHUNK_BYTES;
     reader r = {.stream = stream,
                 .names = {.stream = stream},
                 .threads = threads,

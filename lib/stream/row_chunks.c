@@ -3,18 +3,21 @@
 
 #include "../base/array.h"
 #include "../base/parallel.h"
+#include "../number/number.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 typedef struct chunk {
     const char *at, *end;   /* whole lines; `at` goes on to what is not read */
-    size_t lines;           /* that it has */
     size_t first, past;     /* its rows */
     tm_row_context context; /* of its own, and so is its block: */
     tm_block block;         /* the arrays of all but for `item` */
     size_t items;           /* of the chunks before it */
 } chunk;
+
+/* A row has so many bytes at least: "1 2\n". */
+enum { LEAST_ROW = 4 };
 
 typedef struct chunks {
     chunk *chunk;
@@ -38,33 +41,51 @@ static void cut(chunks *all, const char *at, const char *end)
     }
 }
 
-static void count_lines(void *context, size_t i)
+/* The row that the first line of a chunk says that it is, or one that there cannot be. */
+static size_t row_said(const chunk *c, const tm_row_context *context)
 {
-    chunk *c = &((chunks *)context)->chunk[i];
-    size_t lines = 0;
-    for (const char *at = c->at; at < c->end; lines++)
-        at = (const char *)memchr(at, '\n', (size_t)(c->end - at)) + 1;
-    c->lines = lines;
+    int64_t number;
+    if (!tm_read_int64(c->at, c->end, &number) || number < (int64_t)context->base)
+        return SIZE_MAX;
+    return (size_t)number - context->base;
 }
 
-/* Gives each chunk the rows that its lines are. */
-static bool place(chunks *all, tm_row_context *context)
+/* Gives each chunk the rows up to that which the next one begins with, the last one as
+ * many as it can have. They do not overlap, and are no more than a chunk has bytes: what
+ * says otherwise is left out with all behind it. */
+static void place(chunks *all, const tm_row_context *context)
 {
-    size_t lines = 0, first = context->block->count;
-    for (size_t i = 0; i < all->count; i++)
-        lines += all->chunk[i].lines;
-    if (!tm_row_reserve(context, lines))
+    all->chunk[0].first = context->block->count;
+    for (size_t i = 1; i < all->count; i++) {
+        chunk *before = &all->chunk[i - 1];
+        const size_t row = row_said(&all->chunk[i], context);
+        if (row >= context->rows || row <= before->first ||
+            row - before->first > (size_t)(before->end - before->at)) {
+            all->count = i;
+            break;
+        }
+        all->chunk[i].first = before->past = row;
+    }
+    chunk *last = &all->chunk[all->count - 1];
+    const size_t most = (size_t)(last->end - last->at) / LEAST_ROW;
+    const size_t left = context->rows - last->first;
+    last->past = last->first + (most < left ? most : left);
+}
+
+/* Room for all rows, and a block for each chunk. */
+static bool begin_chunks(chunks *all, tm_row_context *context)
+{
+    const tm_block *block = context->block;
+    if (!tm_row_reserve(context, all->chunk[all->count - 1].past - block->count))
         return false;
     for (size_t i = 0; i < all->count; i++) {
         chunk *c = &all->chunk[i];
-        c->block = *context->block;
-        c->block.count = c->first = first;
+        c->block = *block;
+        c->block.count = c->first;
         c->block.item = NULL;
         c->context = *context;
         c->context.block = &c->block;
         c->context.items = c->context.item_room = 0;
-        first = c->lines < context->rows - first ? first + c->lines : context->rows;
-        c->past = first;
     }
     return true;
 }
@@ -109,7 +130,7 @@ static const char *keep(chunks *all, tm_row_context *context)
         context->items += c->context.items;
         context->block->count = c->block.count;
         next = c->at;
-        whole = c->block.count == c->past && c->at == c->end;
+        whole = c->at == c->end && (c->block.count == c->past || i + 1 == all->count);
     }
     return next;
 }
@@ -154,8 +175,8 @@ bool tm_row_chunks_read(tm_row_context *context, const char *at, const char *end
     if (!all.chunk)
         return false;
     cut(&all, at, end);
-    tm_parallel(threads, all.count, count_lines, &all);
-    bool done = place(&all, context);
+    place(&all, context);
+    bool done = begin_chunks(&all, context);
     if (done) {
         tm_parallel(threads, 1 + all.count, read_or_meanwhile, &all);
         *next = keep(&all, context);

@@ -5,15 +5,15 @@
 
 #include "row.h"
 
-/* Bytes that are worth a thread, and of one chunk. */
-enum { TM_CHUNK_BYTES = 1 << 18 };
+/* Of one chunk: many, as starting a thread takes as long as reading some 50 kB. */
+enum { TM_CHUNK_BYTES = 1 << 19 };
 
 /* Something else to do in the meantime, on one of the threads. */
 typedef void tm_meanwhile(void *context);
 
 /* Reads the lines from `at` to `end`, whole ones, as rows of context->block, chunks of
- * them at a time, each where its lines' number says that its rows belong, so that no row
- * waits for another. Stops behind the last line that, with all before it, is a row: one
+ * them at a time, each where the number of its first row says, so that no row waits for
+ * another. Stops behind the last line that, with all before it, is a row: one
  * that is none is for tm_row_read() to say. With TM_LINES_SLACK bytes after end. *next is
  * where it stopped; block->count and context->items say what was read, which does not
  * depend on `threads`. False where memory is out. O(bytes / threads). */

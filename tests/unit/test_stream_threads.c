@@ -16,7 +16,7 @@
 
 #include <cmocka.h>
 
-enum { NODES = 9000, ROWS = 30000, ROOM = 200 };
+enum { NODES = 9000, ROWS = 80000, ROOM = 200 };
 
 static size_t below(size_t n)
 {
@@ -69,9 +69,9 @@ static void add_polyhedra(tm_text *text)
 static void make_text(tm_text *text)
 {
     add_nodes(text);
-    add_rows(text, ".ele\n30000 4 1", 4);
-    add_rows(text, ".face\n30000 1", 3);
-    add_rows(text, ".mix\n30000 1", 0);
+    add_rows(text, ".ele\n80000 4 1", 4);
+    add_rows(text, ".face\n80000 1", 3);
+    add_rows(text, ".mix\n80000 1", 0);
     add_polyhedra(text);
     tm_text_string(text, ".end\n");
     assert_false(text->failed);
@@ -186,7 +186,7 @@ static void test_changed(void **state)
     (void)state;
     tm_text text = {0}, changed = {0};
     make_text(&text);
-    for (int n = 0; n < 60; n++) {
+    for (int n = 0; n < 40; n++) {
         changed.size = 0;
         tm_text_append(&changed, text.byte, text.size);
         tm_text_append(&changed, text.byte, ROOM); /* for what is put in */
@@ -202,8 +202,8 @@ static void test_changed(void **state)
 static void test_counts(void **state)
 {
     (void)state;
-    static const char *const header[] = {".ele\n30000 4 1", ".ele\n25000 4 1",
-                                         ".ele\n40000 4 1", ".ele\n3 4 1",
+    static const char *const header[] = {".ele\n80000 4 1", ".ele\n70000 4 1",
+                                         ".ele\n90000 4 1", ".ele\n3 4 1",
                                          ".ele\n4294967294 4 1"};
     for (size_t h = 0; h < sizeof header / sizeof *header; h++) {
         tm_text text = {0};
