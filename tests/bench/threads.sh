@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What threads gain: seconds by the clock of whole processes with -j 1 and with -j THREADS
 # (2), in turn, and that both give the same bytes. Needs free cores: medians of RUNS (3).
-# POINTS (200000) random points make the tetrahedra, LEVEL (7) is that of the octree.
+# POINTS (200000) random points make the tetrahedra, CELLS (102) those that are only read;
+# LEVEL (6) is that of the octree.
 # shellcheck source-path=SCRIPTDIR source=common.inc
 . "$(dirname "$0")/common.inc"
 threads=${THREADS:-2}
@@ -11,7 +12,8 @@ points "${POINTS:-200000}" 1 >"$work/points.node"
 tetgen-mesh -q --no-history "$work/points.node" >"$work/tets.tm" 2>/dev/null ||
     tetgen-mesh --no-history "$work/points.node" >"$work/tets.tm"
 unit_cube >"$work/cube.off"
-octree-mesh -q --no-history -s "${LEVEL:-7}" -o "$work/octree.tm" "$work/cube.off"
+octree-mesh -q --no-history -a "${LEVEL:-6}" -o "$work/octree.tm" "$work/cube.off"
+io make "${CELLS:-102}" >"$work/grid.tm"
 echo "$(tets_of "$work/tets.tm") tetrahedra, $(nproc) cores"
 echo "work                      -j 1 (s)  -j $threads (s)    gain"
 
@@ -41,11 +43,11 @@ compare() {
         printf "%-24s %9.3f %9.3f %7.2f\n", $1, $2, $3, $2 / $3 }'
 }
 
-compare "reading" tets.tm io read
-compare "mesh-check" tets.tm mesh-check -j
-compare "tet-stats" tets.tm tet-stats -j
-compare "jens-stats" octree.tm jens-stats -j
+compare "reading" grid.tm io read
+compare "mesh-check" grid.tm mesh-check -j
+compare "tet-stats" grid.tm tet-stats -j
+compare "jens-stats" octree.tm jens-stats --threads
 compare "lepp-improve" tets.tm lepp-improve --no-history -j
 compare "polylla3d --star" tets.tm polylla3d --no-history --star -j
 compare "octree-repair" octree.tm octree-repair --no-history -t 0.2 -j
-compare "octree-mesh" cube.off octree-mesh --no-history -s "${LEVEL:-7}" -j
+compare "octree-mesh" cube.off octree-mesh --no-history -a "${LEVEL:-6}" -j
