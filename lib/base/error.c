@@ -23,19 +23,27 @@ tm_status tm_fail(tm_error *error, tm_status status, const char *format, ...)
     return status;
 }
 
-tm_status tm_fail_at(tm_error *error, tm_status status, const char *file, size_t line,
-                     const char *block, const char *format, ...)
+tm_status tm_fail_at_list(tm_error *error, tm_status status, const char *file,
+                          size_t line, const char *block, const char *format,
+                          va_list arguments)
 {
     if (error) {
         error->status = status;
         error->line = line;
         copy(error->file, sizeof error->file, file);
         copy(error->block, sizeof error->block, block);
-        va_list arguments;
-        va_start(arguments, format);
         vsnprintf(error->what, sizeof error->what, format, arguments);
-        va_end(arguments);
     }
+    return status;
+}
+
+tm_status tm_fail_at(tm_error *error, tm_status status, const char *file, size_t line,
+                     const char *block, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    tm_fail_at_list(error, status, file, line, block, format, arguments);
+    va_end(arguments);
     return status;
 }
 

@@ -6,6 +6,7 @@
 
 #include "extern_c.h"
 
+#include <stdarg.h>
 #include <stddef.h>
 
 TM_EXTERN_C_BEGIN
@@ -35,6 +36,11 @@ tm_status tm_fail(tm_error *error, tm_status status, const char *format, ...)
 tm_status tm_fail_at(tm_error *error, tm_status status, const char *file, size_t line,
                      const char *block, const char *format, ...)
     __attribute__((format(printf, 6, 7)));
+
+/* The same for who has a list of arguments, which is used up. */
+tm_status tm_fail_at_list(tm_error *error, tm_status status, const char *file,
+                          size_t line, const char *block, const char *format,
+                          va_list arguments) __attribute__((format(printf, 6, 0)));
 
 /* The same as *cause, which was got of another function. Returns its status. */
 tm_status tm_fail_as(tm_error *error, const tm_error *cause);

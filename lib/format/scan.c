@@ -7,7 +7,6 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
@@ -83,12 +82,12 @@ tm_word tm_scan_word(tm_scan *scan)
 
 tm_status tm_scan_fail(const tm_scan *scan, tm_error *error, const char *format, ...)
 {
-    char what[sizeof((tm_error *)NULL)->what];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(what, sizeof what, format, arguments);
+    tm_fail_at_list(error, TM_ERROR_INPUT, scan->name, scan->line, NULL, format,
+                    arguments);
     va_end(arguments);
-    return tm_fail_at(error, TM_ERROR_INPUT, scan->name, scan->line, NULL, "%s", what);
+    return TM_ERROR_INPUT;
 }
 
 static tm_status fail_missing(const tm_scan *scan, const char *what, tm_error *error)

@@ -33,13 +33,12 @@ static tm_status fail(reader *r, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 static tm_status fail(reader *r, const char *format, ...)
 {
-    char what[sizeof((tm_error){0}).what];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(what, sizeof what, format, arguments);
+    tm_fail_at_list(r->error, TM_ERROR_INPUT, r->at.scan.name,
+                    r->at.text ? r->at.scan.line : 0, NULL, format, arguments);
     va_end(arguments);
-    return tm_fail_at(r->error, TM_ERROR_INPUT, r->at.scan.name,
-                      r->at.text ? r->at.scan.line : 0, NULL, "%s", what);
+    return TM_ERROR_INPUT;
 }
 
 /* Numbers -------------------------------------------------------------------------- */

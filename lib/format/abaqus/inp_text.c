@@ -7,7 +7,6 @@
 #include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
@@ -22,13 +21,12 @@ void tm_inp_begin(tm_inp_text *text, const char *bytes, size_t size, const char 
 
 tm_status tm_inp_fail(const tm_inp_text *text, const char *format, ...)
 {
-    char what[sizeof((tm_error *)NULL)->what];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(what, sizeof what, format, arguments);
+    tm_fail_at_list(text->error, TM_ERROR_INPUT, text->name, text->line, NULL, format,
+                    arguments);
     va_end(arguments);
-    return tm_fail_at(text->error, TM_ERROR_INPUT, text->name, text->line, NULL, "%s",
-                      what);
+    return TM_ERROR_INPUT;
 }
 
 static bool is_blank(char c)

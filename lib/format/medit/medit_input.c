@@ -50,13 +50,12 @@ const tm_medit_section *tm_medit_section_of(int code)
 
 tm_status tm_medit_fail(const tm_medit_input *input, const char *format, ...)
 {
-    char what[sizeof((tm_error *)NULL)->what];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(what, sizeof what, format, arguments);
+    tm_fail_at_list(input->error, TM_ERROR_INPUT, input->scan.name,
+                    input->binary ? 0 : input->scan.line, NULL, format, arguments);
     va_end(arguments);
-    return tm_fail_at(input->error, TM_ERROR_INPUT, input->scan.name,
-                      input->binary ? 0 : input->scan.line, NULL, "%s", what);
+    return TM_ERROR_INPUT;
 }
 
 /* Numbers --------------------------------------------------------------------------- */

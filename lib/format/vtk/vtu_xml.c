@@ -32,13 +32,12 @@ static void fail(parser *p, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 static void fail(parser *p, const char *format, ...)
 {
-    char what[sizeof((tm_error *)NULL)->what];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(what, sizeof what, format, arguments);
+    p->status =
+        tm_fail_at_list(p->error, TM_ERROR_INPUT, p->file->name,
+                        XML_GetCurrentLineNumber(p->expat), NULL, format, arguments);
     va_end(arguments);
-    p->status = tm_fail_at(p->error, TM_ERROR_INPUT, p->file->name,
-                           XML_GetCurrentLineNumber(p->expat), NULL, "%s", what);
     XML_StopParser(p->expat, XML_FALSE);
 }
 
