@@ -4,38 +4,24 @@
 
 #include "../../lib/format/abaqus/abaqus.h"
 
-static void leave_out(const filter *f, size_t count, const char *what)
-{
-    if (count > 0)
-        filter_leave_out(f, "%zu %s", count, what);
-}
-
-static void note(const filter *f, size_t count, const char *what)
-{
-    if (count > 0)
-        filter_note(f, "%s: %zu %s", filter_input_name(f), count, what);
-}
-
 static void say(const filter *f, const tm_abaqus_report *r)
 {
     if (r->instances > 1)
-        note(f, r->instances, "instances are one mesh");
-    note(f, r->turned, "elements were left-handed and are turned");
-    note(f, r->cut, "quadrilaterals of the surface are two triangles each now");
-    note(f, r->several,
-         "markers and regions stand for more than one set, which has such members");
-    if (r->higher_order > 0)
-        filter_leave_out(
-            f,
-            "%zu nodes of %zu elements of second order, of which the corners "
-            "are taken",
-            r->middle_nodes, r->higher_order);
+        mesh_note_count(f, r->instances, "instances are one mesh");
+    mesh_note_count(f, r->turned, "elements were left-handed and are turned");
+    mesh_note_count(f, r->cut,
+                    "quadrilaterals of the surface are two triangles each now");
+    mesh_note_count(
+        f, r->several,
+        "markers and regions stand for more than one set, which has such members");
+    mesh_leave_out_middles(f, r->middle_nodes, r->higher_order);
     if (r->others > 0)
         filter_leave_out(f, "%zu elements of other types (%s)", r->others, r->types.byte);
-    leave_out(f, r->loose, "faces that no element has");
-    leave_out(f, r->no_members, "members of sets that are not there");
-    leave_out(f, r->no_faces, "rows of surfaces that name no face of an element");
-    leave_out(f, r->surfaces, "surfaces that are not of elements or nodes");
+    mesh_leave_out_count(f, r->loose, "faces that no element has");
+    mesh_leave_out_count(f, r->no_members, "members of sets that are not there");
+    mesh_leave_out_count(f, r->no_faces,
+                         "rows of surfaces that name no face of an element");
+    mesh_leave_out_count(f, r->surfaces, "surfaces that are not of elements or nodes");
 }
 
 static tm_status read_abaqus(const filter *f, tm_stream *stream, const tm_text *bytes,

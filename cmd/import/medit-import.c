@@ -13,23 +13,14 @@ static const char *solution; /* NULL: none */
 
 static void say(const filter *f, const tm_medit_report *r)
 {
-    const char *name = filter_input_name(f);
     if (r->attributes.size > 0)
-        filter_note(f, "%s: attributes of nodes: %s", name, r->attributes.byte);
-    if (r->turned > 0)
-        filter_note(f, "%s: %zu elements were left-handed and are turned", name,
-                    r->turned);
-    if (r->cut > 0)
-        filter_note(f, "%s: %zu quadrilaterals of the surface are two triangles each now",
-                    name, r->cut);
-    if (r->higher_order > 0)
-        filter_leave_out(
-            f,
-            "%zu nodes of %zu elements of second order, of which the corners "
-            "are taken",
-            r->middle_nodes, r->higher_order);
-    if (r->loose > 0)
-        filter_leave_out(f, "%zu faces that no element has", r->loose);
+        filter_note(f, "%s: attributes of nodes: %s", filter_input_name(f),
+                    r->attributes.byte);
+    mesh_note_count(f, r->turned, "elements were left-handed and are turned");
+    mesh_note_count(f, r->cut,
+                    "quadrilaterals of the surface are two triangles each now");
+    mesh_leave_out_middles(f, r->middle_nodes, r->higher_order);
+    mesh_leave_out_count(f, r->loose, "faces that no element has");
     if (r->marks.size > 0)
         filter_leave_out(f, "%s", r->marks.byte);
     if (r->sections.size > 0)

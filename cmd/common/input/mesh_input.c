@@ -139,6 +139,28 @@ int mesh_write_stream(filter *f, tm_stream *stream)
     return filter_finish(f, 0);
 }
 
+void mesh_note_count(const filter *f, size_t count, const char *what)
+{
+    if (count > 0)
+        filter_note(f, "%s: %zu %s", filter_input_name(f), count, what);
+}
+
+void mesh_leave_out_count(const filter *f, size_t count, const char *what)
+{
+    if (count > 0)
+        filter_leave_out(f, "%zu %s", count, what);
+}
+
+void mesh_leave_out_middles(const filter *f, size_t nodes, size_t elements)
+{
+    if (elements > 0)
+        filter_leave_out(
+            f,
+            "%zu nodes of %zu elements of second order, of which the corners "
+            "are taken",
+            nodes, elements);
+}
+
 int mesh_read(filter *f, mesh_reader *read)
 {
     tm_stream stream;

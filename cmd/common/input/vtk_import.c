@@ -15,18 +15,6 @@ static const struct option long_options[] = {
 static tm_vtk_read_options options;
 static vtk_reader *reader;
 
-static void note_count(const filter *f, size_t count, const char *what)
-{
-    if (count > 0)
-        filter_note(f, "%s: %zu %s", filter_input_name(f), count, what);
-}
-
-static void leave_out_count(const filter *f, size_t count, const char *what)
-{
-    if (count > 0)
-        filter_leave_out(f, "%zu %s", count, what);
-}
-
 static void note_names(const filter *f, const char *what, const tm_text *names)
 {
     if (names->size > 0)
@@ -48,18 +36,18 @@ static void say(const filter *f, const tm_vtk_read_report *r)
     note_choice(f, "markers", r->marker, options.marker, "marker");
     note_names(f, "attributes of nodes", &r->node_attributes);
     note_names(f, "attributes of elements, after the region", &r->cell_attributes);
-    note_count(f, r->turned, "elements were left-handed and are turned");
-    note_count(f, r->joined, "points of several pieces are the same and joined");
-    note_count(f, r->ghosts, "cells are ghosts of other pieces and left out");
-    note_count(f, r->cut, "polygons of the surface are cut into triangles");
+    mesh_note_count(f, r->turned, "elements were left-handed and are turned");
+    mesh_note_count(f, r->joined, "points of several pieces are the same and joined");
+    mesh_note_count(f, r->ghosts, "cells are ghosts of other pieces and left out");
+    mesh_note_count(f, r->cut, "polygons of the surface are cut into triangles");
     if (r->higher_order > 0)
         filter_leave_out(f,
                          "%zu nodes of %zu elements of second or higher order, of which "
                          "the corners are taken",
                          r->middle_nodes, r->higher_order);
-    leave_out_count(f, r->loose, "polygons that are no face of an element");
-    leave_out_count(f, r->vertices, "cells of one point");
-    leave_out_count(f, r->empty, "cells without points");
+    mesh_leave_out_count(f, r->loose, "polygons that are no face of an element");
+    mesh_leave_out_count(f, r->vertices, "cells of one point");
+    mesh_leave_out_count(f, r->empty, "cells without points");
     if (r->left_out.size > 0)
         filter_leave_out(f, "data: %s", r->left_out.byte);
     if (r->measures.size > 0)
