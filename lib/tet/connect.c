@@ -44,14 +44,6 @@ static tm_status orient(tm_tet_mesh *mesh, unsigned base, tm_error *error)
     return TM_OK;
 }
 
-static bool same_region(const tm_tet_mesh *mesh, uint32_t t, uint32_t u)
-{
-    for (size_t r = 0; r < mesh->regions; r++)
-        if (mesh->region[t * mesh->regions + r] != mesh->region[u * mesh->regions + r])
-            return false;
-    return true;
-}
-
 /* Whether two tetrahedra turn around their common face in the same sense, which those on
  * its two sides do not. */
 static bool same_sense(const tm_tet_mesh *mesh, uint32_t h, uint32_t g)
@@ -81,7 +73,7 @@ static tm_status connect_face(tm_tet_mesh *mesh, const uint32_t *half, size_t co
                               uint32_t listed, tm_error *error)
 {
     uint32_t h = half[0], g = count == 2 ? half[1] : TM_NONE;
-    bool stays = g == TM_NONE || !same_region(mesh, h / 4, g / 4) ||
+    bool stays = g == TM_NONE || !tm_tet_same_region(mesh, h / 4, g / 4) ||
                  (listed != TM_NONE && mesh->face[listed].marker != 0);
     if (!stays) {
         tm_tet_join(mesh, h, g);
@@ -151,7 +143,7 @@ static void join_pairs(tm_tet_mesh *mesh, tm_face_table *table, bool *folded)
         if (face->elements == 2)
             second = &table->member[first->next];
         if (face->elements != 2 || second->next != TM_FACE_END ||
-            !same_region(mesh, first->id / 4, second->id / 4)) {
+            !tm_tet_same_region(mesh, first->id / 4, second->id / 4)) {
             table->face[left++] = *face;
             continue;
         }

@@ -17,6 +17,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 TM_EXTERN_C_BEGIN
 
@@ -165,6 +166,30 @@ bool tm_tet_mesh_rank_nodes(const tm_tet_mesh *mesh, uint32_t *rank);
 /* Verifies every invariant that this header states. TM_ERROR_INTERNAL with the first
  * that does not hold. O(n log n), for tests and self-checks. */
 tm_status tm_tet_mesh_check(const tm_tet_mesh *mesh, tm_error *error);
+
+/* Whether two tetrahedra are in one region, whatever set they are in. */
+static inline bool tm_tet_same_region(const tm_tet_mesh *mesh, uint32_t t, uint32_t u)
+{
+    const size_t width = mesh->regions;
+    for (size_t r = 0; r + mesh->has_set < width; r++)
+        if (mesh->region[t * width + r] != mesh->region[u * width + r])
+            return false;
+    return true;
+}
+
+/* Makes node w of a mesh what node v of another one is, which has as many attributes and
+ * markers as it: its place, attributes and marker. */
+static inline void tm_tet_copy_node(tm_tet_mesh *to, uint32_t w, const tm_tet_mesh *from,
+                                    uint32_t v)
+{
+    const size_t width = from->node_attributes;
+    memcpy(to->xyz[w], from->xyz[v], sizeof to->xyz[w]);
+    if (from->node_marker)
+        to->node_marker[w] = from->node_marker[v];
+    if (width > 0)
+        memcpy(to->node_attribute + w * width, from->node_attribute + v * width,
+               width * sizeof *to->node_attribute);
+}
 
 /* What operations are made of. Each is O(1) on average; those that may run out of
  * memory make room first, so that an operation that has begun cannot fail. */

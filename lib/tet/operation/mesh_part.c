@@ -133,18 +133,9 @@ bool tm_mesh_part_close(tm_mesh_part *part, const tm_tet_mesh *mesh,
 
 static void copy_nodes(const tm_mesh_part *part, tm_tet_mesh *to, const tm_tet_mesh *from)
 {
-    size_t width = from->node_attributes;
-    for (size_t k = 0; k < part->nodes; k++) {
-        uint32_t v = part->node[k];
-        if (v >= from->nodes)
-            continue;
-        memcpy(to->xyz[v], from->xyz[v], sizeof to->xyz[v]);
-        if (from->node_marker)
-            to->node_marker[v] = from->node_marker[v];
-        if (width > 0)
-            memcpy(to->node_attribute + v * width, from->node_attribute + v * width,
-                   width * sizeof *to->node_attribute);
-    }
+    for (size_t k = 0; k < part->nodes; k++)
+        if (part->node[k] < from->nodes)
+            tm_tet_copy_node(to, part->node[k], from, part->node[k]);
 }
 
 /* The constrained faces of a tetrahedron in one of the two. */

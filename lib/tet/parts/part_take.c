@@ -63,15 +63,8 @@ static bool copy_nodes(const taking *take)
     if (!to->xyz || (width > 0 && !to->node_attribute) ||
         (from->node_marker && !to->node_marker))
         return false;
-    for (size_t k = 0; k < nodes; k++) {
-        const uint32_t v = part->node[k];
-        memcpy(to->xyz[k], from->xyz[v], sizeof *to->xyz);
-        if (width > 0)
-            memcpy(to->node_attribute + k * width, from->node_attribute + v * width,
-                   width * sizeof *to->node_attribute);
-        if (to->node_marker)
-            to->node_marker[k] = from->node_marker[v];
-    }
+    for (uint32_t k = 0; k < nodes; k++)
+        tm_tet_copy_node(to, k, from, part->node[k]);
     return true;
 }
 

@@ -13,10 +13,9 @@
  * round, so that planes where parts end cross those of the round before. */
 static void turn(const double p[3], unsigned round, double q[3])
 {
-    enum { STEP = 1 };
     memcpy(q, p, 3 * sizeof *q);
     for (int axis = 0; axis < 3 && round > 0; axis++) {
-        const double angle = 0.6 + 0.35 * (double)(round + (unsigned)axis * STEP);
+        const double angle = 0.6 + 0.35 * (double)(round + (unsigned)axis);
         const double c = cos(angle), s = sin(angle);
         double *u = &q[(axis + 1) % 3], *v = &q[(axis + 2) % 3];
         const double x = *u, y = *v;

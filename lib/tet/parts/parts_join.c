@@ -27,17 +27,6 @@ typedef struct joining {
 
 /* Nodes ---------------------------------------------------------------------------- */
 
-static void copy_node(const tm_tet_mesh *from, uint32_t v, tm_tet_mesh *to, uint32_t w)
-{
-    const size_t width = from->node_attributes;
-    memcpy(to->xyz[w], from->xyz[v], sizeof *to->xyz);
-    if (width > 0)
-        memcpy(to->node_attribute + w * width, from->node_attribute + v * width,
-               width * sizeof *to->node_attribute);
-    if (to->node_marker)
-        to->node_marker[w] = from->node_marker[v];
-}
-
 /* node[] of the part is for all that it has now. */
 static bool join_nodes(joining *join, tm_tet_part *part)
 {
@@ -57,7 +46,7 @@ static bool join_nodes(joining *join, tm_tet_part *part)
         }
         if (v >= part->nodes)
             node[v] = tm_tet_mesh_new_node(join->mesh, from->xyz[v]);
-        copy_node(from, v, join->mesh, node[v]);
+        tm_tet_copy_node(join->mesh, node[v], from, v);
     }
     return true;
 }
@@ -170,21 +159,12 @@ static int compare(const void *a, const void *b)
     return (f->part > g->part) - (f->part < g->part);
 }
 
-/* What is in a set is no region. */
-static bool have_same_region(const tm_tet_mesh *mesh, uint32_t h, uint32_t g)
-{
-    const size_t width = mesh->regions, compared = width - mesh->has_set;
-    return compared == 0 ||
-           memcmp(mesh->region + h / 4 * width, mesh->region + g / 4 * width,
-                  compared * sizeof *mesh->region) == 0;
-}
-
 /* A face between two parts, seen from both: it is one that stays, or none. */
 static void close_face(joining *join, const open_face *f, const open_face *g)
 {
     const tm_constrained_face *face = &join->parts->part[f->part].mesh.face[f->face];
     uint32_t side[2] = {f->half, g->half};
-    if (face->marker == 0 && have_same_region(join->mesh, f->half, g->half)) {
+    if (face->marker == 0 && tm_tet_same_region(join->mesh, f->half / 4, g->half / 4)) {
         tm_tet_join(join->mesh, f->half, g->half);
         return;
     }
