@@ -86,6 +86,15 @@ void tm_point_table_free(tm_point_table *table)
     *table = (tm_point_table){0};
 }
 
+bool tm_point_table_fill(tm_point_table *table, double (*xyz)[3], size_t count)
+{
+    uint32_t first;
+    bool done = true;
+    for (size_t v = 0; v < count && done; v++)
+        done = tm_point_table_join(table, xyz, (uint32_t)v, &first);
+    return done;
+}
+
 bool tm_points_weld(double (*xyz)[3], size_t count, uint32_t *unique, size_t *joined)
 {
     tm_point_table table = {0};

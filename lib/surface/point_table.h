@@ -22,6 +22,10 @@ typedef struct tm_point_table {
 bool tm_point_table_join(tm_point_table *table, double (*xyz)[3], uint32_t id,
                          uint32_t *first);
 
+/* Puts all points of an array into an empty table. False where memory is out; the table
+ * is to be freed in any case. Expected O(count). */
+bool tm_point_table_fill(tm_point_table *table, double (*xyz)[3], size_t count);
+
 /* unique[v] becomes the id of the first point with the coordinates of point v, of count
  * points; *joined is how many had another one before them. False where memory is out.
  * Expected O(count). */

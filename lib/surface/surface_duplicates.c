@@ -101,17 +101,25 @@ bool tm_surface_find_duplicates(const tm_polygon_surface *surface, const uint32_
     return done;
 }
 
+/* What both ways to drop facets begin with; false where memory is out. */
+static bool weld(const tm_polygon_surface *surface, uint32_t **unique, bool **gone)
+{
+    size_t joined;
+    *unique = tm_new(surface->nodes, sizeof **unique);
+    *gone = calloc(surface->facets, sizeof **gone);
+    return *unique && *gone &&
+           tm_points_weld(surface->xyz, surface->nodes, *unique, &joined);
+}
+
 tm_status tm_surface_drop_duplicates(tm_polygon_surface *surface, size_t *dropped,
                                      tm_error *error)
 {
     *dropped = 0;
     if (surface->facets == 0)
         return TM_OK;
-    uint32_t *unique = tm_new(surface->nodes, sizeof *unique);
-    bool *gone = calloc(surface->facets, sizeof *gone);
-    size_t joined;
-    const bool done = unique && gone &&
-                      tm_points_weld(surface->xyz, surface->nodes, unique, &joined) &&
+    uint32_t *unique;
+    bool *gone;
+    const bool done = weld(surface, &unique, &gone) &&
                       tm_surface_find_duplicates(surface, unique, 0, gone, dropped);
     if (*dropped > 0)
         drop_facets(surface, gone);
@@ -165,11 +173,9 @@ tm_status tm_surface_drop_degenerate(tm_polygon_surface *surface, size_t *mended
     *mended = 0;
     if (surface->facets == 0)
         return TM_OK;
-    uint32_t *unique = tm_new(surface->nodes, sizeof *unique);
-    bool *gone = calloc(surface->facets, sizeof *gone);
-    size_t joined;
-    const bool done =
-        unique && gone && tm_points_weld(surface->xyz, surface->nodes, unique, &joined);
+    uint32_t *unique;
+    bool *gone;
+    const bool done = weld(surface, &unique, &gone);
     if (done)
         *mended = mend_polygons(surface, unique, gone);
     if (*mended > 0)

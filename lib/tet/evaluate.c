@@ -33,10 +33,7 @@ static bool find_twins(evaluation *e)
 {
     const tm_tet_mesh *from = e->from;
     tm_point_table table = {0};
-    bool ok = true;
-    uint32_t first;
-    for (uint32_t v = 0; v < from->nodes && ok; v++)
-        ok = tm_point_table_join(&table, from->xyz, v, &first);
+    const bool ok = tm_point_table_fill(&table, from->xyz, from->nodes);
     for (size_t v = 0; v < e->node->count && ok; v++)
         e->twin[v] = tm_point_table_find(&table, from->xyz, e->node->real + 3 * v);
     tm_point_table_free(&table);

@@ -10,10 +10,7 @@ bool tm_surface_find_known(const tm_polygon_surface *polygons, const tm_block *n
                            bool *known, size_t *unknown)
 {
     tm_point_table table = {0};
-    bool ok = true;
-    uint32_t first;
-    for (uint32_t v = 0; v < polygons->nodes && ok; v++)
-        ok = tm_point_table_join(&table, polygons->xyz, v, &first);
+    const bool ok = tm_point_table_fill(&table, polygons->xyz, polygons->nodes);
     *unknown = 0;
     for (size_t v = 0; v < node->count && ok; v++) {
         known[v] =
