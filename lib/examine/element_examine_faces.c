@@ -9,26 +9,21 @@
 #include "../base/disjoint_sets.h"
 #include "../base/parallel.h"
 #include "../mesh/face_table.h"
+#include "element_edges.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-/* What begins at the nodes: of v it is item[start[v]] … item[start[v + 1] - 1]. */
-typedef struct list {
-    size_t *start;
-    uint32_t *item;
-} list;
 
 /* What all walkers have in common. */
 typedef struct walk {
     const tm_mesh_view *mesh;
     const int8_t *sign;
     tm_face_table table;
-    list far;         /* the larger nodes of far edges */
-    list listed;      /* rows of .edge; no arrays where there are none */
-    uint32_t *parent; /* [elements]: a forest with a tree for each component */
-    uint8_t *used;    /* [nodes] */
-    uint32_t *cut;    /* walker i has the nodes from cut[i] up to cut[i + 1] */
+    tm_at_nodes far;    /* the larger nodes of far edges */
+    tm_at_nodes listed; /* rows of .edge; no arrays where there are none */
+    uint32_t *parent;   /* [elements]: a forest with a tree for each component */
+    uint8_t *used;      /* [nodes] */
+    uint32_t *cut;      /* walker i has the nodes from cut[i] up to cut[i + 1] */
     struct walker *walker;
 } walk;
 
@@ -84,109 +79,10 @@ static void meet_edge(walker *w, uint32_t v, uint32_t end)
     set_used(w, end);
 }
 
-/* The two largest nodes of a tetrahedron, in ascending order. */
-static void top_edge(const uint32_t n[4], uint32_t top[2])
-{
-    const bool i = n[0] < n[1], j = n[2] < n[3];
-    const uint32_t large = n[i], small = n[!i];
-    const uint32_t other_large = n[2 + j], other_small = n[2 + !j];
-    const bool first = large > other_large;
-    const uint32_t rest = first ? small : other_small;
-    const uint32_t loser = first ? other_large : large;
-    top[1] = first ? large : other_large;
-    top[0] = rest > loser ? rest : loser;
-}
-
-/* The far edges of a mixed element as bits. */
-static uint16_t far_bits(const uint32_t *n, const tm_element_shape *shape)
-{
-    uint32_t least[TM_ELEMENT_FACES], far = 0;
-    tm_mixed_least(shape, n, least);
-    for (size_t i = 0; i < shape->edges; i++) {
-        const uint32_t small = lesser(n[shape->edge[i][0]], n[shape->edge[i][1]]);
-        const bool is_far = (small != least[shape->edge_face[i][0]]) &
-                            (small != least[shape->edge_face[i][1]]);
-        far |= (uint32_t)is_far << i;
-    }
-    return (uint16_t)far;
-}
-
-/* The far edges of element e, the smaller node first; how many. *bits are kept from the
- * first call to the next. */
-static size_t far_edges(const walk *w, size_t e, uint16_t *bits, bool again,
-                        uint32_t far[TM_ELEMENT_EDGES][2])
-{
-    size_t k, count = 0;
-    const uint32_t *n = tm_mesh_view_nodes(w->mesh, e, &k);
-    if (!is_whole(w, e))
-        return 0;
-    if (k == TM_TET_NODES) {
-        top_edge(n, far[0]);
-        return 1;
-    }
-    const tm_element_shape *shape = &tm_element_shapes[k];
-    if (!again)
-        *bits = far_bits(n, shape);
-    for (uint32_t left = *bits; left != 0; left &= left - 1) {
-        const uint8_t *edge = shape->edge[__builtin_ctz(left)];
-        const uint32_t a = n[edge[0]], b = n[edge[1]];
-        far[count][0] = lesser(a, b);
-        far[count][1] = a ^ b ^ far[count][0];
-        count++;
-    }
-    return count;
-}
-
-/* far.start[v + 2] counts, then far.start[v + 1] is where the next edge of v goes. */
-static bool list_far_edges(walk *w)
-{
-    const tm_mesh_view *mesh = w->mesh;
-    uint32_t far[TM_ELEMENT_EDGES][2];
-    uint16_t *bits = tm_new(mesh->start ? mesh->elements : 1, sizeof *bits);
-    size_t *next = calloc(mesh->nodes + 2, sizeof *next), all = 0;
-    w->far.start = next++;
-    for (size_t e = 0; bits && w->far.start && e < mesh->elements; e++) {
-        const size_t count = far_edges(w, e, &bits[mesh->start ? e : 0], false, far);
-        for (size_t i = 0; i < count; i++)
-            next[far[i][0] + 1]++;
-        all += count;
-    }
-    w->far.item = tm_new(all, sizeof *w->far.item);
-    const bool enough = bits && w->far.start && w->far.item;
-    for (size_t v = 0; enough && v < mesh->nodes; v++)
-        next[v + 1] += next[v];
-    for (size_t e = 0; enough && e < mesh->elements; e++) {
-        const size_t count = far_edges(w, e, &bits[mesh->start ? e : 0], true, far);
-        for (size_t i = 0; i < count; i++)
-            w->far.item[next[far[i][0]]++] = far[i][1];
-    }
-    free(bits);
-    return enough;
-}
-
-static bool list_rows(walk *w)
-{
-    const tm_mesh_view *mesh = w->mesh;
-    if (mesh->edges == 0)
-        return true;
-    w->listed.start = calloc(mesh->nodes + 2, sizeof *w->listed.start);
-    w->listed.item = tm_new(mesh->edges, sizeof *w->listed.item);
-    if (!w->listed.start || !w->listed.item)
-        return false;
-    size_t *next = w->listed.start + 1;
-    for (size_t r = 0; r < mesh->edges; r++)
-        next[lesser(mesh->edge[r][0], mesh->edge[r][1]) + 1]++;
-    for (size_t v = 0; v < mesh->nodes; v++)
-        next[v + 1] += next[v];
-    for (size_t r = 0; r < mesh->edges; r++)
-        w->listed.item[next[lesser(mesh->edge[r][0], mesh->edge[r][1])]++] = (uint32_t)r;
-    return true;
-}
-
 /* The rows of .edge from v, where all edges to larger nodes were met. */
 static void take_rows(walker *w, uint32_t v)
 {
-    const list *listed = &w->w->listed;
+    const tm_at_nodes *listed = &w->w->listed;
     const uint32_t(*edge)[2] = w->w->mesh->edge;
     for (size_t i = listed->start[v]; i < listed->start[v + 1]; i++) {
         const uint32_t row = listed->item[i], *n = edge[row];
@@ -207,7 +103,7 @@ static void take_rows(walker *w, uint32_t v)
 /* The edges that begin at v, whose faces were taken. */
 static void take_edges(walker *w, uint32_t v, size_t edges_before)
 {
-    const list *far = &w->w->far;
+    const tm_at_nodes *far = &w->w->far;
     for (size_t i = far->start[v]; i < far->start[v + 1]; i++)
         meet_edge(w, v, far->item[i]);
     if (w->w->listed.start)
@@ -473,10 +369,8 @@ static void free_walk(walk *w, unsigned threads)
         free(w->walker[t].boundary.node);
     free(w->walker);
     tm_face_table_free(&w->table);
-    free(w->far.start);
-    free(w->far.item);
-    free(w->listed.start);
-    free(w->listed.item);
+    tm_at_nodes_free(&w->far);
+    tm_at_nodes_free(&w->listed);
     free(w->parent);
     free(w->used);
     free(w->cut);
@@ -489,7 +383,8 @@ tm_status tm_element_examine_faces(tm_examination *found, const tm_mesh_view *me
     walk w = {.mesh = mesh, .sign = sign};
     tm_status status = tm_face_table_make(&w.table, mesh, threads, error);
     if (status == TM_OK &&
-        (!list_far_edges(&w) || !list_rows(&w) || !allocate(&w, threads)))
+        (!tm_list_far_edges(&w.far, mesh, sign) || !tm_list_edge_rows(&w.listed, mesh) ||
+         !allocate(&w, threads)))
         status = tm_fail_memory(error);
     if (status == TM_OK) {
         take_no_faces(&w, found);

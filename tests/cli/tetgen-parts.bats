@@ -10,6 +10,17 @@ setup() {
     cd "$BATS_TEST_TMPDIR" || exit
     mkdir folder
     export TMPDIR=$BATS_TEST_TMPDIR/folder
+    # for Python: the rows of the mesh sys.argv[1], by block, and where its nodes are
+    cat >rows.py <<'END'
+import sys
+rows = {}
+for line in open(sys.argv[1]):
+    if line[0] == '.':
+        rows[line.strip()] = block = []
+    elif line[0] != '#' and rows:
+        block.append(line.split())
+place = {r[0]: [float(c) for c in r[1:4]] for r in rows['.node'][1:]}
+END
 }
 
 # Prints cubes as a surface: cubes FORMAT CORNER,SIDE,+|- …, turned outward or inward.
@@ -72,13 +83,7 @@ END
 volumes_are() {
     python3 - "$@" <<'END'
 import math, sys
-rows = {}
-for line in open(sys.argv[1]):
-    if line[0] == '.':
-        rows[line.strip()] = block = []
-    elif line[0] != '#' and rows:
-        block.append(line.split())
-place = {r[0]: [float(c) for c in r[1:4]] for r in rows['.node'][1:]}
+from rows import place, rows
 parts = {}
 for r in rows['.ele'][1:]:
     a, b, c, d = (place[n] for n in r[1:5])
@@ -171,13 +176,7 @@ is_linear() {
 sizes_hold() {
     python3 - "$@" <<'END'
 import math, sys
-rows = {}
-for line in open(sys.argv[1]):
-    if line[0] == '.':
-        rows[line.strip()] = block = []
-    elif line[0] != '#' and rows:
-        block.append(line.split())
-place = {r[0]: [float(c) for c in r[1:4]] for r in rows['.node'][1:]}
+from rows import place, rows
 good = 0
 for r in rows['.ele'][1:]:
     p = [place[n] for n in r[1:5]]
