@@ -31,7 +31,7 @@ static tm_status improve(tm_stream *stream, tm_error *error)
     tm_tet_mesh mesh;
     tm_improve_report report;
     const tm_improve_options options = {.angle = 30, .ops = TM_IMPROVE_ALL_OPS};
-    tm_status status = tm_tet_mesh_from_stream(&mesh, stream, error);
+    tm_status status = tm_tet_mesh_from_stream(&mesh, stream, 1, error);
     if (status == TM_OK)
         status = tm_improve(&mesh, &options, &report, error);
     if (status == TM_OK)

@@ -3,6 +3,7 @@
 #include "connect.h"
 
 #include "../base/array.h"
+#include "../base/parallel.h"
 #include "../element/shape.h"
 #include "../geom/predicates.h"
 #include "../mesh/face_table.h"
@@ -26,22 +27,57 @@ static void turn(tm_tet_mesh *mesh, size_t t)
     mesh->tet[t][3] = n;
 }
 
-/* Makes all tetrahedra positive but the flat ones. */
-static tm_status orient(tm_tet_mesh *mesh, unsigned base, tm_error *error)
+/* A chunk of tetrahedra that one thread orients. */
+enum { CHUNK = 1 << 15 };
+
+typedef struct orienting {
+    tm_tet_mesh *mesh;
+    struct oriented {
+        size_t flat, turned;
+        size_t twice; /* the first tetrahedron that names a node twice, or SIZE_MAX */
+    } * chunk;
+} orienting;
+
+static void orient_chunk(void *context, size_t c)
 {
-    for (size_t t = 0; t < mesh->slots; t++) {
-        const uint32_t *n = mesh->tet[t];
-        if (n[0] == n[1] || n[0] == n[2] || n[0] == n[3] || n[1] == n[2] ||
-            n[1] == n[3] || n[2] == n[3])
-            return FAIL(".ele", "tetrahedron %zu names a node twice", t + base);
-        int sign = orientation(mesh, t);
-        mesh->flat += sign == 0;
+    tm_tet_mesh *mesh = ((orienting *)context)->mesh;
+    struct oriented found = {.twice = SIZE_MAX};
+    const size_t past = (c + 1) * CHUNK < mesh->slots ? (c + 1) * CHUNK : mesh->slots;
+    for (size_t t = c * CHUNK; t < past && found.twice == SIZE_MAX; t++) {
+        if (tm_has_node_twice(mesh->tet[t], TM_TET_NODES)) {
+            found.twice = t;
+            break;
+        }
+        const int sign = orientation(mesh, t);
+        found.flat += sign == 0;
         if (sign < 0) {
             turn(mesh, t);
-            mesh->turned++;
+            found.turned++;
         }
     }
-    return TM_OK;
+    ((orienting *)context)->chunk[c] = found;
+}
+
+/* Makes all tetrahedra positive but the flat ones. */
+static tm_status orient(tm_tet_mesh *mesh, unsigned base, unsigned threads,
+                        tm_error *error)
+{
+    const size_t chunks = (mesh->slots + CHUNK - 1) / CHUNK;
+    orienting all = {mesh, tm_new(chunks, sizeof *all.chunk)};
+    if (!all.chunk)
+        return tm_fail_memory(error);
+    tm_parallel(threads, chunks, orient_chunk, &all);
+    size_t twice = SIZE_MAX;
+    for (size_t c = chunks; c-- > 0;) {
+        mesh->flat += all.chunk[c].flat;
+        mesh->turned += all.chunk[c].turned;
+        if (all.chunk[c].twice != SIZE_MAX)
+            twice = all.chunk[c].twice;
+    }
+    free(all.chunk);
+    return twice == SIZE_MAX
+               ? TM_OK
+               : FAIL(".ele", "tetrahedron %zu names a node twice", twice + base);
 }
 
 /* Whether two tetrahedra turn around their common face in the same sense, which those on
@@ -67,12 +103,11 @@ static tm_status add_face(tm_tet_mesh *mesh, uint32_t half, tm_error *error)
     return TM_OK;
 }
 
-/* Connects one face: half[0 … count) are the tetrahedra at it, `listed` its row of .face
- * or TM_NONE. */
-static tm_status connect_face(tm_tet_mesh *mesh, const uint32_t *half, size_t count,
-                              uint32_t listed, tm_error *error)
+/* Connects one face: h and g are the tetrahedra at it, `listed` its row of .face; g and
+ * `listed` may be TM_NONE. */
+static tm_status connect_face(tm_tet_mesh *mesh, uint32_t h, uint32_t g, uint32_t listed,
+                              tm_error *error)
 {
-    uint32_t h = half[0], g = count == 2 ? half[1] : TM_NONE;
     bool stays = g == TM_NONE || !tm_tet_same_region(mesh, h / 4, g / 4) ||
                  (listed != TM_NONE && mesh->face[listed].marker != 0);
     if (!stays) {
@@ -97,29 +132,42 @@ static tm_status connect_face(tm_tet_mesh *mesh, const uint32_t *half, size_t co
     return TM_OK;
 }
 
-/* Takes the members of a face apart: tetrahedra and rows of .face. */
-static tm_status connect_members(tm_tet_mesh *mesh, const tm_face_table *table,
-                                 const tm_face *face, unsigned base, tm_error *error)
+/* A face that is not simply between two tetrahedra of one region. */
+typedef struct odd_face {
+    uint32_t half[2]; /* the tetrahedra at it, or TM_NONE */
+    uint32_t row;     /* of .face, or TM_NONE */
+    uint32_t more;    /* a third half face or a second row: first_row + row; or TM_NONE */
+} odd_face;
+
+static odd_face take_members(const tm_face_table *table, const tm_face *face)
 {
-    uint32_t half[2], listed = TM_NONE;
-    size_t count = 0;
+    odd_face odd = {{TM_NONE, TM_NONE}, TM_NONE, TM_NONE};
     for (uint32_t m = face->first; m != TM_FACE_END; m = table->member[m].next) {
         const uint32_t id = table->member[m].id;
-        if (id >= table->first_row) {
-            const uint32_t row = id - table->first_row;
-            if (listed != TM_NONE)
-                return FAIL(".face", "rows %u and %u are the same triangle",
-                            listed + base, row + base);
-            listed = row;
-        } else if (count == 2) {
-            return FAIL(".ele", "tetrahedra %u, %u and %u have one face in common",
-                        half[0] / 4 + base, half[1] / 4 + base, id / 4 + base);
-        } else {
-            half[count++] = id;
-        }
+        uint32_t *place = id >= table->first_row   ? &odd.row
+                          : odd.half[0] == TM_NONE ? &odd.half[0]
+                                                   : &odd.half[1];
+        if (*place == TM_NONE)
+            *place = place == &odd.row ? id - table->first_row : id;
+        else if (odd.more == TM_NONE)
+            odd.more = id;
     }
-    if (count > 0)
-        return connect_face(mesh, half, count, listed, error);
+    return odd;
+}
+
+/* Connects it, and refuses what is more than a face. */
+static tm_status connect_odd(tm_tet_mesh *mesh, const odd_face *odd, uint32_t first_row,
+                             unsigned base, tm_error *error)
+{
+    const uint32_t *half = odd->half;
+    if (odd->more != TM_NONE)
+        return odd->more < first_row
+                   ? FAIL(".ele", "tetrahedra %u, %u and %u have one face in common",
+                          half[0] / 4 + base, half[1] / 4 + base, odd->more / 4 + base)
+                   : FAIL(".face", "rows %u and %u are the same triangle",
+                          odd->row + base, odd->more - first_row + base);
+    if (half[0] != TM_NONE)
+        return connect_face(mesh, half[0], half[1], odd->row, error);
     mesh->dangling++;
     return TM_OK;
 }
@@ -153,30 +201,105 @@ static void join_pairs(tm_tet_mesh *mesh, tm_face_table *table, bool *folded)
     table->faces = left;
 }
 
-/* *folded: there are tetrahedra on the same side of a face, or flat ones. */
+/* What one thread finds at the faces of a run of nodes. */
+typedef struct run {
+    odd_face *odd;
+    size_t count, room;
+    bool folded; /* there are tetrahedra on the same side of a face, or flat ones */
+    tm_status status;
+    tm_error error;
+} run;
+
+typedef struct connection {
+    tm_tet_mesh *mesh;
+    tm_face_table table;
+    run *run;
+    uint32_t *cut; /* run i is of nodes cut[i] … cut[i + 1] - 1 */
+} connection;
+
+/* Puts the faces that are left in the table behind those of the run. */
+static bool append_odd(run *r, tm_face_table *table)
+{
+    odd_face *moved = tm_grow(r->odd, &r->room, r->count + table->faces, sizeof *r->odd);
+    if (!moved)
+        return false;
+    r->odd = moved;
+    tm_face_table_sort(table);
+    for (size_t f = 0; f < table->faces; f++) {
+        r->folded |= is_folded(table, &table->face[f]);
+        r->odd[r->count++] = take_members(table, &table->face[f]);
+    }
+    return true;
+}
+
+static void connect_run(void *context, size_t i)
+{
+    connection *all = context;
+    run *r = &all->run[i];
+    tm_face_table table;
+    tm_face_table_share(&table, &all->table);
+    for (uint32_t v = all->cut[i]; v < all->cut[i + 1] && r->status == TM_OK; v++) {
+        r->status = tm_face_table_at(&table, v, &r->error);
+        if (r->status != TM_OK)
+            break;
+        join_pairs(all->mesh, &table, &r->folded);
+        if (table.faces > 0 && !append_odd(r, &table))
+            r->status = tm_fail_memory(&r->error);
+    }
+    tm_face_table_free(&table);
+}
+
+/* Connects what is odd, in the order of its nodes. */
+static tm_status connect_odd_faces(connection *all, unsigned runs, unsigned base,
+                                   bool *folded, tm_error *error)
+{
+    for (unsigned i = 0; i < runs; i++) {
+        const run *r = &all->run[i];
+        *folded |= r->folded;
+        for (size_t f = 0; f < r->count; f++) {
+            const tm_status status =
+                connect_odd(all->mesh, &r->odd[f], all->table.first_row, base, error);
+            if (status != TM_OK)
+                return status;
+        }
+        if (r->status != TM_OK)
+            return tm_fail_as(error, &r->error);
+    }
+    return TM_OK;
+}
+
+static tm_status connect_runs(connection *all, unsigned runs, unsigned base, bool *folded,
+                              tm_error *error)
+{
+    all->run = calloc(runs, sizeof *all->run);
+    all->cut = tm_new(runs + (size_t)1, sizeof *all->cut);
+    tm_status status = all->run && all->cut ? TM_OK : tm_fail_memory(error);
+    if (status == TM_OK) {
+        tm_face_table_cut(&all->table, runs, all->cut);
+        tm_parallel(runs, runs, connect_run, all);
+        status = connect_odd_faces(all, runs, base, folded, error);
+    }
+    for (unsigned i = 0; all->run && i < runs; i++)
+        free(all->run[i].odd);
+    free(all->run);
+    free(all->cut);
+    return status;
+}
+
 static tm_status connect_faces(tm_tet_mesh *mesh, const uint32_t (*listed)[3],
-                               size_t listed_count, unsigned base, bool *folded,
-                               tm_error *error)
+                               size_t listed_count, unsigned base, unsigned threads,
+                               bool *folded, tm_error *error)
 {
     const tm_mesh_view view = {.nodes = mesh->nodes,
                                .elements = mesh->slots,
                                .item = (const uint32_t *)mesh->tet,
                                .faces = listed_count,
                                .face = listed};
-    tm_face_table table;
-    tm_status status = tm_face_table_make(&table, &view, 1, error);
-    for (uint32_t v = 0; v < mesh->nodes && status == TM_OK; v++) {
-        status = tm_face_table_at(&table, v, error);
-        if (status != TM_OK)
-            break;
-        join_pairs(mesh, &table, folded);
-        tm_face_table_sort(&table);
-        for (size_t f = 0; f < table.faces && status == TM_OK; f++) {
-            *folded |= is_folded(&table, &table.face[f]);
-            status = connect_members(mesh, &table, &table.face[f], base, error);
-        }
-    }
-    tm_face_table_free(&table);
+    connection all = {.mesh = mesh};
+    tm_status status = tm_face_table_make(&all.table, &view, threads, error);
+    if (status == TM_OK)
+        status = connect_runs(&all, threads, base, folded, error);
+    tm_face_table_free(&all.table);
     return status;
 }
 
@@ -249,7 +372,8 @@ static void drop_faces(tm_tet_mesh *mesh, size_t listed_count)
     mesh->faces = kept;
 }
 
-tm_status tm_tet_mesh_connect(tm_tet_mesh *mesh, unsigned base, tm_error *error)
+tm_status tm_tet_mesh_connect(tm_tet_mesh *mesh, unsigned base, unsigned threads,
+                              tm_error *error)
 {
     size_t listed_count = mesh->faces;
     bool folded = false;
@@ -258,10 +382,10 @@ tm_status tm_tet_mesh_connect(tm_tet_mesh *mesh, unsigned base, tm_error *error)
         return tm_fail_memory(error);
     for (size_t f = 0; f < listed_count; f++)
         memcpy(listed[f], mesh->face[f].node, sizeof listed[f]);
-    tm_status status = orient(mesh, base, error);
+    tm_status status = orient(mesh, base, threads, error);
     if (status == TM_OK)
         status = connect_faces(mesh, (const uint32_t(*)[3])listed, listed_count, base,
-                               &folded, error);
+                               threads, &folded, error);
     free(listed);
     if (status == TM_OK) {
         turn_flat(mesh);
@@ -273,114 +397,4 @@ tm_status tm_tet_mesh_connect(tm_tet_mesh *mesh, unsigned base, tm_error *error)
     if (status == TM_OK)
         status = tm_tet_mesh_find_edges(mesh, error);
     return status;
-}
-
-/* The edges of the boundary, in a bucket for each smaller node. */
-
-typedef struct {
-    uint32_t larger; /* node */
-    uint32_t faces;  /* of the boundary, at the edge */
-} edge;
-
-typedef struct {
-    uint32_t *start; /* [nodes + 1] */
-    uint32_t *past;  /* [nodes]: the edges of bucket v are start[v] … past[v] */
-    edge *edge;
-} buckets;
-
-static inline uint32_t lesser(uint32_t a, uint32_t b)
-{
-    return a < b ? a : b;
-}
-
-static inline uint32_t greater(uint32_t a, uint32_t b)
-{
-    return a < b ? b : a;
-}
-
-static bool is_on_boundary(const tm_constrained_face *face)
-{
-    return (face->side[0] == TM_NONE) != (face->side[1] == TM_NONE);
-}
-
-static edge *find(const buckets *b, uint32_t v, uint32_t w)
-{
-    uint32_t low = lesser(v, w), high = greater(v, w);
-    edge *past = b->edge + b->past[low];
-    for (edge *e = b->edge + b->start[low]; e < past; e++)
-        if (e->larger == high)
-            return e;
-    return NULL;
-}
-
-/* Room for three edges of each boundary face; false where memory is out. */
-static bool start(buckets *b, const tm_tet_mesh *mesh)
-{
-    b->start = tm_new(mesh->nodes + 1, sizeof *b->start);
-    b->past = calloc(mesh->nodes + 1, sizeof *b->past);
-    if (!b->start || !b->past)
-        return false;
-    uint32_t sum = 0;
-    for (size_t f = 0; f < mesh->faces; f++)
-        for (int i = 0; i < 3 && is_on_boundary(&mesh->face[f]); i++)
-            b->past[lesser(mesh->face[f].node[i], mesh->face[f].node[(i + 1) % 3])]++;
-    for (size_t v = 0; v < mesh->nodes; v++) {
-        b->start[v] = sum;
-        sum += b->past[v];
-        b->past[v] = b->start[v];
-    }
-    b->edge = tm_new(sum, sizeof *b->edge);
-    return b->edge != NULL;
-}
-
-static void count_faces(buckets *b, const tm_tet_mesh *mesh)
-{
-    for (size_t f = 0; f < mesh->faces; f++)
-        for (int i = 0; i < 3 && is_on_boundary(&mesh->face[f]); i++) {
-            uint32_t v = mesh->face[f].node[i], w = mesh->face[f].node[(i + 1) % 3];
-            edge *e = find(b, v, w);
-            if (e)
-                e->faces++;
-            else
-                b->edge[b->past[lesser(v, w)]++] = (edge){greater(v, w), 1};
-        }
-}
-
-/* Locks the edges with more than two boundary faces. */
-static bool lock_edges(const buckets *b, tm_tet_mesh *mesh)
-{
-    for (uint32_t v = 0; v < mesh->nodes; v++)
-        for (const edge *e = b->edge + b->start[v]; e < b->edge + b->past[v]; e++) {
-            if (e->faces <= 2)
-                continue;
-            if (!tm_edge_map_reserve(&mesh->locked, 1))
-                return false;
-            tm_edge_map_put(&mesh->locked, v, e->larger, 0);
-        }
-    return true;
-}
-
-static void look_for_inner_edges(const buckets *b, tm_tet_mesh *mesh)
-{
-    for (size_t e = 0; e < mesh->edges; e++) {
-        if (find(b, mesh->edge[e].node[0], mesh->edge[e].node[1]))
-            continue;
-        mesh->inner_edges = true;
-        mesh->inner_marked_edges |= mesh->edge[e].marker != 0;
-    }
-}
-
-tm_status tm_tet_mesh_find_edges(tm_tet_mesh *mesh, tm_error *error)
-{
-    buckets b = {0};
-    bool done = start(&b, mesh);
-    if (done) {
-        count_faces(&b, mesh);
-        done = lock_edges(&b, mesh);
-        look_for_inner_edges(&b, mesh);
-    }
-    free(b.start);
-    free(b.past);
-    free(b.edge);
-    return done ? TM_OK : tm_fail_memory(error);
 }

@@ -129,8 +129,10 @@ static inline uint32_t tm_tet_corner(const tm_tet_mesh *mesh, uint32_t t, uint32
  * tetrahedra. TM_ERROR_INPUT where the tetrahedra are no mesh: three at a face, two on
  * the same side of one, a node twice in one, a face or edge listed twice, and where
  * coordinates are too large or too small (stream/coordinates.h). *mesh need not be
- * initialised; tm_tet_mesh_free() also after an error. Expected O(n). */
-tm_status tm_tet_mesh_from_stream(tm_tet_mesh *mesh, tm_stream *stream, tm_error *error);
+ * initialised; tm_tet_mesh_free() also after an error. The same for every number of
+ * threads >= 1. Expected O(n). */
+tm_status tm_tet_mesh_from_stream(tm_tet_mesh *mesh, tm_stream *stream, unsigned threads,
+                                  tm_error *error);
 
 /* Gives the mesh back to the blocks that it was taken from; the mesh is empty then.
  * Dead slots are filled by the last tetrahedra; nodes that were not removed keep their

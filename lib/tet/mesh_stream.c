@@ -77,7 +77,8 @@ static tm_status take_edges(tm_tet_mesh *mesh, tm_block *block, unsigned base,
     return TM_OK;
 }
 
-tm_status tm_tet_mesh_from_stream(tm_tet_mesh *mesh, tm_stream *stream, tm_error *error)
+tm_status tm_tet_mesh_from_stream(tm_tet_mesh *mesh, tm_stream *stream, unsigned threads,
+                                  tm_error *error)
 {
     *mesh = (tm_tet_mesh){.first_dead = TM_NONE};
     tm_block *node = tm_stream_find(stream, ".node");
@@ -93,7 +94,8 @@ tm_status tm_tet_mesh_from_stream(tm_tet_mesh *mesh, tm_stream *stream, tm_error
         status = take_faces(mesh, face, stream->base, error);
     if (status == TM_OK && edge)
         status = take_edges(mesh, edge, stream->base, error);
-    return status == TM_OK ? tm_tet_mesh_connect(mesh, stream->base, error) : status;
+    return status == TM_OK ? tm_tet_mesh_connect(mesh, stream->base, threads, error)
+                           : status;
 }
 
 /* The last living tetrahedra fill the dead slots. Neighbours are not kept: the mesh is

@@ -236,7 +236,7 @@ static void check_improvement(tm_stream *stream)
 {
     tm_tet_mesh mesh;
     tm_error error;
-    tm_status status = tm_tet_mesh_from_stream(&mesh, stream, &error);
+    tm_status status = tm_tet_mesh_from_stream(&mesh, stream, 1, &error);
     if (status == TM_OK) {
         require(tm_tet_mesh_check(&mesh, &error) == TM_OK, "a mesh that is none");
         status =

@@ -118,7 +118,8 @@ static void test_hub(void **state)
             for (int kind = 0; kind < 3; kind++) {
                 number_nodes(number, kind);
                 make_hub(&stream[kind], number, regions, marked);
-                if (tm_tet_mesh_from_stream(&mesh[kind], &stream[kind], &error) != TM_OK)
+                if (tm_tet_mesh_from_stream(&mesh[kind], &stream[kind], 1, &error) !=
+                    TM_OK)
                     fail_msg("%s", error.what);
                 assert_valid(&mesh[kind]);
                 assert_int_equal(mesh[kind].faces, mesh[0].faces);
@@ -147,14 +148,16 @@ static void test_wrong_hub(void **state)
         const tm_block *face = tm_stream_find(&stream, ".face");
         for (int i = 0; i < 3; i++)
             face->integer[3 + i] = face->integer[i];
-        assert_int_equal(tm_tet_mesh_from_stream(&mesh, &stream, &error), TM_ERROR_INPUT);
+        assert_int_equal(tm_tet_mesh_from_stream(&mesh, &stream, 1, &error),
+                         TM_ERROR_INPUT);
         assert_string_equal(error.block, ".face");
         tm_tet_mesh_free(&mesh);
         tm_stream_free(&stream);
         make_hub(&stream, number, 0, false);
         const tm_block *ele = tm_stream_find(&stream, ".ele");
         memcpy(ele->integer, ele->integer + 400, 4 * sizeof *ele->integer);
-        assert_int_equal(tm_tet_mesh_from_stream(&mesh, &stream, &error), TM_ERROR_INPUT);
+        assert_int_equal(tm_tet_mesh_from_stream(&mesh, &stream, 1, &error),
+                         TM_ERROR_INPUT);
         tm_tet_mesh_free(&mesh);
         tm_stream_free(&stream);
     }

@@ -208,7 +208,7 @@ static void test_loose_faces(void **state)
         assert_int_equal(tm_block_allocate(face, count, 0, NULL), TM_OK);
         memcpy(face->integer, rows, 3 * count * sizeof *rows);
         memcpy(face->marker, markers, count * sizeof *markers);
-        if (tm_tet_mesh_from_stream(&mesh, &stream, &error) != TM_OK)
+        if (tm_tet_mesh_from_stream(&mesh, &stream, 1, &error) != TM_OK)
             fail_msg("%s", error.what);
         stretch(&mesh, 3);
         assert_true(measure_invariants(&mesh).area[MARKER] > 0);

@@ -110,7 +110,7 @@ static tm_dual_report check_dual(const tm_tet_mesh *mesh, double feature_angle)
 static void take_mesh(tm_tet_mesh *mesh, tm_stream *stream)
 {
     tm_error error = {0};
-    if (tm_tet_mesh_from_stream(mesh, stream, &error) != TM_OK)
+    if (tm_tet_mesh_from_stream(mesh, stream, 1, &error) != TM_OK)
         fail_msg("%s", error.what);
     assert_valid(mesh);
     tm_stream_free(stream);

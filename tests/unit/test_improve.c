@@ -189,7 +189,7 @@ static void operate_on(bool regions, tm_tet_measure measure, size_t done[TM_IMPR
     for (int op = 0; op < TM_IMPROVE_OPS; op++)
         done[op] += report.done.op[op];
     assert_int_equal(tm_tet_mesh_to_stream(&mesh, &stream, &error), TM_OK);
-    assert_int_equal(tm_tet_mesh_from_stream(&mesh, &stream, &error), TM_OK);
+    assert_int_equal(tm_tet_mesh_from_stream(&mesh, &stream, 1, &error), TM_OK);
     assert_valid(&mesh);
     invariants after = measure_invariants(&mesh);
     assert_same_invariants(&before, &after);

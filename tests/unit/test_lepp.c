@@ -38,7 +38,7 @@ static void through_stream(tm_tet_mesh *mesh, tm_stream *stream)
 {
     tm_error error = {0};
     assert_int_equal(tm_tet_mesh_to_stream(mesh, stream, &error), TM_OK);
-    if (tm_tet_mesh_from_stream(mesh, stream, &error) != TM_OK)
+    if (tm_tet_mesh_from_stream(mesh, stream, 1, &error) != TM_OK)
         fail_msg("%s", error.what);
     assert_valid(mesh);
 }
@@ -210,7 +210,7 @@ static size_t improve_small(const uint32_t (*tet)[4], size_t tets, const double 
         tm_tet_mesh mesh;
         tm_error error = {0};
         make_stream(&stream, xyz, nodes, tet, tets);
-        if (tm_tet_mesh_from_stream(&mesh, &stream, &error) != TM_OK)
+        if (tm_tet_mesh_from_stream(&mesh, &stream, 1, &error) != TM_OK)
             fail_msg("%s", error.what);
         assert_valid(&mesh);
         double worst = worst_quality(&mesh, TM_MEASURE_DIHEDRAL);
@@ -258,7 +258,7 @@ static void test_touching_edge(void **state)
     tm_stream stream;
     tm_tet_mesh mesh;
     make_stream(&stream, xyz, 6, tet, 2);
-    assert_int_equal(tm_tet_mesh_from_stream(&mesh, &stream, NULL), TM_OK);
+    assert_int_equal(tm_tet_mesh_from_stream(&mesh, &stream, 1, NULL), TM_OK);
     assert_int_equal(mesh.turned, 1);
     assert_int_equal(mesh.locked.count, 1);
     tm_lepp_options o = usual;
@@ -285,7 +285,7 @@ static void test_flat(void **state)
     tm_tet_mesh mesh;
     make_stream(&stream, xyz, 6, tet, 5);
     tm_error error = {0};
-    if (tm_tet_mesh_from_stream(&mesh, &stream, &error) != TM_OK)
+    if (tm_tet_mesh_from_stream(&mesh, &stream, 1, &error) != TM_OK)
         fail_msg("%s", error.what);
     assert_int_equal(mesh.flat, 1);
     assert_valid(&mesh);
@@ -316,7 +316,7 @@ static void assert_refused(const uint32_t (*tet)[4], size_t tets, const char *wh
     tm_tet_mesh mesh;
     tm_error error = {0};
     make_stream(&stream, points, POINTS, tet, tets);
-    assert_int_equal(tm_tet_mesh_from_stream(&mesh, &stream, &error), TM_ERROR_INPUT);
+    assert_int_equal(tm_tet_mesh_from_stream(&mesh, &stream, 1, &error), TM_ERROR_INPUT);
     assert_non_null(strstr(error.what, what));
     assert_string_equal(error.block, ".ele");
     tm_tet_mesh_free(&mesh);
@@ -348,7 +348,7 @@ static void test_listed_faces_and_edges(void **state)
         assert_int_equal(tm_block_allocate(face, count, 0, NULL), TM_OK);
         memcpy(face->integer, rows, count * sizeof rows[0]);
         tm_error error = {0};
-        tm_status status = tm_tet_mesh_from_stream(&mesh, &stream, &error);
+        tm_status status = tm_tet_mesh_from_stream(&mesh, &stream, 1, &error);
         if (count == 3) {
             assert_int_equal(status, TM_ERROR_INPUT);
             assert_string_equal(error.block, ".face");

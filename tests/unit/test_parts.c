@@ -28,7 +28,7 @@ static void make(tm_tet_mesh *mesh, tm_stream *stream, int kind)
     }
     ele->count = kept;
     tm_stream_find(stream, ".face")->count = 0;
-    if (tm_tet_mesh_from_stream(mesh, stream, &error) != TM_OK)
+    if (tm_tet_mesh_from_stream(mesh, stream, 1, &error) != TM_OK)
         fail_msg("%s", error.what);
     assert_true(mesh->locked.count > 0);
 }

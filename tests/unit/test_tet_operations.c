@@ -105,7 +105,7 @@ static void operate_on(bool regions)
     assert_true(done > OPERATIONS / 10);
     assert_int_equal(tm_tet_mesh_to_stream(&mesh, &stream, NULL), TM_OK);
     tm_error error = {0};
-    if (tm_tet_mesh_from_stream(&mesh, &stream, &error) != TM_OK)
+    if (tm_tet_mesh_from_stream(&mesh, &stream, 1, &error) != TM_OK)
         fail_msg("%s", error.what);
     assert_valid(&mesh);
     invariants after = measure_invariants(&mesh);
@@ -175,7 +175,7 @@ static bool random_star(tm_stream *stream, tm_tet_mesh *mesh, size_t n, size_t t
         tm_stream_free(stream);
         return false;
     }
-    assert_int_equal(tm_tet_mesh_from_stream(mesh, stream, NULL), TM_OK);
+    assert_int_equal(tm_tet_mesh_from_stream(mesh, stream, 1, NULL), TM_OK);
     return true;
 }
 

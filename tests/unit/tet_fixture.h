@@ -246,7 +246,7 @@ static inline void make_mesh(tm_tet_mesh *mesh, tm_stream *stream, int n, double
 {
     tm_error error = {0};
     make_grid(stream, n, by, regions);
-    if (tm_tet_mesh_from_stream(mesh, stream, &error) != TM_OK)
+    if (tm_tet_mesh_from_stream(mesh, stream, 1, &error) != TM_OK)
         fail_msg("%s", error.what);
     assert_valid(mesh);
 }

@@ -23,7 +23,7 @@ void tet_mesh_from_stream(const filter *f, tm_stream *stream, tm_tet_mesh *mesh)
 {
     tm_error error;
     filter_stage(f, "finding neighbours");
-    if (tm_tet_mesh_from_stream(mesh, stream, &error) != TM_OK) {
+    if (tm_tet_mesh_from_stream(mesh, stream, f->threads, &error) != TM_OK) {
         snprintf(error.file, sizeof error.file, "%s", filter_input_name(f));
         filter_fail(f, &error);
     }

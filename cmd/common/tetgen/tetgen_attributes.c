@@ -70,7 +70,7 @@ static tm_status fill_coarsely(const filter *f, const tetgen_request *r,
             tm_surface_evaluate(surface, polygons, node, known);
         spread_means(&stream, known);
         free(known);
-        status = tm_tet_mesh_from_stream(coarse, &stream, error);
+        status = tm_tet_mesh_from_stream(coarse, &stream, f->threads, error);
     }
     tm_stream_free(&stream);
     return status;
@@ -131,7 +131,7 @@ void tetgen_interpolate_refined(const filter *f, tm_stream *tets, tm_stream *mes
     tm_error error;
     if (node->attributes == 0 || !ele)
         return;
-    tm_status status = tm_tet_mesh_from_stream(&coarse, tets, &error);
+    tm_status status = tm_tet_mesh_from_stream(&coarse, tets, f->threads, &error);
     if (status == TM_OK)
         status = tm_tet_evaluate(&coarse, node, ele, NULL, &error);
     tm_tet_mesh_free(&coarse);
