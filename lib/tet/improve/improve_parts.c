@@ -16,7 +16,7 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 
-enum { ROUNDS = 4 };
+enum { ROUNDS = 5 };
 
 /* Of the nodes of a tetrahedron so many are due where it is. All four would leave out
  * what a bad one is improved with, one alone would try those again that were tried. */

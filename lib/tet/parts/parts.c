@@ -62,8 +62,8 @@ static bool note_edges(tm_tet_parts *parts, const tm_tet_mesh *mesh)
 tm_status tm_tet_parts_cut(tm_tet_parts *parts, const tm_tet_mesh *mesh, size_t size,
                            unsigned round, tm_error *error)
 {
-    const size_t tets = mesh->tets, rounded = (tets + size / 2) / size;
-    *parts = (tm_tet_parts){.count = rounded > 0 ? rounded : 1};
+    const size_t tets = mesh->tets, fours = (tets + 4 * size - 1) / (4 * size);
+    *parts = (tm_tet_parts){.count = tets > size ? 4 * fours : 1};
     parts->order = tm_new(tets, sizeof *parts->order);
     parts->place = tm_new(mesh->slots, sizeof *parts->place);
     parts->part = calloc(parts->count, sizeof *parts->part);

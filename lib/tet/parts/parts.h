@@ -27,7 +27,8 @@ typedef struct tm_tet_parts {
     uint8_t *taken;    /* [edges]: a part has it */
 } tm_tet_parts;
 
-/* Cuts the living tetrahedra into parts of about `size`, as near as the curve makes them;
+/* Cuts the living tetrahedra into parts of at most `size`, as near as the curve makes
+ * them, and a multiple of 4 of them, so that 2 or 4 threads have as much to do each;
  * `round` counts the cuts. Nothing is taken. TM_ERROR_SYSTEM where memory is out;
  * tm_tet_parts_free() in any case. O(n). */
 tm_status tm_tet_parts_cut(tm_tet_parts *parts, const tm_tet_mesh *mesh, size_t size,
