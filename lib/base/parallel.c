@@ -2,7 +2,9 @@
 #include "parallel.h"
 
 #include <pthread.h>
+#include <sched.h>
 #include <stdatomic.h>
+#include <unistd.h>
 
 /* More would only wait for each other. */
 enum { MAX_THREADS = 256 };
@@ -36,4 +38,13 @@ void tm_parallel(unsigned threads, size_t chunks,
     take_chunks(&l);
     while (helpers > 0)
         pthread_join(helper[--helpers], NULL);
+}
+
+unsigned tm_cores(void)
+{
+    cpu_set_t usable;
+    if (sched_getaffinity(0, sizeof usable, &usable) == 0)
+        return (unsigned)CPU_COUNT(&usable);
+    const long online = sysconf(_SC_NPROCESSORS_ONLN);
+    return online > 0 ? (unsigned)online : 1;
 }

@@ -18,6 +18,16 @@ TM_EXTERN_C_BEGIN
 void tm_parallel(unsigned threads, size_t chunks,
                  void (*work)(void *context, size_t chunk), void *context);
 
+/* How many processors this process may use; at least 1. */
+unsigned tm_cores(void);
+
+/* So many of `threads` >= 1 that each gets at least `least` of the items; 1 or more. */
+static inline unsigned tm_threads_for(unsigned threads, size_t items, size_t least)
+{
+    const size_t most = items / least;
+    return most < 1 ? 1 : most < threads ? (unsigned)most : threads;
+}
+
 TM_EXTERN_C_END
 
 #endif

@@ -260,6 +260,9 @@ static bool take_faces(walker *w, uint32_t v)
     return enough;
 }
 
+/* Each walker has arrays over all nodes. Fewer elements are not worth one. */
+enum { MOST_WALKERS = 16, LEAST_ELEMENTS = 1024 };
+
 /* The walk ------------------------------------------------------------------------- */
 
 static bool begin_walker(walker *w, const walk *all)
@@ -382,6 +385,8 @@ tm_status tm_element_examine_faces(tm_examination *found, const tm_mesh_view *me
 {
     walk w = {.mesh = mesh, .sign = sign};
     tm_status status = tm_face_table_make(&w.table, mesh, threads, error);
+    threads = tm_threads_for(threads < MOST_WALKERS ? threads : MOST_WALKERS,
+                             mesh->elements, LEAST_ELEMENTS);
     if (status == TM_OK &&
         (!tm_list_far_edges(&w.far, mesh, sign) || !tm_list_edge_rows(&w.listed, mesh) ||
          !allocate(&w, threads)))

@@ -58,8 +58,8 @@ typedef struct tm_face_table {
 /* Prepares *table for all elements, and all rows of three nodes or of four different
  * ones: those that name a node twice share no face with an element. TM_ERROR_SYSTEM where
  * memory is out or there are 2^31 members. The view has to stay as long as the table;
- * tm_face_table_free() also after an error. threads >= 1 look at all elements each, and
- * list what is at a part of the nodes. O(nodes + members). */
+ * tm_face_table_free() also after an error. Up to 8 of threads >= 1 look at all elements
+ * each, and list what is at a part of the nodes. O(nodes + members). */
 tm_status tm_face_table_make(tm_face_table *table, const tm_mesh_view *mesh,
                              unsigned threads, tm_error *error);
 void tm_face_table_free(tm_face_table *table);

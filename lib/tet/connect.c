@@ -28,7 +28,7 @@ static void turn(tm_tet_mesh *mesh, size_t t)
 }
 
 /* A chunk of tetrahedra that one thread orients. */
-enum { CHUNK = 1 << 15 };
+enum { CHUNK = 1 << 12 };
 
 typedef struct orienting {
     tm_tet_mesh *mesh;
@@ -201,6 +201,9 @@ static void join_pairs(tm_tet_mesh *mesh, tm_face_table *table, bool *folded)
     table->faces = left;
 }
 
+/* Fewer tetrahedra are not worth a thread. */
+enum { LEAST_TETS = 1024 };
+
 /* What one thread finds at the faces of a run of nodes. */
 typedef struct run {
     odd_face *odd;
@@ -298,7 +301,8 @@ static tm_status connect_faces(tm_tet_mesh *mesh, const uint32_t (*listed)[3],
     connection all = {.mesh = mesh};
     tm_status status = tm_face_table_make(&all.table, &view, threads, error);
     if (status == TM_OK)
-        status = connect_runs(&all, threads, base, folded, error);
+        status = connect_runs(&all, tm_threads_for(threads, mesh->slots, LEAST_TETS),
+                              base, folded, error);
     tm_face_table_free(&all.table);
     return status;
 }

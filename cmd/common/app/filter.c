@@ -2,6 +2,7 @@
 #include "filter.h"
 #include "completion.h"
 
+#include "../../../lib/base/parallel.h"
 #include "../../../lib/text/file.h"
 #include "kinds.h"
 
@@ -41,7 +42,7 @@ void filter_start(filter *f, int argc, char **argv)
     f->argc = argc;
     f->argv = argv;
     f->history = true;
-    f->threads = 1;
+    f->threads = tm_cores();
     opterr = 0;
     if (argc == 2 && strcmp(argv[1], "--completion") == 0)
         filter_print_completion(f);

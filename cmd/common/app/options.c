@@ -14,7 +14,7 @@ enum { THREADS_MAX = 256, OPTION_NAME = 64 };
 static const char shared_help[] =
     "  -o, --output FILE   write to FILE instead of standard output, whole or not at "
     "all\n"
-    "  %s --threads N     use N threads; the output is the same for every N\n"
+    "  %s --threads N     use N threads, else one for each core; same bytes for every N\n"
     "      --json FILE     write a JSON report to FILE\n"
     "      --no-history    do not add a history line\n"
     "      --strict        refuse what the output cannot carry, instead of a note\n"
