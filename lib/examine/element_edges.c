@@ -2,6 +2,7 @@
 #include "element_edges.h"
 
 #include "../base/array.h"
+#include "../base/parallel.h"
 #include "element_examine_faces.h"
 
 #include <stdlib.h>
@@ -45,23 +46,41 @@ static uint16_t far_bits(const uint32_t *n, const tm_element_shape *shape)
     return (uint16_t)far;
 }
 
-/* The far edges of element e, the smaller node first; how many. *bits are kept from the
- * first call to the next. */
-static size_t far_edges(const tm_mesh_view *mesh, const int8_t *sign, size_t e,
-                        uint16_t *bits, bool again, uint32_t far[TM_ELEMENT_EDGES][2])
+/* Each thread looks at all elements: more of them would only look. Fewer elements are not
+ * worth a thread. */
+enum { MOST_PARTS = 8, LEAST_ELEMENTS = 1024, CHUNK = 1 << 14 };
+
+typedef struct listing {
+    const tm_mesh_view *mesh;
+    const int8_t *sign;
+    uint16_t *bits; /* [elements]: the far edges of mixed ones */
+    size_t parts;   /* each lists at as many nodes */
+    size_t *next;   /* see tm_list_far_edges() */
+    uint32_t *item;
+} listing;
+
+static void find_bits(void *context, size_t chunk)
+{
+    const listing *l = context;
+    const size_t all = l->mesh->elements, end = (chunk + 1) * CHUNK;
+    for (size_t e = chunk * CHUNK; e < (end < all ? end : all); e++) {
+        size_t k;
+        const uint32_t *n = tm_mesh_view_nodes(l->mesh, e, &k);
+        l->bits[e] = l->sign[e] == TM_NODE_TWICE ? 0 : far_bits(n, &tm_element_shapes[k]);
+    }
+}
+
+/* The far edges of element e, the smaller node first; how many. */
+static size_t far_edges(const listing *l, size_t e, uint32_t far[TM_ELEMENT_EDGES][2])
 {
     size_t k, count = 0;
-    const uint32_t *n = tm_mesh_view_nodes(mesh, e, &k);
-    if (sign[e] == TM_NODE_TWICE)
-        return 0;
-    if (k == TM_TET_NODES) {
+    const uint32_t *n = tm_mesh_view_nodes(l->mesh, e, &k);
+    if (!l->mesh->start) {
         top_edge(n, far[0]);
-        return 1;
+        return l->sign[e] != TM_NODE_TWICE;
     }
     const tm_element_shape *shape = &tm_element_shapes[k];
-    if (!again)
-        *bits = far_bits(n, shape);
-    for (uint32_t left = *bits; left != 0; left &= left - 1) {
+    for (uint32_t left = l->bits[e]; left != 0; left &= left - 1) {
         const uint8_t *edge = shape->edge[__builtin_ctz(left)];
         const uint32_t a = n[edge[0]], b = n[edge[1]];
         far[count][0] = lesser(a, b);
@@ -71,31 +90,59 @@ static size_t far_edges(const tm_mesh_view *mesh, const int8_t *sign, size_t e,
     return count;
 }
 
-/* start[v + 2] counts, then start[v + 1] is where the next edge of v goes. */
-bool tm_list_far_edges(tm_at_nodes *far_of, const tm_mesh_view *mesh, const int8_t *sign)
+/* The nodes of part i: *first and how many more. */
+static uint32_t nodes_of_part(const listing *l, size_t i, uint32_t *first)
 {
-    uint32_t far[TM_ELEMENT_EDGES][2];
-    uint16_t *bits = tm_new(mesh->start ? mesh->elements : 1, sizeof *bits);
-    size_t *next = calloc(mesh->nodes + 2, sizeof *next), all = 0;
-    far_of->start = next++;
-    for (size_t e = 0; bits && far_of->start && e < mesh->elements; e++) {
-        const size_t count =
-            far_edges(mesh, sign, e, &bits[mesh->start ? e : 0], false, far);
-        for (size_t i = 0; i < count; i++)
-            next[far[i][0] + 1]++;
-        all += count;
+    const size_t nodes = l->mesh->nodes;
+    *first = (uint32_t)(nodes * i / l->parts);
+    return (uint32_t)(nodes * (i + 1) / l->parts) - *first;
+}
+
+static void count_far(void *context, size_t i)
+{
+    const listing *l = context;
+    uint32_t far[TM_ELEMENT_EDGES][2], first;
+    const uint32_t span = nodes_of_part(l, i, &first);
+    for (size_t e = 0; e < l->mesh->elements; e++)
+        for (size_t f = 0, count = far_edges(l, e, far); f < count; f++)
+            if (far[f][0] - first < span)
+                l->next[far[f][0] + 1]++;
+}
+
+static void list_far(void *context, size_t i)
+{
+    const listing *l = context;
+    uint32_t far[TM_ELEMENT_EDGES][2], first;
+    const uint32_t span = nodes_of_part(l, i, &first);
+    for (size_t e = 0; e < l->mesh->elements; e++)
+        for (size_t f = 0, count = far_edges(l, e, far); f < count; f++)
+            if (far[f][0] - first < span)
+                l->item[l->next[far[f][0]]++] = far[f][1];
+}
+
+/* start[v + 2] counts, then start[v + 1] is where the next edge of v goes. */
+bool tm_list_far_edges(tm_at_nodes *far_of, const tm_mesh_view *mesh, const int8_t *sign,
+                       unsigned threads)
+{
+    listing l = {.mesh = mesh, .sign = sign};
+    l.parts = tm_threads_for(threads < MOST_PARTS ? threads : MOST_PARTS, mesh->elements,
+                             LEAST_ELEMENTS);
+    l.bits = tm_new(mesh->start ? mesh->elements : 0, sizeof *l.bits);
+    far_of->start = calloc(mesh->nodes + 2, sizeof *far_of->start);
+    bool enough = l.bits && far_of->start;
+    if (enough) {
+        l.next = far_of->start + 1;
+        if (mesh->start)
+            tm_parallel(threads, (mesh->elements + CHUNK - 1) / CHUNK, find_bits, &l);
+        tm_parallel(threads, l.parts, count_far, &l);
+        for (size_t v = 0; v < mesh->nodes; v++)
+            l.next[v + 1] += l.next[v];
+        far_of->item = l.item = tm_new(l.next[mesh->nodes], sizeof *far_of->item);
+        enough = l.item;
     }
-    far_of->item = tm_new(all, sizeof *far_of->item);
-    const bool enough = bits && far_of->start && far_of->item;
-    for (size_t v = 0; enough && v < mesh->nodes; v++)
-        next[v + 1] += next[v];
-    for (size_t e = 0; enough && e < mesh->elements; e++) {
-        const size_t count =
-            far_edges(mesh, sign, e, &bits[mesh->start ? e : 0], true, far);
-        for (size_t i = 0; i < count; i++)
-            far_of->item[next[far[i][0]]++] = far[i][1];
-    }
-    free(bits);
+    if (enough)
+        tm_parallel(threads, l.parts, list_far, &l);
+    free(l.bits);
     return enough;
 }
 

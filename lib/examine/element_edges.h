@@ -19,8 +19,10 @@ void tm_at_nodes_free(tm_at_nodes *list);
 
 /* The larger nodes of far edges: those of whose element's two faces at them none has
  * their smaller node as its smallest. sign[elements]: see element_examine_faces.h. False
- * where memory is out. O(nodes + elements). */
-bool tm_list_far_edges(tm_at_nodes *far_of, const tm_mesh_view *mesh, const int8_t *sign);
+ * where memory is out. Up to 8 of threads >= 1 look at all elements each. O(nodes +
+ * elements). */
+bool tm_list_far_edges(tm_at_nodes *far_of, const tm_mesh_view *mesh, const int8_t *sign,
+                       unsigned threads);
 
 /* The rows of .edge; no arrays where there are none. False where memory is out.
  * O(nodes + rows). */

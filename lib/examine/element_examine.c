@@ -93,6 +93,43 @@ static tm_status examine_elements(tm_examination *found, const tm_mesh_view *mes
     return TM_OK;
 }
 
+/* What is looked at once the boundary is known, each on a thread. */
+typedef struct rest {
+    tm_examination *found;
+    const tm_mesh_view *mesh;
+    const tm_boundary_faces *boundary;
+    struct looked_at {
+        tm_status status;
+        tm_error error;
+    } part[3];
+} rest;
+
+static void examine_part(void *context, size_t i)
+{
+    rest *r = context;
+    struct looked_at *part = &r->part[i];
+    if (i == 0)
+        part->status =
+            tm_examine_nodes(r->found, r->mesh->xyz, r->mesh->nodes, &part->error);
+    else if (i == 1)
+        part->status =
+            tm_examine_boundary(r->found, r->mesh->xyz, r->mesh->nodes, r->boundary->node,
+                                r->boundary->count, &part->error);
+    else
+        part->status =
+            tm_element_examine_nonconforming(r->found, r->boundary, &part->error);
+}
+
+static tm_status examine_rest(rest *r, unsigned threads, tm_error *error)
+{
+    const size_t parts = sizeof r->part / sizeof *r->part;
+    tm_parallel(threads, parts, examine_part, r);
+    for (size_t i = 0; i < parts; i++)
+        if (r->part[i].status != TM_OK)
+            return tm_fail_as(error, &r->part[i].error);
+    return TM_OK;
+}
+
 tm_status tm_element_examine(tm_examination *found, const tm_mesh_view *mesh,
                              unsigned threads, tm_error *error)
 {
@@ -109,13 +146,9 @@ tm_status tm_element_examine(tm_examination *found, const tm_mesh_view *mesh,
     if (status == TM_OK)
         status = tm_element_examine_faces(found, mesh, sign, &boundary, threads, error);
     free(sign);
+    rest r = {.found = found, .mesh = mesh, .boundary = &boundary};
     if (status == TM_OK)
-        status = tm_element_examine_nonconforming(found, &boundary, error);
-    if (status == TM_OK)
-        status = tm_examine_boundary(found, mesh->xyz, mesh->nodes, boundary.node,
-                                     boundary.count, error);
+        status = examine_rest(&r, threads, error);
     free(boundary.node);
-    if (status == TM_OK)
-        status = tm_examine_nodes(found, mesh->xyz, mesh->nodes, error);
     return status;
 }

@@ -388,8 +388,8 @@ tm_status tm_element_examine_faces(tm_examination *found, const tm_mesh_view *me
     threads = tm_threads_for(threads < MOST_WALKERS ? threads : MOST_WALKERS,
                              mesh->elements, LEAST_ELEMENTS);
     if (status == TM_OK &&
-        (!tm_list_far_edges(&w.far, mesh, sign) || !tm_list_edge_rows(&w.listed, mesh) ||
-         !allocate(&w, threads)))
+        (!tm_list_far_edges(&w.far, mesh, sign, threads) ||
+         !tm_list_edge_rows(&w.listed, mesh) || !allocate(&w, threads)))
         status = tm_fail_memory(error);
     if (status == TM_OK) {
         take_no_faces(&w, found);
