@@ -840,3 +840,40 @@ assert abs(json.load(open("check.json"))["volume"] - 1.79) < 0.1'
     diff <(rows .octant again.tm | cut -d ' ' -f 2-5) \
         <(rows .octant mesh.tm | cut -d ' ' -f 2-5)
 }
+
+@test "what the environment says to Open MPI does not matter" {
+    octree-mesh --no-history -s 2 box.off >expected
+    for variable in OMPI_MCA_{btl,pml,coll,ess,shmem,btl_base_verbose}; do
+        for value in tcp no_such_thing 100; do
+            env "$variable=$value" octree-mesh --quiet --no-history -s 2 box.off >found 2>message
+            cmp found expected
+            [ ! -s message ]
+        done
+    done
+}
+
+@test "whatever memory there is, the mesh is whole, or the exit status is 4" {
+    case ${TM_BUILD:?} in */san*) skip "memory has no limit under the sanitizers" ;; esac
+    octree-mesh --no-history -s 2 box.off >expected
+    statuses=
+    for megabytes in 25 30 35 40 45 50 55 60 65 70 80 100 200; do
+        run_limited "$megabytes"
+        case $status in
+        0) cmp found expected ;;
+        4) grep 'out of memory' message ;;
+        127) grep 'shared libraries' message ;; # not even they can be loaded
+        *) return 1 ;;
+        esac
+        statuses+=$status
+    done
+    [[ "$statuses" == *4*0 ]]
+}
+
+# Runs it with so much memory; sets $status.
+run_limited() {
+    status=0
+    (
+        ulimit -v $(($1 * 1024))
+        exec octree-mesh --no-history -j 1 -s 2 box.off
+    ) >found 2>message || status=$?
+}

@@ -54,6 +54,7 @@ leaves_nothing() {
 @test "memory out, at any time: exit 4, or what is written is all there" {
     case ${TM_BUILD:?} in */san) skip "the sanitizers have an allocator of their own" ;; esac
     cat >fail.c <<'END'
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 extern void *__libc_malloc(size_t), *__libc_calloc(size_t, size_t);
@@ -71,9 +72,10 @@ __attribute__((destructor)) static void end(void)
     if (file)
         fprintf(file, "%ld\n", count), fclose(file);
 }
-void *malloc(size_t size) { return ++count == fails ? NULL : __libc_malloc(size); }
-void *calloc(size_t n, size_t size) { return ++count == fails ? NULL : __libc_calloc(n, size); }
-void *realloc(void *old, size_t size) { return ++count == fails ? NULL : __libc_realloc(old, size); }
+static int fail(void) { return ++count == fails && (errno = ENOMEM); }
+void *malloc(size_t size) { return fail() ? NULL : __libc_malloc(size); }
+void *calloc(size_t n, size_t size) { return fail() ? NULL : __libc_calloc(n, size); }
+void *realloc(void *old, size_t size) { return fail() ? NULL : __libc_realloc(old, size); }
 END
     cc -shared -fPIC -o fail.so fail.c || skip "no such library can be made"
     fails() {

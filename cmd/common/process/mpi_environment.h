@@ -7,7 +7,8 @@
 
 /* Where no launcher (mpirun, srun) has started the program, MPI is to start without what
  * talks to other processes (../../../lib/octree/forest/mpi_start.h): sets variables of
- * the environment, but for those that the user has set. Exits where memory is out. */
+ * the environment, whatever those and files said before. Exits where
+ * memory is out. */
 void mpi_environment_set(const filter *f);
 
 #endif

@@ -2,7 +2,6 @@
 #include "mpi_start.h"
 
 #include <p4est.h>
-#include <stdbool.h>
 #include <stdlib.h>
 
 /* gcc and clang say it in different ways. */
@@ -52,19 +51,39 @@ static void finish(void)
     ignore_leaks(false);
 }
 
+bool tm_mpi_launched(void)
+{
+    static const char *const sign[] = {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"};
+    for (size_t i = 0; i < sizeof sign / sizeof *sign; i++)
+        if (getenv(sign[i]))
+            return true;
+    return false;
+}
+
+/* Whether there is as much memory as Open MPI takes at most to start. */
+static bool has_memory(void)
+{
+    enum { START_BYTES = 1 << 25 };
+    char *volatile room = malloc(START_BYTES); /* volatile: that it is asked for */
+    free(room);
+    return room != NULL;
+}
+
 tm_status tm_mpi_start(tm_error *error)
 {
     int started = 0;
     MPI_Initialized(&started);
     if (started)
         return TM_OK;
+    if (!has_memory())
+        return tm_fail_memory(error);
     int got = 0;
     ignore_leaks(true);
     const int status = MPI_Init_thread(NULL, NULL, MPI_THREAD_FUNNELED, &got);
     ignore_leaks(false);
     if (status != MPI_SUCCESS)
         return tm_fail(error, TM_ERROR_SYSTEM, "MPI does not start");
-    if (atexit(finish) != 0)
+    if (tm_mpi_launched() && atexit(finish) != 0)
         return tm_fail_memory(error);
     sc_set_log_defaults(NULL, NULL, SC_LP_SILENT); /* but during p4est_call.c */
     sc_init(MPI_COMM_SELF, 0, 0, NULL, SC_LP_DEFAULT);
