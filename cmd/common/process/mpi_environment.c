@@ -30,12 +30,16 @@ static bool forget_parameters(void)
 /* Components of Open MPI, and of hwloc, which it asks for the machine's devices. */
 void mpi_environment_set(const filter *f)
 {
-    static const char *const choice[][2] = {{"OMPI_MCA_pml", "ob1"},
-                                            {"OMPI_MCA_btl", "self"},
-                                            {"OMPI_MCA_ess_singleton_isolated", "1"},
-                                            {"OMPI_MCA_orte_create_session_dirs", "0"},
-                                            {"OMPI_MCA_shmem", "mmap"},
-                                            {"HWLOC_COMPONENTS", "no_os,stop"}};
+    static const char *const choice[][2] = {
+        {"OMPI_MCA_pml", "ob1"},
+        {"OMPI_MCA_btl", "self"},
+        {"OMPI_MCA_ess_singleton_isolated", "1"},
+        {"OMPI_MCA_orte_create_session_dirs", "0"},
+        {"OMPI_MCA_shmem", "mmap"},
+        /* These two watch munmap() in the whole program. */
+        {"OMPI_MCA_memory", "^patcher"},
+        {"OMPI_MCA_osc", "^ucx"},
+        {"HWLOC_COMPONENTS", "no_os,stop"}};
     bool done = true;
     if (!tm_mpi_launched()) {
         done = forget_parameters();

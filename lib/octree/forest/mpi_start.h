@@ -20,8 +20,8 @@ bool tm_mpi_launched(void);
  * folder for temporary files:
  *
  *     OMPI_MCA_pml=ob1 OMPI_MCA_btl=self OMPI_MCA_ess_singleton_isolated=1
- *     OMPI_MCA_orte_create_session_dirs=0 OMPI_MCA_shmem=mmap
- *     HWLOC_COMPONENTS=no_os,stop */
+ *     OMPI_MCA_orte_create_session_dirs=0 OMPI_MCA_shmem=mmap OMPI_MCA_memory=^patcher
+ *     OMPI_MCA_osc=^ucx HWLOC_COMPONENTS=no_os,stop */
 tm_status tm_mpi_start(tm_error *error);
 
 #endif
