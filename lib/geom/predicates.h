@@ -3,7 +3,7 @@
  * from subnormal numbers to the largest ones. Threads may call them at the same time.
  *
  * A rounded determinant decides when it is farther from 0 than its error can be; else
- * GMP's integers do (predicates.c). The relative part of the error bound is stage
+ * integers do (predicates_exact.c); nothing is allocated. The relative part of the error bound is stage
  * A of J. R. Shewchuk, Adaptive precision floating-point arithmetic and fast robust
  * geometric predicates, Discrete & Computational Geometry 18 (1997), section 4.
  * His bounds hold while nothing underflows. Here each bound has a second term for that:

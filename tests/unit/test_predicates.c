@@ -310,6 +310,25 @@ static void test_underflow(void **state)
     assert_int_equal(tm_orient3d(a, c, b, d), 1);
 }
 
+/* Coordinates that are nearly all as large as they can be in 54 to 70 bits: there the
+ * numbers of the processor end, and arrays of them begin. */
+static void test_ranges(void **state)
+{
+    (void)state;
+    double p[SPHERE][DIMENSIONS];
+    for (int n = 0; n < 4000; n++) {
+        const int more = 1 + n % 17;
+        for (size_t v = 0; v < SPHERE; v++)
+            for (size_t i = 0; i < DIMENSIONS; i++) {
+                const double large = 0x1p53 - 1 - random_below(3);
+                const double sign = random_below(2) == 0 ? 1 : -1;
+                p[v][i] = ldexp(sign * large, random_below(8) == 0 ? 0 : more);
+            }
+        check_points(p);
+    }
+    check_antisymmetry(p);
+}
+
 int main(void)
 {
     random_start();
@@ -321,6 +340,7 @@ int main(void)
         cmocka_unit_test(test_ulps_from_a_plane),
         cmocka_unit_test(test_random_bits),
         cmocka_unit_test(test_underflow),
+        cmocka_unit_test(test_ranges),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
