@@ -3,16 +3,17 @@
  * from subnormal numbers to the largest ones. Threads may call them at the same time.
  *
  * A rounded determinant decides when it is farther from 0 than its error can be; else
- * integers do (predicates_exact.c); nothing is allocated. The relative part of the error bound is stage
- * A of J. R. Shewchuk, Adaptive precision floating-point arithmetic and fast robust
- * geometric predicates, Discrete & Computational Geometry 18 (1997), section 4.
- * His bounds hold while nothing underflows. Here each bound has a second term for that:
- * a difference of doubles never underflows inexactly, and a product that does is wrong
- * by at most u = 2^-1075 more than its rounding error. Following these u through the
- * remaining products gives the second terms below; both use 2^-960 instead of u, which
- * also pays for rounding and underflow in the bound itself and is still far below what
- * coordinates above 1e-90 lead to. Overflow makes the bound infinite or NaN, which
- * decides nothing. */
+ * integers do (predicates_exact.c); nothing is allocated. The relative part of the error
+ * bound is stage A of J. R. Shewchuk, Adaptive precision floating-point arithmetic and
+ * fast robust geometric predicates, Discrete & Computational Geometry 18 (1997), section
+ * 4. His bounds hold while nothing underflows. Here each bound has a second term for
+ * that: a difference of doubles never underflows inexactly, and a product that does is
+ * wrong by at most u = 2^-1075 more than its rounding error. Following these u through
+ * the remaining products gives the second terms below; both use 2^-960 instead of u,
+ * which also pays for rounding and underflow in the bound itself and is still far below
+ * what coordinates above 1e-90 lead to. Overflow makes the bound infinite or NaN, which
+ * decides nothing.
+ */
 #ifndef TM_GEOM_PREDICATES_H
 #define TM_GEOM_PREDICATES_H
 
