@@ -100,6 +100,35 @@ END
     for_each_filter fails
 }
 
+@test "SIGKILL or SIGQUIT while it writes leaves nothing behind" {
+    case ${TM_BUILD:?} in */san*) skip "the sanitizers have a write() of their own" ;; esac
+    python3 -c 'import os; os.close(os.open(".", os.O_TMPFILE | os.O_WRONLY))' ||
+        skip "here are no files without a name"
+    cat >kill.c <<'END'
+#include <signal.h>
+#include <stdlib.h>
+#include <sys/types.h>
+#include <unistd.h>
+ssize_t write(int fd, const void *bytes, size_t count)
+{
+    (void)fd, (void)bytes;
+    raise(atoi(getenv("KILLS")));
+    return (ssize_t)count;
+}
+END
+    cc -shared -fPIC -o kill.so kill.c || skip "no such library can be made"
+    mkdir to
+    cp corner.tm to/old
+    for signal in 9 3; do
+        for name in new old; do
+            run -$((128 + signal)) env KILLS=$signal LD_PRELOAD=./kill.so \
+                prlimit --core=0 lepp-improve -q -o "to/$name" corner.tm
+            [ "$(ls to)" = old ]
+            cmp to/old corner.tm
+        done
+    done
+}
+
 # Runs a command that the permissions of folders are for, as they are not for root.
 without_privilege() {
     if [ "$(id -u)" -eq 0 ]; then

@@ -67,29 +67,98 @@ static char *follow_links(const char *name)
     return NULL;
 }
 
-/* Makes a file in the folder of file->target, with a short name, as that may be as long
- * as a name can be; -1 with errno where that fails. */
-static int make_temporary(output_file *file, const struct stat *old)
+/* The folder of file->target, with its slash, and `name`; NULL where memory is out. */
+static char *beside_target(const output_file *file, const char *name)
 {
     tm_text text = {0};
     const char *slash = strrchr(file->target, '/');
-    const size_t folder = slash ? (size_t)(slash + 1 - file->target) : 0;
-    tm_text_append(&text, file->target, folder);
-    tm_text_string(&text, "termesh.XXXXXX");
+    tm_text_append(&text, file->target, slash ? (size_t)(slash + 1 - file->target) : 0);
+    tm_text_string(&text, name);
+    if (!text.failed)
+        return text.byte;
+    tm_text_free(&text);
     errno = ENOMEM;
-    int fd = text.failed ? -1 : mkostemp(text.byte, O_CLOEXEC);
-    if (fd < 0) {
-        const int cause = errno;
-        tm_text_free(&text);
-        errno = cause;
+    return NULL;
+}
+
+/* A file without a name there, which can get one; -1 where there is no such thing. */
+static int make_unnamed(output_file *file)
+{
+    char *folder = beside_target(file, ".");
+    const int fd = folder && access("/proc/self/fd", X_OK) == 0
+                       ? open(folder, O_TMPFILE | O_WRONLY | O_CLOEXEC, S_IRUSR | S_IWUSR)
+                       : -1;
+    file->unnamed = fd >= 0;
+    free(folder);
+    return fd;
+}
+
+/* A file with a name as short as names can have to be; -1 with errno. */
+static int make_named(output_file *file)
+{
+    file->temporary = beside_target(file, "termesh.XXXXXX");
+    if (!file->temporary)
         return -1;
+    const int fd = mkostemp(file->temporary, O_CLOEXEC), cause = errno;
+    if (fd < 0) {
+        free(file->temporary);
+        file->temporary = NULL;
     }
-    file->temporary = text.byte;
+    errno = cause;
+    return fd;
+}
+
+/* Makes a file in the folder of file->target; -1 with errno where that fails. */
+static int make_temporary(output_file *file, const struct stat *old)
+{
+    int fd = make_unnamed(file);
+    if (fd < 0)
+        fd = make_named(file);
+    if (fd < 0)
+        return -1;
     const mode_t everyone = S_IRUSR | S_IWUSR | S_IRGRP | S_IWGRP | S_IROTH | S_IWOTH;
     mode_t mask = umask(0);
     umask(mask);
     fchmod(fd, old ? old->st_mode & everyone : everyone & ~mask);
     return fd;
+}
+
+/* Links a file without a name to one that no other has: file->temporary. */
+static bool link_beside(output_file *file, const char *open_file)
+{
+    enum { NAMES = 1000000 };
+    char name[32];
+    int linked = -1;
+    for (int i = 0; linked != 0 && i < NAMES; i++) {
+        snprintf(name, sizeof name, "termesh.%06d", (int)((getpid() + i) % NAMES));
+        free(file->temporary);
+        file->temporary = beside_target(file, name);
+        if (!file->temporary)
+            return false;
+        linked =
+            linkat(AT_FDCWD, open_file, AT_FDCWD, file->temporary, AT_SYMLINK_FOLLOW);
+        if (linked != 0 && errno != EEXIST)
+            break;
+    }
+    if (linked == 0)
+        return true;
+    free(file->temporary);
+    file->temporary = NULL;
+    return false;
+}
+
+/* Gives a whole file its name, in place of the one that has it; false with errno. */
+static bool give_name(output_file *file)
+{
+    if (file->unnamed) {
+        char open_file[64];
+        snprintf(open_file, sizeof open_file, "/proc/self/fd/%d", file->fd);
+        if (linkat(AT_FDCWD, open_file, AT_FDCWD, file->target, AT_SYMLINK_FOLLOW) == 0)
+            return true;
+        if (errno != EEXIST || !link_beside(file, open_file))
+            return false;
+    }
+    return !file->temporary || rename(file->temporary, file->target) == 0;
 }
 
 /* Whether errno says that no file can be made in the folder, by this user or at all. */
@@ -164,8 +233,11 @@ tm_status output_files_open(output_files *files, const char *name, int *fd,
 /* Forgets the files; a signal that waited takes its course. */
 static void release(output_files *files)
 {
-    for (size_t i = 0; i < files->count; i++)
+    for (size_t i = 0; i < files->count; i++) {
+        if (files->file[i].fd >= 0)
+            close(files->file[i].fd);
         free_file(&files->file[i]);
+    }
     free(files->file);
     const int held = (files->count > 0) + (files->folder != NULL);
     free(files->folder);
@@ -177,8 +249,6 @@ static void release(output_files *files)
 void output_files_abandon(output_files *files)
 {
     for (size_t i = 0; i < files->count; i++) {
-        if (files->file[i].fd >= 0)
-            close(files->file[i].fd);
         if (files->file[i].temporary)
             unlink(files->file[i].temporary);
         if (files->folder && files->file[i].target)
@@ -189,10 +259,13 @@ void output_files_abandon(output_files *files)
     release(files);
 }
 
-static tm_status close_all(output_files *files, tm_error *error)
+/* Those without a name stay open until they have one. */
+static tm_status close_named(output_files *files, tm_error *error)
 {
     tm_status status = TM_OK;
     for (size_t i = 0; i < files->count; i++) {
+        if (files->file[i].unnamed)
+            continue;
         if (close(files->file[i].fd) != 0 && status == TM_OK)
             status = fail_file(files->file[i].name, error);
         files->file[i].fd = -1;
@@ -202,12 +275,11 @@ static tm_status close_all(output_files *files, tm_error *error)
 
 tm_status output_files_finish(output_files *files, tm_error *error)
 {
-    tm_status status = close_all(files, error);
+    tm_status status = close_named(files, error);
     if (status == TM_OK && private_signals_came())
         status = tm_fail(error, TM_ERROR_SYSTEM, "interrupted");
     for (size_t i = 0; i < files->count && status == TM_OK; i++)
-        if (files->file[i].temporary &&
-            rename(files->file[i].temporary, files->file[i].target) != 0)
+        if (!give_name(&files->file[i]))
             status = fail_file(files->file[i].name, error);
     if (status == TM_OK)
         release(files);

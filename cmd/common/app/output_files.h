@@ -1,23 +1,26 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Files as the output of a filter: each is written in the same folder under another name
- * first, with the mode that the shell would give, and they get their names when all are
- * whole. Before that an error, or SIGINT, SIGTERM or SIGHUP, leaves none. A symbolic link
- * stays: what it leads to is written. Written directly is what is there already and is no
- * regular file, a device or a named pipe, what is open already (/dev/stdout), and a file
- * in a folder in which none can be made; these are not whole where the filter fails in
- * the middle. */
+/* Files as the output of a filter: each is written in the same folder without a name
+ * first, or under another one where the file system has no files without, with the mode
+ * that the shell would give, and they get their names when all are whole. Before that an
+ * error, or SIGINT, SIGTERM or SIGHUP, leaves none; without a name, nothing does. A
+ * symbolic link stays: what it leads to is written. Written directly is what is there
+ * already and is no regular file, a device or a named pipe, what is open already
+ * (/dev/stdout), and a file in a folder in which none can be made; these are not whole
+ * where the filter fails in the middle. */
 #ifndef CMD_COMMON_OUTPUT_FILES_H
 #define CMD_COMMON_OUTPUT_FILES_H
 
 #include "../../../lib/base/error.h"
 #include "../../../lib/text/text.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 typedef struct output_file {
     char *name;      /* as it was given */
     char *target;    /* where that leads to, through symbolic links; NULL: a device */
-    char *temporary; /* NULL: written directly */
+    char *temporary; /* its other name, or NULL */
+    bool unnamed;    /* else, and without a temporary, written directly */
     int fd;
 } output_file;
 
