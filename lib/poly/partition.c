@@ -6,7 +6,7 @@
 #include "correction.h"
 #include "item_sets.h"
 #include "shelling_star.h"
-#include "simple.h"
+#include "take_apart.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -21,86 +21,9 @@ typedef struct {
     const tm_poly_options *options;
     tm_poly_report *report;
     tm_error *error;
-    uint32_t *label; /* of each tetrahedron that is in no piece yet, or may change */
-    size_t pieces;
+    size_t pieces; /* have lower numbers */
     tm_shelling shelling;
 } repair;
-
-/* Gives all of a region to one piece, if that is a ball. */
-static tm_status try_whole(repair *r, const uint32_t *tet, size_t count, uint32_t id,
-                           bool *simple)
-{
-    uint32_t *piece = r->shelling.piece;
-    uint32_t *old = tm_new(count, sizeof *old);
-    if (!old)
-        return tm_fail_memory(r->error);
-    for (size_t k = 0; k < count; k++) {
-        old[k] = piece[tet[k]];
-        piece[tet[k]] = id;
-    }
-    tm_status status =
-        tm_tets_are_simple(r->mesh, piece, id, tet, count, simple, r->error);
-    for (size_t k = 0; k < count && !*simple; k++)
-        piece[tet[k]] = old[k];
-    free(old);
-    return status;
-}
-
-/* Whether a kept face is between two tetrahedra of the region. */
-static bool has_face_inside(const repair *r, const uint32_t *tet, size_t count)
-{
-    const uint32_t *piece = r->shelling.piece;
-    for (size_t k = 0; k < count; k++)
-        for (uint32_t i = 0; i < 4; i++) {
-            uint32_t across = tm_tet_across(r->mesh, tet[k], i);
-            if (r->mesh->neighbour[tet[k]][i] & TM_FACE_BIT && across != TM_NONE &&
-                piece[across / 4] >= piece[tet[0]] && piece[across / 4] != TM_NONE)
-                return true;
-        }
-    return false;
-}
-
-/* Takes one region apart. */
-static tm_status take_apart(repair *r, const uint32_t *tet, size_t count)
-{
-    const tm_poly_options *o = r->options;
-    uint32_t first = (uint32_t)r->pieces, region = r->label[tet[0]];
-    bool only_simple = !o->star && !o->no_swallow && o->max_tets == 0, simple = false;
-    for (size_t k = 0; k < count; k++) {
-        if (r->shelling.piece[tet[k]] != TM_NONE)
-            continue;
-        r->label[tet[k]] = TM_NONE;
-        if (!tm_shelling_begin(&r->shelling, (uint32_t)r->pieces++, tet[k]) ||
-            !tm_shelling_grow(&r->shelling, r->label, region))
-            return tm_fail_memory(r->error);
-    }
-    if (r->pieces == first + 1)
-        return TM_OK;
-    if (only_simple && !has_face_inside(r, tet, count)) {
-        tm_status status = try_whole(r, tet, count, first, &simple);
-        if (status != TM_OK)
-            return status;
-    }
-    if (simple)
-        r->pieces = first + 1;
-    r->report->taken_apart += !simple;
-    return TM_OK;
-}
-
-static tm_status take_all_apart(repair *r, size_t regions)
-{
-    tm_item_lists l = {0};
-    tm_progress_at at = {.what = "taking regions apart", .of = regions};
-    tm_status status = TM_OK;
-    if (!tm_item_lists_make(&l, r->label, r->mesh->slots, regions, NULL))
-        status = tm_fail_memory(r->error);
-    for (size_t k = 0; k < regions && status == TM_OK; k++) {
-        tm_progress_step(r->options->progress, &at, k);
-        status = take_apart(r, l.item + l.start[k], l.start[k + 1] - l.start[k]);
-    }
-    tm_item_lists_free(&l);
-    return status;
-}
 
 /* Lets piece p take up small ones beside it, each whole. size[q] is that of piece q, 0
  * where it has been taken up, and large where it must not be. */
@@ -201,10 +124,10 @@ static tm_status repair_regions(tm_partition *partition, const tm_tet_mesh *mesh
                 .options = options,
                 .report = report,
                 .error = error,
-                .label = partition->cell};
+                .pieces = mesh->slots};
     tm_status status = tm_shelling_start(&r.shelling, mesh, options, error);
     if (status == TM_OK)
-        status = take_all_apart(&r, report->regions);
+        status = tm_take_apart(&r.shelling, partition->cell, report, error);
     if (status == TM_OK && options->absorb)
         status = absorb(&r);
     if (status == TM_OK && options->star)
