@@ -18,6 +18,18 @@ TM_EXTERN_C_BEGIN
 void tm_parallel(unsigned threads, size_t chunks,
                  void (*work)(void *context, size_t chunk), void *context);
 
+/* How many chunks of `size` items there are, and where one that begins with item `from`
+ * ends. */
+static inline size_t tm_chunks(size_t items, size_t size)
+{
+    return items / size + (items % size != 0);
+}
+
+static inline size_t tm_chunk_end(size_t from, size_t size, size_t items)
+{
+    return items - from < size ? items : from + size;
+}
+
 TM_EXTERN_C_END
 
 #endif

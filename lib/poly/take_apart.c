@@ -101,7 +101,7 @@ static void take_chunk(void *context, size_t chunk)
     tm_shelling s;
     const uint32_t *start = w->list.start;
     const size_t from = CHUNK * chunk;
-    const size_t to = from + CHUNK < w->list.sets ? from + CHUNK : w->list.sets;
+    const size_t to = tm_chunk_end(from, CHUNK, w->list.sets);
     tell(w, from);
     tm_shelling_fork(&s, w->all);
     result->done = true;
@@ -115,7 +115,7 @@ static void take_chunk(void *context, size_t chunk)
 tm_status tm_take_apart(tm_shelling *s, const uint32_t *label, tm_poly_report *report,
                         tm_error *error)
 {
-    const size_t chunks = (report->regions + CHUNK - 1) / CHUNK;
+    const size_t chunks = tm_chunks(report->regions, CHUNK);
     const bool is_ordered = s->options->star == TM_STAR_CENTROID;
     work w = {.all = s,
               .label = label,
