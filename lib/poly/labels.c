@@ -115,7 +115,7 @@ static void find_outlets(void *context, size_t chunk)
     const forest *s = context;
     const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, s->mesh->slots);
     for (uint32_t t = (uint32_t)from; t < to; t++) {
-        uint32_t end[2], up = find_fan(s, t, end);
+        uint32_t end[2] = {TM_NONE, TM_NONE}, up = find_fan(s, t, end);
         if (up == t)
             up = outlet_of(s, end);
         s->up[t] = up == TM_NONE ? t : up;

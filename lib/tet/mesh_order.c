@@ -139,7 +139,7 @@ static bool find_order(sorting *s)
     bool done = s->placed && s->failed;
     if (done)
         tm_parallel(s->threads, chunks, place_tets, s);
-    done = done && tm_space_sort(s->placed, mesh->slots);
+    done = done && tm_space_sort(s->placed, mesh->slots, s->threads);
     if (done)
         tm_parallel(s->threads, chunks, sort_runs, s);
     for (size_t c = 0; c < chunks && done; c++)
