@@ -47,7 +47,7 @@ static void convert(filter *f, tm_stream *stream, tm_dual_options *o, tm_dual_re
     }
     tet_mesh_from_stream(f, stream, &mesh);
     filter_stage(f, "sorting");
-    if (tm_tet_mesh_sort(&mesh, NULL, &error) != TM_OK ||
+    if (tm_tet_mesh_sort(&mesh, NULL, f->threads, &error) != TM_OK ||
         tm_dual_make(&made, &mesh, o, r, &error) != TM_OK)
         filter_fail(f, &error);
     if (!has_markers) {

@@ -65,8 +65,8 @@ static void make_facets(filter *f, const poly_settings *o, const tm_tet_mesh *me
     filter_stage(f, "finding faces");
     tm_coplanar plane = {o->degrees, tm_facet_flatness(mesh), o->poly.radius,
                          o->poly.star == TM_STAR_CENTROID};
-    tm_status status =
-        tm_partition_facets(partition, mesh, &made[0], &made[1], &r->lost, &error);
+    tm_status status = tm_partition_facets(partition, mesh, &made[0], &made[1], &r->lost,
+                                           f->threads, &error);
     if (status == TM_OK && o->merge)
         status = tm_merge_coplanar(mesh, &plane, &made[0], &made[1], &r->joined, &error);
     if (status != TM_OK)
@@ -99,7 +99,7 @@ static void cut(filter *f, const poly_settings *o, tm_tet_mesh *mesh,
     if (!sorted)
         filter_fail_memory(f);
     filter_stage(f, "sorting");
-    if (tm_tet_mesh_sort(mesh, order, &error) != TM_OK)
+    if (tm_tet_mesh_sort(mesh, order, f->threads, &error) != TM_OK)
         filter_fail(f, &error);
     if (o->ignore_markers)
         tm_ignore_markers(mesh);

@@ -55,4 +55,16 @@ static inline void tm_set_unite_shared(uint32_t *parent, uint32_t a, uint32_t b)
     }
 }
 
+/* Makes the root of x its parent, when no sets are joined and no paths halved any more.
+ */
+static inline void tm_set_put_root_shared(uint32_t *parent, uint32_t x)
+{
+    uint32_t root = x, up = __atomic_load_n(&parent[x], __ATOMIC_RELAXED);
+    while (up != root) {
+        root = up;
+        up = __atomic_load_n(&parent[root], __ATOMIC_RELAXED);
+    }
+    __atomic_store_n(&parent[x], root, __ATOMIC_RELAXED);
+}
+
 #endif

@@ -28,6 +28,18 @@ static inline unsigned tm_threads_for(unsigned threads, size_t items, size_t lea
     return most < 1 ? 1 : most < threads ? (unsigned)most : threads;
 }
 
+/* How many chunks of `size` items there are, and where one that begins with item `from`
+ * ends. */
+static inline size_t tm_chunks(size_t items, size_t size)
+{
+    return items / size + (items % size != 0);
+}
+
+static inline size_t tm_chunk_end(size_t from, size_t size, size_t items)
+{
+    return items - from < size ? items : from + size;
+}
+
 TM_EXTERN_C_END
 
 #endif

@@ -5,6 +5,7 @@
 #ifndef TM_GEOM_PLACE_ORDER_H
 #define TM_GEOM_PLACE_ORDER_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -15,5 +16,10 @@ typedef struct tm_placed {
 
 /* O(count log count). */
 void tm_place_sort(tm_placed *placed, size_t count);
+
+/* rank[i] is how many of the points come before xyz[i] in that order. False where memory
+ * is out. O(count log count), by several threads. */
+bool tm_place_rank(const double (*xyz)[3], size_t count, unsigned threads,
+                   uint32_t *rank);
 
 #endif

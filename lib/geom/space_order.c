@@ -2,12 +2,14 @@
 #include "space_order.h"
 
 #include "../base/array.h"
+#include "../base/parallel.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { CELLS = 1024 };
+/* Cells of a side; so many points are a thread's work at a time. */
+enum { CELLS = 1024, CHUNK = 32768 };
 
 tm_space tm_space_around(const double (*xyz)[3], size_t count)
 {
@@ -44,30 +46,68 @@ uint32_t tm_space_position(const tm_space *space, const double p[3])
     return position;
 }
 
-/* Sorts by ten bits of the position from bit `from` on; equal ones stay in their order.
- */
-static void sort_by_digit(tm_curve_point *to, const tm_curve_point *point, size_t count,
-                          int from)
+/* One pass of the sort, by ten bits of the position from bit `from` on; equal ones stay
+ * in their order. */
+typedef struct {
+    const tm_curve_point *point;
+    tm_curve_point *to;
+    size_t count;
+    int from;
+    size_t (*begin)[CELLS]; /* [chunks]: where the next one of each digit goes */
+} digit_pass;
+
+static size_t digit_of(const digit_pass *s, size_t i)
 {
-    size_t begin[CELLS + 1] = {0};
-    for (size_t i = 0; i < count; i++)
-        begin[(point[i].position >> from & (CELLS - 1)) + 1]++;
-    for (size_t d = 0; d < CELLS; d++)
-        begin[d + 1] += begin[d];
-    for (size_t i = 0; i < count; i++)
-        to[begin[point[i].position >> from & (CELLS - 1)]++] = point[i];
+    return s->point[i].position >> s->from & (CELLS - 1);
 }
 
-bool tm_space_sort(tm_curve_point *point, size_t count)
+static void count_digits(void *context, size_t chunk)
 {
-    enum { DIGIT = 10 };
+    const digit_pass *s = context;
+    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, s->count);
+    memset(s->begin[chunk], 0, sizeof s->begin[chunk]);
+    for (size_t i = from; i < to; i++)
+        s->begin[chunk][digit_of(s, i)]++;
+}
+
+static void place_points(void *context, size_t chunk)
+{
+    const digit_pass *s = context;
+    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, s->count);
+    for (size_t i = from; i < to; i++)
+        s->to[s->begin[chunk][digit_of(s, i)]++] = s->point[i];
+}
+
+static void sort_by_digit(digit_pass *s, unsigned threads)
+{
+    const size_t chunks = tm_chunks(s->count, CHUNK);
+    size_t next = 0;
+    tm_parallel(threads, chunks, count_digits, s);
+    for (size_t d = 0; d < CELLS; d++)
+        for (size_t c = 0; c < chunks; c++) {
+            const size_t digits = s->begin[c][d];
+            s->begin[c][d] = next;
+            next += digits;
+        }
+    tm_parallel(threads, chunks, place_points, s);
+}
+
+bool tm_space_sort(tm_curve_point *point, size_t count, unsigned threads)
+{
+    enum { DIGIT = 10, DIGITS = 3 };
     tm_curve_point *other = tm_new(count, sizeof *other);
-    if (!other)
-        return false;
-    sort_by_digit(other, point, count, 0);
-    sort_by_digit(point, other, count, DIGIT);
-    sort_by_digit(other, point, count, 2 * DIGIT);
-    memcpy(point, other, count * sizeof *point);
+    digit_pass s = {.count = count};
+    s.begin = tm_new(tm_chunks(count, CHUNK), sizeof *s.begin);
+    const bool done = other && s.begin;
+    for (int d = 0; d < DIGITS && done; d++) {
+        s.point = d % 2 ? other : point;
+        s.to = d % 2 ? point : other;
+        s.from = d * DIGIT;
+        sort_by_digit(&s, threads);
+    }
+    if (done)
+        memcpy(point, other, count * sizeof *point);
     free(other);
-    return true;
+    free(s.begin);
+    return done;
 }

@@ -26,7 +26,7 @@ tm_space tm_space_around(const double (*xyz)[3], size_t count);
 uint32_t tm_space_position(const tm_space *space, const double p[3]);
 
 /* Sorts by position; what has the same stays in its order. False where memory is out.
- * O(count). */
-bool tm_space_sort(tm_curve_point *point, size_t count);
+ * O(count), by several threads. */
+bool tm_space_sort(tm_curve_point *point, size_t count, unsigned threads);
 
 #endif

@@ -3,6 +3,7 @@
 
 #include "../base/array.h"
 #include "../base/disjoint_sets.h"
+#include "../base/parallel.h"
 #include "../geom/vector.h"
 #include "../tet/operation/ball.h"
 
@@ -16,8 +17,12 @@ static const double border_price = 0.05;
 static const double enough_moves = 1e-3;
 enum { SWEEPS_MAX = 40 };
 
+/* So many tetrahedra are a thread's work at a time. */
+enum { CHUNK = 8192 };
+
 typedef struct {
     double volume, moment[3]; /* moment: volume times centroid */
+    double centre[3];         /* the centroid */
     size_t items;
 } cell;
 
@@ -45,8 +50,10 @@ typedef struct {
 static void add(cell *c, const double centre[4], int sign)
 {
     c->volume += sign * centre[3];
-    for (int x = 0; x < 3; x++)
+    for (int x = 0; x < 3; x++) {
         c->moment[x] += sign * centre[3] * centre[x];
+        c->centre[x] = c->moment[x] / c->volume;
+    }
     c->items += (size_t)sign;
 }
 
@@ -55,7 +62,7 @@ static double spread(const cell *c, const double centre[4], int sign)
 {
     double distance2 = 0, rest = c->volume + sign * centre[3];
     for (int x = 0; x < 3; x++) {
-        double to = centre[x] - c->moment[x] / c->volume;
+        double to = centre[x] - c->centre[x];
         distance2 += to * to;
     }
     return rest > 0 && c->volume > 0 ? centre[3] * c->volume / rest * distance2
@@ -228,14 +235,20 @@ tm_status tm_compact_label(const tm_compact_items *items, size_t cells, double s
     return done ? TM_OK : tm_fail_memory(error);
 }
 
+/* Tetrahedra as items. */
+typedef struct {
+    const tm_tet_mesh *mesh;
+    tm_compact_items items;
+} measuring;
+
 /* Tetrahedron t and what is beside it. */
-static void measure_tet(const tm_tet_mesh *mesh, uint32_t t,
-                        const tm_compact_items *items)
+static void measure_tet(const measuring *m, uint32_t t)
 {
+    const tm_tet_mesh *mesh = m->mesh;
     const uint32_t *n = mesh->tet[t];
     const double(*xyz)[3] = (const double(*)[3])mesh->xyz;
     const double *origin = xyz[mesh->tet[0][0]];
-    double *centre = items->centre[t];
+    double *centre = m->items.centre[t];
     for (int x = 0; x < 3; x++) {
         centre[x] = 0;
         for (int i = 0; i < 4; i++)
@@ -246,31 +259,39 @@ static void measure_tet(const tm_tet_mesh *mesh, uint32_t t,
         const uint32_t across = mesh->neighbour[t][i];
         const size_t k = 4 * (size_t)t + i;
         uint32_t face[3];
-        items->beside[k] = across & TM_FACE_BIT ? TM_NONE : across / 4;
-        items->area[k] = 0;
+        m->items.beside[k] = across & TM_FACE_BIT ? TM_NONE : across / 4;
+        m->items.area[k] = 0;
         if (across & TM_FACE_BIT)
             continue;
         tm_tet_face_below(mesh, t, i, face);
-        items->area[k] = tm_triangle_area(xyz[face[0]], xyz[face[1]], xyz[face[2]]);
+        m->items.area[k] = tm_triangle_area(xyz[face[0]], xyz[face[1]], xyz[face[2]]);
     }
+}
+
+static void measure_chunk(void *context, size_t chunk)
+{
+    const measuring *m = context;
+    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, m->mesh->slots);
+    for (size_t t = from; t < to; t++)
+        measure_tet(m, (uint32_t)t);
 }
 
 tm_status tm_poly_compact(const tm_tet_mesh *mesh, const tm_poly_options *options,
                           uint32_t *label, size_t *regions, tm_error *error)
 {
-    const tm_compact_items items = {.items = mesh->slots,
-                                    .centre = tm_new(mesh->slots, sizeof *items.centre),
-                                    .beside =
-                                        tm_new(4 * mesh->slots, sizeof *items.beside),
-                                    .area = tm_new(4 * mesh->slots, sizeof *items.area)};
-    const bool memory = items.centre && items.beside && items.area;
-    for (uint32_t t = 0; t < mesh->slots && memory; t++)
-        measure_tet(mesh, t, &items);
-    tm_status status = memory ? tm_compact_label(&items, options->cells, options->size,
+    measuring m = {mesh, {.items = mesh->slots}};
+    tm_compact_items *items = &m.items;
+    items->centre = tm_new(mesh->slots, sizeof *items->centre);
+    items->beside = tm_new(4 * mesh->slots, sizeof *items->beside);
+    items->area = tm_new(4 * mesh->slots, sizeof *items->area);
+    const bool memory = items->centre && items->beside && items->area;
+    if (memory)
+        tm_parallel(options->threads, tm_chunks(mesh->slots, CHUNK), measure_chunk, &m);
+    tm_status status = memory ? tm_compact_label(items, options->cells, options->size,
                                                  options->progress, label, regions, error)
                               : tm_fail_memory(error);
-    free(items.centre);
-    free(items.beside);
-    free(items.area);
+    free(items->centre);
+    free(items->beside);
+    free(items->area);
     return status;
 }

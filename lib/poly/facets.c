@@ -1,15 +1,25 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "facets.h"
 
+#include "../base/parallel.h"
 #include "../tet/operation/ball.h"
 
+#include <stdlib.h>
 #include <string.h>
 
-enum { CORNERS = 3 };
+/* So many tetrahedra are a thread's work at a time. */
+enum { CORNERS = 3, CHUNK = 8192 };
+
+/* The facets of a chunk of tetrahedra, in the order of their cells. */
+typedef struct {
+    size_t first, count, lost;
+} chunk_facets;
 
 typedef struct {
     const tm_partition *partition;
     const tm_tet_mesh *mesh;
+    tm_block *facet;
+    chunk_facets *of; /* [chunks] */
 } maker;
 
 /* Whether face i of t is a facet that its cell is the first of; *other is the second, or
@@ -31,30 +41,61 @@ static int32_t marker_of(const tm_tet_mesh *mesh, uint32_t t, uint32_t i)
     return n & TM_FACE_BIT ? mesh->face[n & ~TM_FACE_BIT].marker : 0;
 }
 
-static tm_status make_facets(const maker *m, tm_block *facet, size_t *lost,
-                             tm_error *error)
+static void count_facets(void *context, size_t chunk)
 {
+    const maker *m = context;
+    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, m->mesh->slots);
+    size_t count = 0, lost = 0;
     uint32_t other;
-    size_t count = 0, f = 0, ignored = 0;
-    for (size_t k = 0; k < m->mesh->slots; k++)
+    for (size_t k = from; k < to; k++)
         for (uint32_t i = 0; i < 4; i++)
-            count += is_facet(m, m->partition->order[k], i, &other, lost);
-    tm_status status = tm_block_allocate(facet, count, CORNERS * count, error);
-    for (size_t k = 0; k < m->mesh->slots && status == TM_OK; k++)
-        for (uint32_t i = 0; i < 4; i++) {
-            uint32_t t = m->partition->order[k], below[3];
-            if (!is_facet(m, t, i, &other, &ignored))
-                continue;
-            tm_tet_face_below(m->mesh, t, i, below);
-            facet->integer[2 * f] = m->partition->cell[t];
-            facet->integer[2 * f + 1] = other;
-            for (int c = 0; c < CORNERS; c++) /* seen from outside */
-                facet->item[CORNERS * f + (size_t)c] = below[CORNERS - 1 - c];
-            if (facet->markers)
-                facet->marker[f] = marker_of(m->mesh, t, i);
-            f++;
-            facet->start[f] = CORNERS * f;
-        }
+            count += is_facet(m, m->partition->order[k], i, &other, &lost);
+    m->of[chunk] = (chunk_facets){.count = count, .lost = lost};
+}
+
+static void write_facet(const maker *m, size_t f, uint32_t t, uint32_t i, uint32_t other)
+{
+    tm_block *facet = m->facet;
+    uint32_t below[CORNERS];
+    tm_tet_face_below(m->mesh, t, i, below);
+    facet->integer[2 * f] = m->partition->cell[t];
+    facet->integer[2 * f + 1] = other;
+    for (int c = 0; c < CORNERS; c++) /* seen from outside */
+        facet->item[CORNERS * f + (size_t)c] = below[CORNERS - 1 - c];
+    if (facet->markers)
+        facet->marker[f] = marker_of(m->mesh, t, i);
+    facet->start[f + 1] = CORNERS * (f + 1);
+}
+
+static void write_facets(void *context, size_t chunk)
+{
+    const maker *m = context;
+    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, m->mesh->slots);
+    size_t f = m->of[chunk].first, ignored = 0;
+    uint32_t other;
+    for (size_t k = from; k < to; k++)
+        for (uint32_t i = 0; i < 4; i++)
+            if (is_facet(m, m->partition->order[k], i, &other, &ignored))
+                write_facet(m, f++, m->partition->order[k], i, other);
+}
+
+static tm_status make_facets(maker *m, size_t *lost, unsigned threads, tm_error *error)
+{
+    const size_t chunks = tm_chunks(m->mesh->slots, CHUNK);
+    size_t count = 0;
+    m->of = calloc(chunks + 1, sizeof *m->of);
+    if (!m->of)
+        return tm_fail_memory(error);
+    tm_parallel(threads, chunks, count_facets, m);
+    for (size_t c = 0; c < chunks; c++) {
+        m->of[c].first = count;
+        count += m->of[c].count;
+        *lost += m->of[c].lost;
+    }
+    tm_status status = tm_block_allocate(m->facet, count, CORNERS * count, error);
+    if (status == TM_OK)
+        tm_parallel(threads, chunks, write_facets, m);
+    free(m->of);
     return status;
 }
 
@@ -91,12 +132,12 @@ void tm_cells_count_elements(tm_block *cell, const uint32_t *cell_of, size_t ele
 
 tm_status tm_partition_facets(const tm_partition *partition, const tm_tet_mesh *mesh,
                               tm_block *facet, tm_block *cell, size_t *lost,
-                              tm_error *error)
+                              unsigned threads, tm_error *error)
 {
-    maker m = {.partition = partition, .mesh = mesh};
+    maker m = {.partition = partition, .mesh = mesh, .facet = facet};
     *lost = 0;
     cell->attributes = 1 + mesh->regions;
-    tm_status status = make_facets(&m, facet, lost, error);
+    tm_status status = make_facets(&m, lost, threads, error);
     if (status == TM_OK)
         status = tm_cells_from_facets(facet, cell, partition->cells, error);
     if (status == TM_OK)

@@ -14,10 +14,11 @@ TM_EXTERN_C_BEGIN
  * counter-clockwise around the outward normal. With facet->markers each has that of the
  * face of .face. Cells have how many tetrahedra they are of, then the attributes of the
  * first one; their facets ascend. Faces that are kept but have one polyhedron on both
- * sides, as partitions without repair may have, are left out; *lost is how many. O(n). */
+ * sides, as partitions without repair may have, are left out; *lost is how many. O(n), by
+ * several threads. */
 tm_status tm_partition_facets(const tm_partition *partition, const tm_tet_mesh *mesh,
                               tm_block *facet, tm_block *cell, size_t *lost,
-                              tm_error *error);
+                              unsigned threads, tm_error *error);
 
 /* Fills the facets of the cells from those that the facets name. */
 tm_status tm_cells_from_facets(const tm_block *facet, tm_block *cell, size_t cells,

@@ -4,9 +4,12 @@
 #include "compact.h"
 
 #include "../base/array.h"
+#include "../base/disjoint_sets.h"
+#include "../base/parallel.h"
 #include "../geom/vector.h"
 #include "../tet/mesh_measure.h"
 #include "../tet/operation/ball.h"
+#include "item_sets.h"
 
 #include <stdlib.h>
 
@@ -17,15 +20,18 @@
  * beyond it a tetrahedron that has a longer edge; the one with the longest is the
  * *outlet* of the fan. Edges become longer along outlets, so fans are the nodes of a
  * forest; its trees are the regions. A root is a fan around a terminal edge.
+ *
+ * All of it is in one array: up[t] is a tetrahedron of its fan with a lower number, of
+ * the first one the outlet, or itself.
  */
+
+/* So many tetrahedra are a thread's work at a time. */
+enum { CHUNK = 8192 };
 
 typedef struct {
     const tm_tet_mesh *mesh;
     uint8_t *longest; /* [tetrahedra]: an edge, 0 … 5 */
-    uint32_t *fan;    /* [tetrahedra] */
-    uint32_t *outlet; /* [fans]: a tetrahedron */
-    size_t fans;
-    size_t room;
+    uint32_t *up;     /* [tetrahedra] */
 } forest;
 
 /* The nodes of the longest edge of t. */
@@ -36,107 +42,125 @@ static uint64_t longest_key(const forest *s, uint32_t t)
     return tm_edge_key(n[corner[0]], n[corner[1]]);
 }
 
-/* From tetrahedron t, which is in fan f around ab with that key, through the faces that
- * have ab and are opposite corner `behind` first. Returns what is across the fan's end
- * and sets its rank, or TM_NONE at a kept face or where the fan is closed. */
-static uint32_t walk_fan(forest *s, uint32_t t, uint32_t behind, uint64_t key, uint32_t f,
-                         tm_edge_rank *rank)
+/* From tetrahedron `first`, whose fan is around ab with that key, through the faces that
+ * have ab and are opposite corner `behind` first. Returns what is across the fan's end,
+ * TM_NONE at a kept face or where the fan is closed, or, with *lower, the first one of
+ * the fan with a lower number. */
+static uint32_t walk_fan(const forest *s, uint32_t first, uint32_t behind, uint64_t key,
+                         bool *lower)
 {
     const uint32_t corners = 0 + 1 + 2 + 3;
-    uint32_t a = (uint32_t)(key >> 32), b = (uint32_t)key;
-    for (uint32_t first = t;;) {
+    uint32_t a = (uint32_t)(key >> 32), b = (uint32_t)key, t = first;
+    for (;;) {
         uint32_t across = s->mesh->neighbour[t][behind];
         if (across & TM_FACE_BIT || across / 4 == first)
             return TM_NONE;
         t = across / 4;
-        if (s->fan[t] != f && longest_key(s, t) != key) {
-            tm_longest_edge(s->mesh, t, rank);
+        if (longest_key(s, t) != key)
             return t;
-        }
-        s->fan[t] = f;
+        *lower = t < first;
+        if (*lower)
+            return t;
         behind = corners - across % 4 - tm_tet_corner(s->mesh, t, a) -
                  tm_tet_corner(s->mesh, t, b);
     }
 }
 
-static bool find_fan(forest *s, uint32_t t)
+/* A tetrahedron of the fan of t with a lower number, or t and what is beyond both ends.
+ */
+static uint32_t find_fan(const forest *s, uint32_t t, uint32_t end[2])
 {
-    uint32_t f = (uint32_t)s->fans, end[2];
-    tm_edge_rank rank[2];
+    const uint64_t key = longest_key(s, t);
     const uint8_t *corner = tm_edge_corner[s->longest[t]];
-    uint32_t *outlet = tm_grow(s->outlet, &s->room, s->fans + 1, sizeof *outlet);
-    if (!outlet)
-        return false;
-    s->outlet = outlet;
-    s->fans++;
-    s->fan[t] = f;
+    for (int i = 0; i < 2; i++) {
+        bool lower = false;
+        end[i] = walk_fan(s, t, corner[2 + i], key, &lower);
+        if (lower)
+            return end[i];
+    }
+    return t;
+}
+
+/* Which of what is beyond the ends has the longest edge; TM_NONE: neither is there. */
+static uint32_t outlet_of(const forest *s, const uint32_t end[2])
+{
+    tm_edge_rank rank[2];
+    if (end[0] == TM_NONE || end[1] == TM_NONE)
+        return end[end[0] == TM_NONE];
     for (int i = 0; i < 2; i++)
-        end[i] = walk_fan(s, t, corner[2 + i], longest_key(s, t), f, &rank[i]);
-    outlet[f] = end[0];
-    if (end[0] == TM_NONE || (end[1] != TM_NONE && tm_edge_is_longer(&rank[1], &rank[0])))
-        outlet[f] = end[1];
-    return true;
+        tm_longest_edge(s->mesh, end[i], &rank[i]);
+    return end[tm_edge_is_longer(&rank[1], &rank[0])];
 }
 
-static bool find_fans(forest *s)
+static void find_longest(void *context, size_t chunk)
 {
+    const forest *s = context;
+    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, s->mesh->slots);
     tm_edge_rank rank;
-    s->longest = tm_new(s->mesh->slots, sizeof *s->longest);
-    if (!s->longest)
-        return false;
-    for (uint32_t t = 0; t < s->mesh->slots; t++) {
+    for (uint32_t t = (uint32_t)from; t < to; t++)
         s->longest[t] = (uint8_t)tm_longest_edge(s->mesh, t, &rank);
-        s->fan[t] = TM_NONE;
-    }
-    for (uint32_t t = 0; t < s->mesh->slots; t++)
-        if (s->fan[t] == TM_NONE && !find_fan(s, t))
-            return false;
-    return true;
 }
 
-/* The tree of each fan in place of its outlet. Trees that are known have ROOT_BIT. */
-static size_t find_trees(forest *s)
+static void find_fans(void *context, size_t chunk)
 {
-    const uint32_t root_bit = TM_FACE_BIT; /* fans are as few as tetrahedra */
-    size_t trees = 0;
-    for (uint32_t f = 0; f < s->fans; f++) {
-        uint32_t r = f, tree;
-        while (s->outlet[r] != TM_NONE && !(s->outlet[r] & root_bit))
-            r = s->fan[s->outlet[r]];
-        tree = s->outlet[r] == TM_NONE ? (uint32_t)trees++ | root_bit : s->outlet[r];
-        for (uint32_t g = f; s->outlet[g] != tree;) {
-            uint32_t next = s->outlet[g];
-            s->outlet[g] = tree;
-            if (next == TM_NONE)
-                break;
-            g = s->fan[next];
-        }
+    const forest *s = context;
+    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, s->mesh->slots);
+    uint32_t end[2];
+    for (uint32_t t = (uint32_t)from; t < to; t++)
+        s->up[t] = find_fan(s, t, end);
+}
+
+static void find_outlets(void *context, size_t chunk)
+{
+    const forest *s = context;
+    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, s->mesh->slots);
+    for (uint32_t t = (uint32_t)from; t < to; t++) {
+        uint32_t end[2] = {TM_NONE, TM_NONE}, up = find_fan(s, t, end);
+        if (up == t)
+            up = outlet_of(s, end);
+        s->up[t] = up == TM_NONE ? t : up;
     }
-    return trees;
+}
+
+static void shorten_ways(void *context, size_t chunk)
+{
+    const forest *s = context;
+    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, s->mesh->slots);
+    for (uint32_t t = (uint32_t)from; t < to; t++)
+        tm_set_root_shared(s->up, t);
+}
+
+static void find_roots(void *context, size_t chunk)
+{
+    const forest *s = context;
+    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, s->mesh->slots);
+    for (uint32_t t = (uint32_t)from; t < to; t++)
+        tm_set_put_root_shared(s->up, t);
+}
+
+static bool find_longest_edges(forest *s, const tm_poly_options *options)
+{
+    s->longest = tm_new(s->mesh->slots, sizeof *s->longest);
+    if (s->longest)
+        tm_parallel(options->threads, tm_chunks(s->mesh->slots, CHUNK), find_longest, s);
+    return s->longest;
 }
 
 static tm_status label_terminal(const tm_tet_mesh *mesh, const tm_poly_options *options,
                                 uint32_t *label, size_t *regions, tm_error *error)
 {
-    (void)options;
-    forest s = {.mesh = mesh, .fan = label};
-    bool done = find_fans(&s);
+    const size_t chunks = tm_chunks(mesh->slots, CHUNK);
+    forest s = {.mesh = mesh, .up = label};
+    const bool done = find_longest_edges(&s, options);
     if (done) {
-        *regions = find_trees(&s);
-        for (uint32_t t = 0; t < mesh->slots; t++)
-            label[t] = s.outlet[label[t]] & ~TM_FACE_BIT;
+        tm_parallel(options->threads, chunks, find_outlets, &s);
+        tm_parallel(options->threads, chunks, shorten_ways, &s);
+        tm_parallel(options->threads, chunks, find_roots, &s);
     }
     free(s.longest);
-    free(s.outlet);
-    return done ? TM_OK : tm_fail_memory(error);
-}
-
-static bool is_same_region(const tm_tet_mesh *mesh, uint32_t t, uint32_t u)
-{
-    for (size_t k = 0; k < mesh->regions; k++)
-        if (mesh->region[t * mesh->regions + k] != mesh->region[u * mesh->regions + k])
-            return false;
-    return true;
+    *regions = mesh->slots;
+    return done ? tm_number_sets(label, mesh->slots, regions, error)
+                : tm_fail_memory(error);
 }
 
 /* All fans around one edge are one region, as far as the mesh's regions allow. */
@@ -144,33 +168,31 @@ static tm_status label_longest_edge(const tm_tet_mesh *mesh,
                                     const tm_poly_options *options, uint32_t *label,
                                     size_t *regions, tm_error *error)
 {
-    (void)options;
-    forest s = {.mesh = mesh, .fan = label};
+    forest s = {.mesh = mesh, .up = label};
     tm_edge_map first = {0}; /* the first tetrahedron with this longest edge */
-    bool done = find_fans(&s) && tm_edge_map_reserve(&first, s.fans);
+    const bool done =
+        find_longest_edges(&s, options) && tm_edge_map_reserve(&first, mesh->slots);
+    if (done)
+        tm_parallel(options->threads, tm_chunks(mesh->slots, CHUNK), find_fans, &s);
     *regions = 0;
-    for (size_t f = 0; f < s.fans && done; f++)
-        s.outlet[f] = TM_NONE; /* from here on the label of the fan */
     for (uint32_t t = 0; t < mesh->slots && done; t++) {
-        uint32_t *name = &s.outlet[label[t]];
-        if (*name != TM_NONE)
+        if (label[t] != t) {
+            label[t] = label[label[t]]; /* that is named */
             continue;
+        }
         uint64_t key = longest_key(&s, t);
         uint32_t a = (uint32_t)(key >> 32), b = (uint32_t)key;
         uint32_t *other = tm_edge_map_get(&first, a, b);
-        if (other && is_same_region(mesh, *other, t)) {
-            *name = s.outlet[label[*other]];
+        if (other && tm_tet_same_region(mesh, *other, t)) {
+            label[t] = label[*other];
             continue;
         }
-        *name = (uint32_t)(*regions)++;
+        label[t] = (uint32_t)(*regions)++;
         if (!other)
             tm_edge_map_put(&first, a, b, t);
     }
-    for (uint32_t t = 0; t < mesh->slots && done; t++)
-        label[t] = s.outlet[label[t]];
     tm_edge_map_free(&first);
     free(s.longest);
-    free(s.outlet);
     return done ? TM_OK : tm_fail_memory(error);
 }
 

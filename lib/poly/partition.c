@@ -2,11 +2,12 @@
 #include "partition.h"
 
 #include "../base/array.h"
+#include "../base/parallel.h"
 #include "../geom/vector.h"
 #include "correction.h"
 #include "item_sets.h"
 #include "shelling_star.h"
-#include "simple.h"
+#include "take_apart.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -15,98 +16,24 @@
  * many, by a larger one as many as it had. */
 enum { SMALL = 8, ENOUGH = 4 * SMALL };
 
+/* So many nodes or tetrahedra are a thread's work at a time. */
+enum { CHUNK = 8192 };
+
 /* What the repair works with. */
 typedef struct {
     const tm_tet_mesh *mesh;
     const tm_poly_options *options;
     tm_poly_report *report;
     tm_error *error;
-    uint32_t *label; /* of each tetrahedron that is in no piece yet, or may change */
-    size_t pieces;
-    tm_shelling shelling;
+    size_t pieces; /* have lower numbers */
+    tm_shelling *shelling;
 } repair;
-
-/* Gives all of a region to one piece, if that is a ball. */
-static tm_status try_whole(repair *r, const uint32_t *tet, size_t count, uint32_t id,
-                           bool *simple)
-{
-    uint32_t *piece = r->shelling.piece;
-    uint32_t *old = tm_new(count, sizeof *old);
-    if (!old)
-        return tm_fail_memory(r->error);
-    for (size_t k = 0; k < count; k++) {
-        old[k] = piece[tet[k]];
-        piece[tet[k]] = id;
-    }
-    tm_status status =
-        tm_tets_are_simple(r->mesh, piece, id, tet, count, simple, r->error);
-    for (size_t k = 0; k < count && !*simple; k++)
-        piece[tet[k]] = old[k];
-    free(old);
-    return status;
-}
-
-/* Whether a kept face is between two tetrahedra of the region. */
-static bool has_face_inside(const repair *r, const uint32_t *tet, size_t count)
-{
-    const uint32_t *piece = r->shelling.piece;
-    for (size_t k = 0; k < count; k++)
-        for (uint32_t i = 0; i < 4; i++) {
-            uint32_t across = tm_tet_across(r->mesh, tet[k], i);
-            if (r->mesh->neighbour[tet[k]][i] & TM_FACE_BIT && across != TM_NONE &&
-                piece[across / 4] >= piece[tet[0]] && piece[across / 4] != TM_NONE)
-                return true;
-        }
-    return false;
-}
-
-/* Takes one region apart. */
-static tm_status take_apart(repair *r, const uint32_t *tet, size_t count)
-{
-    const tm_poly_options *o = r->options;
-    uint32_t first = (uint32_t)r->pieces, region = r->label[tet[0]];
-    bool only_simple = !o->star && !o->no_swallow && o->max_tets == 0, simple = false;
-    for (size_t k = 0; k < count; k++) {
-        if (r->shelling.piece[tet[k]] != TM_NONE)
-            continue;
-        r->label[tet[k]] = TM_NONE;
-        if (!tm_shelling_begin(&r->shelling, (uint32_t)r->pieces++, tet[k]) ||
-            !tm_shelling_grow(&r->shelling, r->label, region))
-            return tm_fail_memory(r->error);
-    }
-    if (r->pieces == first + 1)
-        return TM_OK;
-    if (only_simple && !has_face_inside(r, tet, count)) {
-        tm_status status = try_whole(r, tet, count, first, &simple);
-        if (status != TM_OK)
-            return status;
-    }
-    if (simple)
-        r->pieces = first + 1;
-    r->report->taken_apart += !simple;
-    return TM_OK;
-}
-
-static tm_status take_all_apart(repair *r, size_t regions)
-{
-    tm_item_lists l = {0};
-    tm_progress_at at = {.what = "taking regions apart", .of = regions};
-    tm_status status = TM_OK;
-    if (!tm_item_lists_make(&l, r->label, r->mesh->slots, regions, NULL))
-        status = tm_fail_memory(r->error);
-    for (size_t k = 0; k < regions && status == TM_OK; k++) {
-        tm_progress_step(r->options->progress, &at, k);
-        status = take_apart(r, l.item + l.start[k], l.start[k + 1] - l.start[k]);
-    }
-    tm_item_lists_free(&l);
-    return status;
-}
 
 /* Lets piece p take up small ones beside it, each whole. size[q] is that of piece q, 0
  * where it has been taken up, and large where it must not be. */
 static tm_status take_up(repair *r, const tm_item_lists *l, uint32_t p, uint32_t *size)
 {
-    tm_shelling *s = &r->shelling;
+    tm_shelling *s = r->shelling;
     uint32_t had = l->start[p + 1] - l->start[p];
     const size_t most = had > ENOUGH / 2 ? 2 * (size_t)had : ENOUGH;
     if (!tm_shelling_resume(s, p, l->item + l->start[p], had))
@@ -132,7 +59,7 @@ static tm_status take_up(repair *r, const tm_item_lists *l, uint32_t p, uint32_t
 static bool spare_even_ones(const repair *r, uint32_t *size)
 {
     const tm_tet_mesh *mesh = r->mesh;
-    const uint32_t *piece = r->shelling.piece;
+    const uint32_t *piece = r->shelling->piece;
     double *volume = calloc(r->pieces + 1, sizeof *volume), all = 0;
     const bool done = volume;
     for (size_t t = 0; t < mesh->slots && volume; t++) {
@@ -158,7 +85,7 @@ static tm_status absorb(repair *r)
     tm_progress_stage(r->options->progress, "absorbing");
     uint32_t *size = tm_new(r->pieces, sizeof *size);
     if (!size ||
-        !tm_item_lists_make(&l, r->shelling.piece, r->mesh->slots, r->pieces, NULL))
+        !tm_item_lists_make(&l, r->shelling->piece, r->mesh->slots, r->pieces, NULL))
         status = tm_fail_memory(r->error);
     for (size_t p = 0; p < r->pieces && status == TM_OK; p++)
         size[p] = l.start[p + 1] - l.start[p];
@@ -174,47 +101,30 @@ static tm_status absorb(repair *r)
     return status;
 }
 
-/* Counts pieces that are no stars: where no radius is given, only a flat tetrahedron can
- * be none. */
-static tm_status count_stars(repair *r)
-{
-    tm_shelling *s = &r->shelling;
-    tm_item_lists l = {0};
-    bool memory = tm_item_lists_make(&l, s->piece, r->mesh->slots, r->pieces, NULL);
-    for (uint32_t p = 0; p < l.sets && memory; p++) {
-        const size_t size = l.start[p + 1] - l.start[p];
-        if (size != 1 && r->options->star != TM_STAR_RADIUS)
-            continue;
-        memory = size == 0 || tm_shelling_resume(s, p, l.item + l.start[p], size);
-        if (memory && size > 0 && !tm_shelling_is_star(s, &memory))
-            r->report->not_star++;
-    }
-    tm_item_lists_free(&l);
-    return memory ? TM_OK : tm_fail_memory(r->error);
-}
-
-static tm_status repair_regions(tm_partition *partition, const tm_tet_mesh *mesh,
-                                const tm_poly_options *options, tm_poly_report *report,
-                                tm_error *error)
+/* Repairs the regions partition->cell, which become pieces. The shelling has these, too,
+ * and is to be freed also after an error. */
+static tm_status repair_regions(tm_partition *partition, tm_shelling *shelling,
+                                const tm_tet_mesh *mesh, const tm_poly_options *options,
+                                tm_poly_report *report, tm_error *error)
 {
     repair r = {.mesh = mesh,
                 .options = options,
                 .report = report,
                 .error = error,
-                .label = partition->cell};
-    tm_status status = tm_shelling_start(&r.shelling, mesh, options, error);
+                .pieces = mesh->slots,
+                .shelling = shelling};
+    tm_status status = tm_shelling_start(shelling, mesh, options, error);
     if (status == TM_OK)
-        status = take_all_apart(&r, report->regions);
+        status = tm_take_apart(shelling, partition->cell, report, error);
     if (status == TM_OK && options->absorb)
         status = absorb(&r);
-    if (status == TM_OK && options->star)
-        status = count_stars(&r);
-    if (status == TM_OK) {
-        memcpy(partition->cell, r.shelling.piece, mesh->slots * sizeof *partition->cell);
-        partition->cells = r.pieces;
-    }
-    tm_shelling_free(&r.shelling);
-    return status;
+    if (status != TM_OK)
+        return status;
+    free(partition->cell);
+    partition->cell = shelling->piece;
+    partition->cells = r.pieces;
+    shelling->piece = NULL;
+    return TM_OK;
 }
 
 void tm_ignore_markers(tm_tet_mesh *mesh)
@@ -241,24 +151,65 @@ void tm_partition_free(tm_partition *partition)
     *partition = (tm_partition){0};
 }
 
-static tm_status order_by_cell(tm_partition *partition, size_t tets, tm_error *error)
+/* What is counted in a chunk of cells. */
+typedef struct {
+    size_t single, not_star;
+    bool memory;
+} star_count;
+
+typedef struct {
+    tm_shelling
+        all; /* whose pieces are the cells; nothing but that where none is asked */
+    tm_item_lists list;
+    star_count *count; /* [chunks] */
+} star_work;
+
+/* Where no radius is given, only a flat tetrahedron can be no star. */
+static void count_chunk(void *context, size_t chunk)
 {
-    tm_item_lists l = {0};
-    bool done = tm_item_lists_make(&l, partition->cell, tets, partition->cells, NULL);
-    free(l.start);
-    partition->order = l.item;
-    return done ? TM_OK : tm_fail_memory(error);
+    const star_work *w = context;
+    const uint32_t *start = w->list.start;
+    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, w->list.sets);
+    star_count *count = &w->count[chunk];
+    tm_shelling s;
+    tm_shelling_fork(&s, &w->all);
+    count->memory = true;
+    for (size_t c = from; c < to && count->memory; c++) {
+        const size_t size = start[c + 1] - start[c];
+        count->single += size == 1;
+        if (!s.xyz || (size != 1 && s.options->star != TM_STAR_RADIUS))
+            continue;
+        count->memory =
+            tm_shelling_resume(&s, (uint32_t)c, w->list.item + start[c], size);
+        if (count->memory && !tm_shelling_is_star(&s, &count->memory))
+            count->not_star++;
+    }
+    tm_shelling_end(&s);
 }
 
-/* How many cells are of one tetrahedron. */
-static size_t count_single(const tm_partition *partition, size_t tets)
+/* Lists tetrahedra by their cells. With stars counts those that are of one tetrahedron,
+ * and what is none for all repair, of which there is the shelling. */
+static tm_status order_by_cell(tm_partition *partition, const tm_shelling *shelling,
+                               const tm_tet_mesh *mesh, const tm_poly_options *options,
+                               tm_poly_report *report, tm_error *error)
 {
-    const uint32_t *order = partition->order, *cell = partition->cell;
-    size_t count = 0;
-    for (size_t k = 0; k < tets; k++)
-        count += !(k > 0 && cell[order[k - 1]] == cell[order[k]]) &&
-                 !(k + 1 < tets && cell[order[k + 1]] == cell[order[k]]);
-    return count;
+    const size_t chunks = options->star ? tm_chunks(partition->cells, CHUNK) : 0;
+    star_work w = {.all = *shelling, .count = calloc(chunks + 1, sizeof *w.count)};
+    w.all.piece = partition->cell;
+    bool done = w.count && tm_item_lists_make(&w.list, partition->cell, mesh->slots,
+                                              partition->cells, NULL);
+    if (done)
+        tm_parallel(options->threads, chunks, count_chunk, &w);
+    for (size_t c = 0; c < chunks && done; c++) {
+        report->single += w.count[c].single;
+        report->not_star += w.count[c].not_star;
+        done = w.count[c].memory;
+    }
+    report->cells = partition->cells;
+    partition->order = w.list.item;
+    free(w.list.start);
+    free(w.count);
+    return done ? TM_OK : tm_fail_memory(error);
 }
 
 /* Takes the regions as they are given. */
@@ -273,27 +224,51 @@ static void take_regions(const tm_tet_mesh *mesh, const uint32_t *given, uint32_
     }
 }
 
+/* A mesh whose nodes are numbered otherwise. */
+typedef struct {
+    const tm_tet_mesh *mesh;
+    const uint32_t *rank;
+    tm_tet_mesh ranked;
+} renumbering;
+
+static void renumber_tets(void *context, size_t chunk)
+{
+    const renumbering *r = context;
+    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, r->mesh->slots);
+    for (size_t t = from; t < to; t++)
+        for (int i = 0; i < 4; i++)
+            r->ranked.tet[t][i] = r->rank[r->mesh->tet[t][i]];
+}
+
+static void renumber_nodes(void *context, size_t chunk)
+{
+    const renumbering *r = context;
+    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, r->mesh->nodes);
+    for (size_t v = from; v < to; v++)
+        memcpy(r->ranked.xyz[r->rank[v]], r->mesh->xyz[v], sizeof *r->ranked.xyz);
+}
+
 /* Labels tetrahedra by their regions. Ties are told by the numbers of nodes: so that they
  * do not depend on how the mesh was numbered, nodes are numbered by their places here. */
 static tm_status find_regions(const tm_tet_mesh *mesh, const tm_poly_options *options,
                               uint32_t *label, size_t *regions, tm_error *error)
 {
-    tm_tet_mesh ranked = *mesh;
     uint32_t *rank = tm_new(mesh->nodes, sizeof *rank);
-    ranked.xyz = tm_new(mesh->nodes, sizeof *ranked.xyz);
-    ranked.tet = tm_new(mesh->slots, sizeof *ranked.tet);
-    bool done = rank && ranked.xyz && ranked.tet && tm_tet_mesh_rank_nodes(mesh, rank);
-    for (size_t v = 0; v < mesh->nodes && done; v++)
-        memcpy(ranked.xyz[rank[v]], mesh->xyz[v], sizeof *ranked.xyz);
-    for (size_t t = 0; t < mesh->slots && done; t++)
-        for (int i = 0; i < 4; i++)
-            ranked.tet[t][i] = rank[mesh->tet[t][i]];
-    tm_status status =
-        done ? tm_poly_modes[options->mode].label(&ranked, options, label, regions, error)
-             : tm_fail_memory(error);
+    renumbering r = {.mesh = mesh, .rank = rank, .ranked = *mesh};
+    r.ranked.xyz = tm_new(mesh->nodes, sizeof *r.ranked.xyz);
+    r.ranked.tet = tm_new(mesh->slots, sizeof *r.ranked.tet);
+    const bool done = rank && r.ranked.xyz && r.ranked.tet &&
+                      tm_tet_mesh_rank_nodes(mesh, rank, options->threads);
+    if (done) {
+        tm_parallel(options->threads, tm_chunks(mesh->nodes, CHUNK), renumber_nodes, &r);
+        tm_parallel(options->threads, tm_chunks(mesh->slots, CHUNK), renumber_tets, &r);
+    }
+    tm_status status = done ? tm_poly_modes[options->mode].label(&r.ranked, options,
+                                                                 label, regions, error)
+                            : tm_fail_memory(error);
     free(rank);
-    free(ranked.xyz);
-    free(ranked.tet);
+    free(r.ranked.xyz);
+    free(r.ranked.tet);
     return status;
 }
 
@@ -307,13 +282,14 @@ tm_status tm_partition_make(tm_partition *partition, const tm_tet_mesh *mesh,
         return tm_fail_memory(error);
     tm_progress_stage(options->progress, "joining tetrahedra");
     tm_status status = TM_OK;
+    tm_shelling shelling = {0};
     if (options->given)
         take_regions(mesh, options->given, partition->cell, &report->regions);
     else
         status = find_regions(mesh, options, partition->cell, &report->regions, error);
     partition->cells = report->regions;
     if (status == TM_OK && options->repair)
-        status = repair_regions(partition, mesh, options, report, error);
+        status = repair_regions(partition, &shelling, mesh, options, report, error);
     if (status == TM_OK)
         status = tm_number_sets(partition->cell, mesh->slots, &partition->cells, error);
     if (status == TM_OK && options->star == TM_STAR_CENTROID) {
@@ -323,9 +299,7 @@ tm_status tm_partition_make(tm_partition *partition, const tm_tet_mesh *mesh,
                 tm_number_sets(partition->cell, mesh->slots, &partition->cells, error);
     }
     if (status == TM_OK)
-        status = order_by_cell(partition, mesh->slots, error);
-    report->cells = partition->cells;
-    if (status == TM_OK && options->star)
-        report->single = count_single(partition, mesh->slots);
+        status = order_by_cell(partition, &shelling, mesh, options, report, error);
+    tm_shelling_free(&shelling);
     return status;
 }

@@ -52,6 +52,7 @@ typedef struct tm_poly_options {
     bool absorb;     /* cells of a few tetrahedra join one beside them */
     bool no_swallow; /* no node inside of a polyhedron */
     size_t max_tets; /* in one polyhedron; 0: any number */
+    unsigned threads;
     const tm_progress *progress;
 } tm_poly_options;
 

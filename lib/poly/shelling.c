@@ -2,22 +2,37 @@
 #include "shelling_star.h"
 
 #include "../base/array.h"
+#include "../base/hash.h"
 #include "../tet/operation/ball.h"
 
 #include <stdlib.h>
 #include <string.h>
 
+void tm_shelling_fork(tm_shelling *other, const tm_shelling *s)
+{
+    *other = (tm_shelling){.mesh = s->mesh,
+                           .options = s->options,
+                           .xyz = s->xyz,
+                           .piece = s->piece,
+                           .centroid = s->centroid};
+}
+
+void tm_shelling_end(tm_shelling *other)
+{
+    free(other->has);
+    free(other->member);
+    free(other->queue);
+    free(other->plane);
+    tm_star_free(&other->star);
+    *other = (tm_shelling){0};
+}
+
 void tm_shelling_free(tm_shelling *s)
 {
     free(s->piece);
-    free(s->node_piece);
-    free(s->member);
-    free(s->queue);
-    free(s->plane);
     free(s->xyz);
     free(s->centroid);
-    tm_star_free(&s->star);
-    *s = (tm_shelling){0};
+    tm_shelling_end(s);
 }
 
 tm_status tm_shelling_start(tm_shelling *s, const tm_tet_mesh *mesh,
@@ -25,16 +40,56 @@ tm_status tm_shelling_start(tm_shelling *s, const tm_tet_mesh *mesh,
 {
     *s = (tm_shelling){.mesh = mesh, .options = options};
     s->piece = tm_new(mesh->slots, sizeof *s->piece);
-    s->node_piece = tm_new(mesh->nodes, sizeof *s->node_piece);
     const bool centred = options->star == TM_STAR_CENTROID;
     s->centroid = calloc(centred ? mesh->slots + 1 : 1, sizeof *s->centroid);
-    if (!s->piece || !s->node_piece || !s->centroid || !tm_shelling_scale(s))
+    if (!s->piece || !s->centroid || !tm_shelling_scale(s))
         return tm_fail_memory(error);
     for (size_t t = 0; t < mesh->slots; t++)
         s->piece[t] = TM_NONE;
-    for (size_t v = 0; v < mesh->nodes; v++)
-        s->node_piece[v] = TM_NONE;
     return TM_OK;
+}
+
+/* The slot of a node, or a free one if the piece has not got it. */
+static tm_shelling_node *slot_of(const tm_shelling *s, uint32_t v)
+{
+    const size_t mask = s->has_room - 1;
+    size_t k = tm_hash(0, v) & mask;
+    while (s->has[k].turn == s->turn && s->has[k].node != v)
+        k = (k + 1) & mask;
+    return &s->has[k];
+}
+
+static bool has_node(const tm_shelling *s, uint32_t v)
+{
+    return slot_of(s, v)->turn == s->turn;
+}
+
+static void add_node(tm_shelling *s, uint32_t v)
+{
+    tm_shelling_node *slot = slot_of(s, v);
+    s->used += slot->turn != s->turn;
+    *slot = (tm_shelling_node){v, s->turn};
+}
+
+/* Room for four more nodes: at most half of the slots are used. */
+static bool reserve_nodes(tm_shelling *s)
+{
+    enum { LEAST = 64 };
+    const tm_shelling old = *s;
+    if (2 * (s->used + 4) <= s->has_room)
+        return true;
+    const size_t room = s->has_room ? 2 * s->has_room : LEAST;
+    tm_shelling_node *has = calloc(room, sizeof *has);
+    if (!has)
+        return false;
+    s->has = has;
+    s->has_room = room;
+    s->used = 0;
+    for (size_t k = 0; k < old.has_room; k++)
+        if (old.has[k].turn == s->turn && old.has[k].node != TM_NONE)
+            add_node(s, old.has[k].node);
+    free(old.has);
+    return true;
 }
 
 static bool push_neighbours(tm_shelling *s, uint32_t t)
@@ -45,7 +100,7 @@ static bool push_neighbours(tm_shelling *s, uint32_t t)
     s->queue = queue;
     for (int i = 0; i < 4; i++) {
         uint32_t across = s->mesh->neighbour[t][i];
-        if (!(across & TM_FACE_BIT) && s->piece[across / 4] != s->id)
+        if (!(across & TM_FACE_BIT) && tm_piece_of(s->piece, across / 4) != s->id)
             queue[s->queued++] = across / 4;
     }
     return true;
@@ -54,13 +109,13 @@ static bool push_neighbours(tm_shelling *s, uint32_t t)
 static bool add(tm_shelling *s, uint32_t t)
 {
     uint32_t *member = tm_grow(s->member, &s->member_room, s->size + 1, sizeof *member);
-    if (!member)
+    s->member = member ? member : s->member;
+    if (!member || !reserve_nodes(s))
         return false;
-    s->member = member;
     member[s->size++] = t;
-    s->piece[t] = s->id;
+    tm_set_piece(s->piece, t, s->id);
     for (int i = 0; i < 4; i++)
-        s->node_piece[s->mesh->tet[t][i]] = s->id;
+        add_node(s, s->mesh->tet[t][i]);
     if (s->options->star)
         tm_shelling_measure(s, t);
     return push_neighbours(s, t);
@@ -69,7 +124,8 @@ static bool add(tm_shelling *s, uint32_t t)
 static void begin(tm_shelling *s, uint32_t id, uint32_t t)
 {
     s->id = id;
-    s->size = s->queued = 0;
+    s->size = s->queued = s->used = 0;
+    s->turn++;
     s->depth = -1; /* no centre */
     memcpy(s->origin, s->xyz[s->mesh->tet[t][0]], sizeof s->origin);
     for (int x = 0; x < 3; x++) {
@@ -110,7 +166,7 @@ static bool has_edge(tm_shelling *s, uint32_t t, unsigned i, unsigned j, bool *m
         return true;
     }
     for (size_t k = 0; k < s->star.size; k++)
-        if (s->piece[s->star.tet[k]] == s->id)
+        if (tm_piece_of(s->piece, s->star.tet[k]) == s->id)
             return true;
     return false;
 }
@@ -124,14 +180,14 @@ static bool meets_in_disc(tm_shelling *s, uint32_t t, bool *memory)
         bool is_constrained = across & TM_FACE_BIT;
         if (is_constrained)
             across = tm_tet_across(s->mesh, t, i);
-        bool is_in = across != TM_NONE && s->piece[across / 4] == s->id;
+        bool is_in = across != TM_NONE && tm_piece_of(s->piece, across / 4) == s->id;
         if (is_in && is_constrained)
             return false; /* the face would be inside */
         if (is_in)
             shared[shares++] = i;
     }
     if (shares == 1)
-        return s->node_piece[s->mesh->tet[t][shared[0]]] != s->id;
+        return !has_node(s, s->mesh->tet[t][shared[0]]);
     if (shares == 2)
         return !has_edge(s, t, shared[0], shared[1], memory);
     return shares == 3 && !s->options->no_swallow;
@@ -149,32 +205,34 @@ static size_t most_tets(const tm_shelling *s)
     return s->options->max_tets ? s->options->max_tets : SIZE_MAX;
 }
 
-bool tm_shelling_grow(tm_shelling *s, uint32_t *label, uint32_t name)
+bool tm_shelling_grow(tm_shelling *s, const uint32_t *label, uint32_t name)
 {
     bool memory = true;
     for (size_t next = 0; next < s->queued && s->size < most_tets(s); next++) {
         uint32_t t = s->queue[next];
-        if (label[t] != name || s->piece[t] == s->id || !fits(s, t, &memory)) {
+        if (label[t] != name || tm_piece_of(s->piece, t) != TM_NONE ||
+            !fits(s, t, &memory)) {
             if (!memory)
                 return false;
             continue;
         }
-        label[t] = TM_NONE;
         if (!add(s, t))
             return false;
     }
     return true;
 }
 
-/* Takes the last tetrahedra out again, down to the piece as it was. */
+/* Takes the last tetrahedra out again, down to the piece as it was, and the nodes that
+ * came with them: their slots are no node's then. */
 static void undo(tm_shelling *s, const tm_shelling *was, uint32_t old,
-                 uint32_t stamp[TM_SHELLING_ADD][4])
+                 bool fresh[TM_SHELLING_ADD][4])
 {
     while (s->size > was->size) {
         uint32_t t = s->member[--s->size];
-        s->piece[t] = old;
-        for (int i = 3; i >= 0; i--)
-            s->node_piece[s->mesh->tet[t][i]] = stamp[s->size - was->size][i];
+        tm_set_piece(s->piece, t, old);
+        for (int i = 0; i < 4; i++)
+            if (fresh[s->size - was->size][i])
+                slot_of(s, s->mesh->tet[t][i])->node = TM_NONE;
     }
     s->queued = was->queued;
     s->depth = was->depth;
@@ -189,8 +247,8 @@ static void undo(tm_shelling *s, const tm_shelling *was, uint32_t old,
 bool tm_shelling_add(tm_shelling *s, const uint32_t *tet, size_t count, bool *taken)
 {
     tm_shelling was = *s;
-    uint32_t stamp[TM_SHELLING_ADD][4], old = s->piece[tet[0]];
-    bool memory = true, any = true;
+    const uint32_t old = s->piece[tet[0]];
+    bool fresh[TM_SHELLING_ADD][4], memory = true, any = true;
     *taken = false;
     if (s->size + count > most_tets(s))
         return true;
@@ -200,7 +258,7 @@ bool tm_shelling_add(tm_shelling *s, const uint32_t *tet, size_t count, bool *ta
             if (s->piece[tet[k]] == s->id || !fits(s, tet[k], &memory))
                 continue;
             for (int i = 0; i < 4; i++)
-                stamp[s->size - was.size][i] = s->node_piece[s->mesh->tet[tet[k]][i]];
+                fresh[s->size - was.size][i] = !has_node(s, s->mesh->tet[tet[k]][i]);
             if (!add(s, tet[k]))
                 return false;
             any = true;
@@ -208,6 +266,6 @@ bool tm_shelling_add(tm_shelling *s, const uint32_t *tet, size_t count, bool *ta
     }
     *taken = s->size == was.size + count;
     if (!*taken)
-        undo(s, &was, old, stamp);
+        undo(s, &was, old, fresh);
     return memory;
 }

@@ -66,7 +66,8 @@ static bool plane_of(const tm_shelling *s, uint32_t t, uint32_t i, double plane[
 static bool is_outer(const tm_shelling *s, uint32_t t, uint32_t i, uint32_t added)
 {
     uint32_t across = s->mesh->neighbour[t][i];
-    return across & TM_FACE_BIT || (s->piece[across / 4] != s->id && across / 4 != added);
+    return across & TM_FACE_BIT ||
+           (tm_piece_of(s->piece, across / 4) != s->id && across / 4 != added);
 }
 
 /* Adds the volume of t, and that times its centroid from the origin; scaled. */
@@ -203,7 +204,7 @@ static bool to_cell_across(const tm_shelling *s, uint32_t t, uint32_t i,
     const uint32_t across = tm_tet_across(s->mesh, t, i);
     if (across == TM_NONE)
         return false;
-    const uint32_t piece = s->piece[across / 4];
+    const uint32_t piece = tm_piece_of(s->piece, across / 4);
     double moment[4] = {0};
     if (piece == TM_NONE)
         add_moment(s, across / 4, moment);

@@ -4,6 +4,7 @@
 #include "../base/array.h"
 #include "../base/disjoint_sets.h"
 #include "../tet/operation/ball.h"
+#include "shelling.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -37,7 +38,7 @@ static bool collect(boundary *b, const tm_tet_mesh *mesh, const uint32_t *piece,
     for (size_t k = 0; k < count; k++)
         for (uint32_t i = 0; i < 4; i++) {
             uint32_t across = mesh->neighbour[tet[k]][i];
-            if (across & TM_FACE_BIT || piece[across / 4] != id)
+            if (across & TM_FACE_BIT || tm_piece_of(piece, across / 4) != id)
                 tm_tet_face_below(mesh, tet[k], i, b->face[b->faces++]);
         }
     for (uint32_t x = 0; x < 4 * b->faces; x++)

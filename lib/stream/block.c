@@ -96,28 +96,32 @@ bool tm_block_resize(tm_block *block, size_t rows)
     return done;
 }
 
-/* memset() that takes the NULL of an array that a kind does not have. */
-static void zero(void *array, size_t size)
+/* Zeros for count × width items; NULL for width 0. */
+static void *zeros(size_t count, size_t width, size_t size, bool *done)
 {
-    if (array)
-        memset(array, 0, size);
+    if (width == 0)
+        return NULL;
+    void *made = count <= PTRDIFF_MAX / size / width
+                     ? calloc(count + (count == 0), width * size)
+                     : NULL;
+    *done &= made != NULL;
+    return made;
 }
 
 tm_status tm_block_allocate(tm_block *block, size_t count, size_t items, tm_error *error)
 {
     const tm_block_shape *shape = &shapes[block->kind];
+    bool done = true;
     tm_block_clear(block);
-    if (!tm_block_resize(block, count))
-        return tm_fail_memory(error);
-    if (shape->list && !(block->item = tm_new(items, sizeof *block->item)))
+    block->real = zeros(count, shape->reals, sizeof *block->real, &done);
+    block->integer = zeros(count, shape->integers, sizeof *block->integer, &done);
+    block->start = zeros(count + 1, shape->list, sizeof *block->start, &done);
+    block->item = zeros(items, shape->list, sizeof *block->item, &done);
+    block->attribute = zeros(count, block->attributes, sizeof *block->attribute, &done);
+    block->marker = zeros(count, block->markers, sizeof *block->marker, &done);
+    if (!done)
         return tm_fail_memory(error);
     block->count = count;
-    zero(block->real, count * shape->reals * sizeof *block->real);
-    zero(block->integer, count * shape->integers * sizeof *block->integer);
-    zero(block->start, (count + 1) * sizeof *block->start);
-    zero(block->item, items * sizeof *block->item);
-    zero(block->attribute, count * block->attributes * sizeof *block->attribute);
-    zero(block->marker, count * sizeof *block->marker);
     return TM_OK;
 }
 

@@ -65,7 +65,7 @@ static bool sort_triangles(boxes *b, size_t nodes)
             middle[x] = of.low[x] / 2 + of.high[x] / 2;
         b->order[t] = (tm_curve_point){tm_space_position(&space, middle), (uint32_t)t};
     }
-    return tm_space_sort(b->order, b->triangles);
+    return tm_space_sort(b->order, b->triangles, 1);
 }
 
 static void make_level(boxes *b, int level, const box *below, size_t count, size_t each)

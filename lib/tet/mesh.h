@@ -157,13 +157,14 @@ tm_status tm_tet_mesh_copy(tm_tet_mesh *to, const tm_tet_mesh *from, tm_error *e
 /* Puts the tetrahedra of a mesh without dead slots in the order of a space-filling curve,
  * and their corners in that of their places, so that what is near comes near and nothing
  * depends on how the mesh was numbered, where no two nodes are at one place. order[k] is
- * which tetrahedron the k-th was; may be NULL. O(n log n). The mesh cannot be given back
- * after an error, only freed. */
-tm_status tm_tet_mesh_sort(tm_tet_mesh *mesh, uint32_t *order, tm_error *error);
+ * which tetrahedron the k-th was; may be NULL. O(n log n), by several threads. The mesh
+ * cannot be given back after an error, only freed. */
+tm_status tm_tet_mesh_sort(tm_tet_mesh *mesh, uint32_t *order, unsigned threads,
+                           tm_error *error);
 
 /* rank[v] is how many nodes come before node v by x, y and z; at one place by their
- * numbers. False where memory is out. O(n log n). */
-bool tm_tet_mesh_rank_nodes(const tm_tet_mesh *mesh, uint32_t *rank);
+ * numbers. False where memory is out. O(n log n), by several threads. */
+bool tm_tet_mesh_rank_nodes(const tm_tet_mesh *mesh, uint32_t *rank, unsigned threads);
 
 /* Verifies every invariant that this header states. TM_ERROR_INTERNAL with the first
  * that does not hold. O(n log n), for tests and self-checks. */

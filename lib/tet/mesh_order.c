@@ -3,25 +3,19 @@
 #include "mesh.h"
 
 #include "../base/array.h"
+#include "../base/parallel.h"
 #include "../geom/place_order.h"
 #include "../geom/space_order.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-bool tm_tet_mesh_rank_nodes(const tm_tet_mesh *mesh, uint32_t *rank)
+/* So many tetrahedra are a thread's work at a time. */
+enum { CHUNK = 8192 };
+
+bool tm_tet_mesh_rank_nodes(const tm_tet_mesh *mesh, uint32_t *rank, unsigned threads)
 {
-    tm_placed *placed = tm_new(mesh->nodes, sizeof *placed);
-    for (uint32_t v = 0; v < mesh->nodes && placed; v++) {
-        memcpy(placed[v].xyz, mesh->xyz[v], sizeof placed[v].xyz);
-        placed[v].item = v;
-    }
-    if (placed)
-        tm_place_sort(placed, mesh->nodes);
-    for (uint32_t k = 0; k < mesh->nodes && placed; k++)
-        rank[placed[k].item] = k;
-    free(placed);
-    return placed;
+    return tm_place_rank((const double(*)[3])mesh->xyz, mesh->nodes, threads, rank);
 }
 
 /* The even permutation of the corners that sorts them by rank, or all but the last two.
@@ -46,10 +40,17 @@ static void sort_corners(const uint32_t rank[4], uint8_t corner[4])
 
 /* Where what is comes from, and where what was goes to. */
 typedef struct {
-    uint32_t *rank;       /* [nodes] */
-    uint8_t (*corner)[4]; /* [slots]: by the old tetrahedron, its corners in order */
-    uint32_t *order;      /* [slots]: the old tetrahedron */
-    uint32_t (*half)[4];  /* [slots]: by the old tetrahedron, its half faces */
+    tm_tet_mesh *mesh;
+    unsigned threads;
+    uint32_t *rank;         /* [nodes] */
+    uint8_t (*corner)[4];   /* [slots]: by the old tetrahedron, its corners in order */
+    uint32_t *order;        /* [slots]: the old tetrahedron */
+    uint32_t (*half)[4];    /* [slots]: by the old tetrahedron, its half faces */
+    tm_space space;         /* of the curve */
+    tm_curve_point *placed; /* [slots]: old tetrahedra along it */
+    bool *failed;           /* [chunks]: memory was out */
+    uint32_t (*tet)[4];     /* [slots] */
+    double *region;         /* [slots][regions] */
 } sorting;
 
 typedef struct {
@@ -66,15 +67,14 @@ static int compare_ranks(const void *a, const void *b)
 }
 
 /* Sorts tetrahedra at one position of the curve. */
-static bool sort_run(const sorting *s, const tm_tet_mesh *mesh, tm_curve_point *placed,
-                     size_t count)
+static bool sort_run(const sorting *s, tm_curve_point *placed, size_t count)
 {
     ranked_tet *run = tm_new(count, sizeof *run);
     for (size_t k = 0; k < count && run; k++) {
         uint32_t t = placed[k].item;
         run[k].item = t;
         for (int i = 0; i < 4; i++)
-            run[k].rank[i] = s->rank[mesh->tet[t][s->corner[t][i]]];
+            run[k].rank[i] = s->rank[s->mesh->tet[t][s->corner[t][i]]];
     }
     if (run)
         qsort(run, count, sizeof *run, compare_ranks);
@@ -84,98 +84,144 @@ static bool sort_run(const sorting *s, const tm_tet_mesh *mesh, tm_curve_point *
     return run;
 }
 
-static bool sort_runs(const sorting *s, const tm_tet_mesh *mesh, tm_curve_point *placed)
+/* Sorts the runs that begin in a chunk. */
+static void sort_runs(void *context, size_t chunk)
 {
+    const sorting *s = context;
+    tm_curve_point *placed = s->placed;
+    const size_t slots = s->mesh->slots;
+    size_t from = CHUNK * chunk, end = tm_chunk_end(from, CHUNK, slots);
     bool done = true;
-    for (size_t from = 0, to; from < mesh->slots && done; from = to) {
-        for (to = from + 1; to < mesh->slots; to++)
+    while (chunk > 0 && from < end && placed[from].position == placed[from - 1].position)
+        from++;
+    for (size_t to; from < end && done; from = to) {
+        for (to = from + 1; to < slots; to++)
             if (placed[to].position != placed[from].position)
                 break;
-        done = to == from + 1 || sort_run(s, mesh, placed + from, to - from);
+        done = to == from + 1 || sort_run(s, placed + from, to - from);
     }
-    return done;
+    s->failed[chunk] = !done;
+}
+
+/* Sorts the corners of tetrahedra, and places them by those that come first. */
+static void place_tets(void *context, size_t chunk)
+{
+    const sorting *s = context;
+    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, s->mesh->slots);
+    for (size_t t = from; t < to; t++) {
+        const uint32_t *n = s->mesh->tet[t];
+        uint32_t rank[4] = {s->rank[n[0]], s->rank[n[1]], s->rank[n[2]], s->rank[n[3]]};
+        sort_corners(rank, s->corner[t]);
+        const double *first = s->mesh->xyz[n[s->corner[t][0]]];
+        s->placed[t] = (tm_curve_point){tm_space_position(&s->space, first), (uint32_t)t};
+    }
+}
+
+static void number_halves(void *context, size_t chunk)
+{
+    const sorting *s = context;
+    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, s->mesh->slots);
+    for (size_t k = from; k < to; k++) {
+        uint32_t t = s->order[k] = s->placed[k].item;
+        for (uint32_t i = 0; i < 4; i++)
+            s->half[t][s->corner[t][i]] = 4 * (uint32_t)k + i;
+    }
 }
 
 /* The tetrahedra along the curve, by their corners that come first. */
-static bool find_order(const sorting *s, const tm_tet_mesh *mesh)
+static bool find_order(sorting *s)
 {
-    tm_space space = tm_space_around((const double(*)[3])mesh->xyz, mesh->nodes);
-    tm_curve_point *placed = tm_new(mesh->slots, sizeof *placed);
-    for (uint32_t t = 0; t < mesh->slots && placed; t++) {
-        const uint32_t *n = mesh->tet[t];
-        uint32_t rank[4] = {s->rank[n[0]], s->rank[n[1]], s->rank[n[2]], s->rank[n[3]]};
-        sort_corners(rank, s->corner[t]);
-        placed[t] =
-            (tm_curve_point){tm_space_position(&space, mesh->xyz[n[s->corner[t][0]]]), t};
-    }
-    bool done =
-        placed && tm_space_sort(placed, mesh->slots) && sort_runs(s, mesh, placed);
-    for (uint32_t k = 0; k < mesh->slots && done; k++) {
-        uint32_t t = s->order[k] = placed[k].item;
-        for (uint32_t i = 0; i < 4; i++)
-            s->half[t][s->corner[t][i]] = 4 * k + i;
-    }
-    free(placed);
+    const tm_tet_mesh *mesh = s->mesh;
+    const size_t chunks = tm_chunks(mesh->slots, CHUNK);
+    s->space = tm_space_around((const double(*)[3])mesh->xyz, mesh->nodes);
+    s->placed = tm_new(mesh->slots, sizeof *s->placed);
+    s->failed = calloc(chunks + 1, sizeof *s->failed);
+    bool done = s->placed && s->failed;
+    if (done)
+        tm_parallel(s->threads, chunks, place_tets, s);
+    done = done && tm_space_sort(s->placed, mesh->slots, s->threads);
+    if (done)
+        tm_parallel(s->threads, chunks, sort_runs, s);
+    for (size_t c = 0; c < chunks && done; c++)
+        done = !s->failed[c];
+    if (done)
+        tm_parallel(s->threads, chunks, number_halves, s);
+    free(s->placed);
+    free(s->failed);
     return done;
 }
 
-static bool reorder_tets(const sorting *s, tm_tet_mesh *mesh)
+static void copy_tets(void *context, size_t chunk)
 {
-    uint32_t(*tet)[4] = tm_new(mesh->slots, sizeof *tet);
-    if (!tet)
-        return false;
-    for (size_t k = 0; k < mesh->slots; k++)
+    const sorting *s = context;
+    const tm_tet_mesh *mesh = s->mesh;
+    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, mesh->slots);
+    const size_t width = mesh->regions;
+    for (size_t k = from; k < to; k++)
         for (int i = 0; i < 4; i++)
-            tet[k][i] = mesh->tet[s->order[k]][s->corner[s->order[k]][i]];
-    /* The old list becomes that of the neighbours. */
-    uint32_t(*neighbour)[4] = mesh->tet;
-    for (size_t k = 0; k < mesh->slots; k++)
+            s->tet[k][i] = mesh->tet[s->order[k]][s->corner[s->order[k]][i]];
+    for (size_t k = from; k < to && width > 0; k++)
+        memcpy(s->region + k * width, mesh->region + s->order[k] * width,
+               width * sizeof *s->region);
+}
+
+/* The old list of tetrahedra becomes that of the neighbours. */
+static void copy_neighbours(void *context, size_t chunk)
+{
+    const sorting *s = context;
+    const tm_tet_mesh *mesh = s->mesh;
+    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, mesh->slots);
+    for (size_t k = from; k < to; k++)
         for (int i = 0; i < 4; i++) {
             uint32_t t = s->order[k], h = mesh->neighbour[t][s->corner[t][i]];
-            neighbour[k][i] = h & TM_FACE_BIT ? h : s->half[h / 4][h % 4];
+            mesh->tet[k][i] = h & TM_FACE_BIT ? h : s->half[h / 4][h % 4];
         }
+}
+
+static bool reorder(sorting *s)
+{
+    tm_tet_mesh *mesh = s->mesh;
+    const size_t chunks = tm_chunks(mesh->slots, CHUNK);
+    s->tet = tm_new(mesh->slots, sizeof *s->tet);
+    s->region =
+        mesh->regions > 0 ? tm_new(mesh->slots * mesh->regions, sizeof *s->region) : NULL;
+    if (!s->tet || (mesh->regions > 0 && !s->region)) {
+        free(s->tet);
+        free(s->region);
+        return false;
+    }
+    tm_parallel(s->threads, chunks, copy_tets, s);
+    tm_parallel(s->threads, chunks, copy_neighbours, s);
     free(mesh->neighbour);
-    mesh->tet = tet;
-    mesh->neighbour = neighbour;
+    free(mesh->region);
+    mesh->neighbour = mesh->tet;
+    mesh->tet = s->tet;
+    mesh->region = s->region;
     mesh->slot_room = mesh->slots;
     return true;
 }
 
-static bool reorder_regions(const sorting *s, tm_tet_mesh *mesh)
+tm_status tm_tet_mesh_sort(tm_tet_mesh *mesh, uint32_t *order, unsigned threads,
+                           tm_error *error)
 {
-    size_t width = mesh->regions;
-    if (width == 0)
-        return true;
-    double *region = tm_new(mesh->slots * width, sizeof *region);
-    for (size_t k = 0; k < mesh->slots && region; k++)
-        memcpy(region + k * width, mesh->region + s->order[k] * width,
-               width * sizeof *region);
-    if (region) {
-        free(mesh->region);
-        mesh->region = region;
-    }
-    return region;
-}
-
-tm_status tm_tet_mesh_sort(tm_tet_mesh *mesh, uint32_t *order, tm_error *error)
-{
-    sorting s = {.rank = tm_new(mesh->nodes, sizeof *s.rank),
+    sorting s = {.mesh = mesh,
+                 .threads = threads,
+                 .rank = tm_new(mesh->nodes, sizeof *s.rank),
                  .corner = tm_new(mesh->slots, sizeof *s.corner),
-                 .order = tm_new(mesh->slots, sizeof *s.order),
+                 .order = order ? order : tm_new(mesh->slots, sizeof *s.order),
                  .half = tm_new(mesh->slots, sizeof *s.half)};
     bool done = s.rank && s.corner && s.order && s.half &&
-                tm_tet_mesh_rank_nodes(mesh, s.rank) && find_order(&s, mesh) &&
-                reorder_regions(&s, mesh) && reorder_tets(&s, mesh);
+                tm_tet_mesh_rank_nodes(mesh, s.rank, threads) && find_order(&s) &&
+                reorder(&s);
     for (size_t f = 0; f < mesh->faces && done; f++)
         for (int k = 0; k < 2; k++) {
             uint32_t *h = &mesh->face[f].side[k];
             *h = *h == TM_NONE ? TM_NONE : s.half[*h / 4][*h % 4];
         }
-    if (done && order)
-        memcpy(order, s.order, mesh->slots * sizeof *order);
+    if (!order)
+        free(s.order);
     free(s.rank);
     free(s.corner);
-    free(s.order);
     free(s.half);
     return done ? TM_OK : tm_fail_memory(error);
 }

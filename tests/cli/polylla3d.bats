@@ -686,12 +686,9 @@ END
     done
 }
 
-@test "the same bytes for one thread and for two, and for a pipe" {
-    polylla3d -q --no-history -j 1 --star boxes.tm >"$out/1.tm"
-    polylla3d -q --no-history -j 2 --star boxes.tm >"$out/2.tm"
-    polylla3d -q --no-history --star <boxes.tm | cat >"$out/3.tm"
-    cmp "$out/1.tm" "$out/2.tm"
-    cmp "$out/1.tm" "$out/3.tm"
+@test "the same bytes for a file and a pipe" {
+    polylla3d -q --no-history --star boxes.tm >"$out/1.tm"
+    polylla3d -q --no-history --star <boxes.tm | cat | cmp "$out/1.tm" -
 }
 
 @test "degenerate: nothing, one tetrahedron, a flat one, counted from 0" {

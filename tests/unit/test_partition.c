@@ -151,7 +151,7 @@ static void test_sort(void **state)
     tm_error error;
     make_mesh(&mesh, &stream, 4, 0.8, true);
     invariants before = measure_invariants(&mesh);
-    assert_int_equal(tm_tet_mesh_sort(&mesh, NULL, &error), TM_OK);
+    assert_int_equal(tm_tet_mesh_sort(&mesh, NULL, 3, &error), TM_OK);
     assert_valid(&mesh);
     invariants after = measure_invariants(&mesh);
     assert_same_invariants(&before, &after);

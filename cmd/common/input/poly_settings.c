@@ -164,6 +164,7 @@ poly_settings poly_settings_read(filter *f)
         filter_usage_error(f, "--levels is of polyhedra: --label writes none");
     o.for_tets |= (has_mode && p->mode != TM_POLY_COMPACT) || p->star == TM_STAR_CENTROID;
     o.poly.progress = filter_progress(f);
+    o.poly.threads = f->threads;
     if (o.label && o.merge)
         filter_usage_error(f, "--merge-coplanar is for faces: --label writes none");
     return o;

@@ -87,7 +87,7 @@ static bool sort(joiner *j)
         const tm_space space = tm_space_around((const double(*)[3])place, cells);
         for (uint32_t c = 0; c < cells; c++)
             point[c] = (tm_curve_point){tm_space_position(&space, place[c]), c};
-        done = tm_space_sort(point, cells);
+        done = tm_space_sort(point, cells, j->options->threads);
     }
     for (size_t k = 0; k < cells && done; k++)
         j->order[k] = point[k].item;

@@ -100,7 +100,7 @@ bool tm_improve_find_targets(tm_improver *m, bool all)
         if (tm_improve_is_bad(m, t) && (all || tm_improve_is_due(m, t)))
             placed[count++] = (tm_curve_point){
                 tm_space_position(&m->space, mesh->xyz[mesh->tet[t][0]]), t};
-    bool done = placed && target && tm_space_sort(placed, count);
+    bool done = placed && target && tm_space_sort(placed, count, 1);
     for (size_t k = 0; k < count && done; k++)
         target[k] = placed[k].item;
     m->targets = count;

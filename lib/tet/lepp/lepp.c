@@ -66,7 +66,7 @@ static tm_status find_targets(tm_lepp_engine *e)
             placed[count++] = (tm_curve_point){
                 tm_space_position(&space, mesh->xyz[mesh->tet[t][0]]), t};
     tm_status status = TM_OK;
-    if (!tm_space_sort(placed, count))
+    if (!tm_space_sort(placed, count, 1))
         status = tm_fail_memory(e->error);
     e->targets = 0;
     e->at.bad = count;

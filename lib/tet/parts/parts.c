@@ -37,7 +37,7 @@ static bool find_order(tm_tet_parts *parts, const tm_tet_mesh *mesh, unsigned ro
         if (tm_tet_lives(mesh, t))
             placed[count++] =
                 (tm_curve_point){tm_space_position(&space, xyz[mesh->tet[t][0]]), t};
-    const bool done = placed && xyz && tm_space_sort(placed, count);
+    const bool done = placed && xyz && tm_space_sort(placed, count, 1);
     for (uint32_t k = 0; k < count && done; k++) {
         parts->order[k] = placed[k].item;
         parts->place[placed[k].item] = k;
