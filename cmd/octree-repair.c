@@ -134,6 +134,7 @@ static void build_surface(program *p, const tm_stream *stream)
     tm_status status =
         surface_input_of_stream(stream, filter_input_name(&p->f), &polygons, &error);
     p->surface.walls = true;
+    p->surface.threads = p->f.threads;
     while (status == TM_OK) {
         status = tm_surface_build(&p->boundary, &polygons, &p->surface, &error);
         if (status != TM_ERROR_INPUT || !p->boundary.walls)

@@ -9,9 +9,10 @@
 #include <stdlib.h>
 
 /* An octree without leaves. */
-static tm_octree on_brick(const tm_brick *brick)
+static tm_octree on_brick(const tm_brick *brick, unsigned threads)
 {
-    return (tm_octree){.low = {brick->low[0], brick->low[1], brick->low[2]},
+    return (tm_octree){.threads = threads,
+                       .low = {brick->low[0], brick->low[1], brick->low[2]},
                        .side = brick->side,
                        .roots = {brick->roots[0], brick->roots[1], brick->roots[2]},
                        .finest = TM_OCTREE_FINEST};
@@ -139,7 +140,7 @@ tm_status tm_octree_build(tm_octree *octree, const tm_surface *surface,
         status = levels ? tm_octree_set_levels(rule, rules, brick.side, levels, error)
                         : tm_fail_memory(error);
     if (status == TM_OK) {
-        *octree = on_brick(&brick);
+        *octree = on_brick(&brick, surface->threads);
         status = build(octree, &leaves, &brick, surface, levels, rules, error);
     }
     free(leaves.leaf);
@@ -155,7 +156,7 @@ tm_status tm_octree_refine(tm_octree *octree, const tm_surface *surface,
 {
     tm_brick brick;
     tm_status status = tm_brick_of(&brick, octree, error);
-    tm_octree now = on_brick(&brick);
+    tm_octree now = on_brick(&brick, octree->threads);
     tm_leaf_list leaves = {.count = 0};
     if (status == TM_OK)
         status = split_leaves(&leaves, octree, surface, octree->leaf, octree->leaves,

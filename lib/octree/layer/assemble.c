@@ -78,6 +78,7 @@ static tm_status allocate(const assembler *a, tm_error *error)
     tm_mixed_mesh *mesh = &to->mesh;
     mesh->nodes = to->core + a->boundary->nodes + a->middles;
     mesh->elements = a->elements;
+    mesh->threads = a->octree->threads;
     if (mesh->nodes >= TM_NONE || mesh->elements >= TM_NONE)
         return tm_fail(error, TM_ERROR_SYSTEM,
                        "the mesh would have %zu nodes and %zu elements, more than 32 "

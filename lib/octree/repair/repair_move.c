@@ -141,6 +141,7 @@ static tm_status move_part(tm_repair_state *state, const tm_surface *surface,
         status = tm_trial_gather(&trial, core, cores, PART_RINGS, error);
     trial.part.progress = state->progress;
     trial.part.stop = state->stop;
+    trial.part.mesh.threads = state->mesh.threads;
     if (status == TM_OK)
         status = move_in(&trial.part, surface, threshold, effort, least, error);
     if (status == TM_OK)
