@@ -47,12 +47,15 @@ typedef struct descent {
     size_t *source_of; /* [rules] */
     size_t sources;
     source *source;
-    bool *is_corner;         /* [nodes of the octree's surface] */
-    unsigned shift;          /* of the deepest octants that may be */
-    part *part;              /* [SHIFTS][sources]: of the octants on the way down */
-    tm_leaf_list *leaves;    /* that are made, or NULL: */
-    tm_leaf *given;          /* the leaves that are there, from the next one on */
-    struct task_list *later; /* where octants of the level of tasks go; NULL: on */
+    bool *is_corner;      /* [nodes of the octree's surface] */
+    unsigned shift;       /* of the deepest octants that may be */
+    part *part;           /* [SHIFTS][sources]: of the octants on the way down */
+    tm_leaf_list *leaves; /* that are made, or NULL: */
+    tm_leaf *given;       /* the leaves that are there, from the next one on */
+    bool cuts;            /* octants of some depth become tasks */
+    size_t tasks, task_room;
+    struct task *task;
+    size_t found; /* leaves of tasks that are done: none is begun where they are many */
     tm_error *error;
 } descent;
 
@@ -66,13 +69,6 @@ typedef struct task {
     tm_status status;
     tm_error error;
 } task;
-
-typedef struct task_list {
-    const descent *of;
-    size_t leaves; /* of all tasks that are done: no more is begun where they are many */
-    size_t count, room;
-    task *task;
-} task_list;
 
 /* Octants of tasks are so many levels below the cube that has all roots. */
 enum { TASK_DEPTH = 4 };
@@ -215,11 +211,10 @@ static tm_status add_task(descent *d, const octant *o);
 
 static tm_status visit(descent *d, octant *o)
 {
-    const bool later = d->later != NULL;
-    if (later && o->shift + TASK_DEPTH <= tm_octree_shift(d->octree))
+    if (d->cuts && o->shift + TASK_DEPTH <= tm_octree_shift(d->octree))
         return add_task(d, o);
     if (!is_split(d, o))
-        return later ? add_task(d, o) : take_leaf(d, o);
+        return d->cuts ? add_task(d, o) : take_leaf(d, o);
     octant child = {.shift = o->shift - 1, .part = o->part + d->sources};
     tm_status status = TM_OK;
     for (unsigned c = 0; c < CHILDREN && status == TM_OK; c++) {
@@ -251,12 +246,11 @@ static size_t count_within(const descent *d, const octant *o)
 /* Notes an octant; the leaves that are given go on behind those that it has. */
 static tm_status add_task(descent *d, const octant *o)
 {
-    task_list *list = d->later;
-    task *grown = tm_grow(list->task, &list->room, list->count + 1, sizeof *grown);
+    task *grown = tm_grow(d->task, &d->task_room, d->tasks + 1, sizeof *grown);
     if (!grown)
         return tm_fail_memory(d->error);
-    list->task = grown;
-    task *t = &grown[list->count++];
+    d->task = grown;
+    task *t = &grown[d->tasks++];
     *t = (task){.octant = *o, .given = d->given};
     t->octant.part = tm_new(SHIFTS * d->sources, sizeof *t->octant.part);
     t->triangle = calloc(d->sources, sizeof *t->triangle);
@@ -278,30 +272,30 @@ static tm_status add_task(descent *d, const octant *o)
 
 static void make_task(void *context, size_t i)
 {
-    task_list *list = context;
-    task *t = &list->task[i];
-    descent d = *list->of;
-    d.later = NULL;
+    descent *all = context;
+    task *t = &all->task[i];
+    descent d = *all;
+    d.cuts = false;
     d.error = &t->error;
     d.part = t->octant.part;
     d.leaves = d.leaves ? &t->leaves : NULL;
     d.given = t->given;
     t->status =
-        tm_leaf_list_check(__atomic_load_n(&list->leaves, __ATOMIC_RELAXED), d.error);
+        tm_leaf_list_check(__atomic_load_n(&all->found, __ATOMIC_RELAXED), d.error);
     d.source = t->status == TM_OK ? tm_new(d.sources, sizeof *d.source) : NULL;
     if (!d.source) {
         t->status = t->status == TM_OK ? tm_fail_memory(d.error) : t->status;
         return;
     }
     for (size_t s = 0; s < d.sources; s++)
-        d.source[s] = (source){.surface = list->of->source[s].surface,
+        d.source[s] = (source){.surface = all->source[s].surface,
                                .room = t->octant.part[s].count,
                                .triangle = t->triangle[s]};
     t->status = visit(&d, &t->octant);
     for (size_t s = 0; s < d.sources; s++)
         t->triangle[s] = d.source[s].triangle;
     free(d.source);
-    __atomic_fetch_add(&list->leaves, t->leaves.count, __ATOMIC_RELAXED);
+    __atomic_fetch_add(&all->found, t->leaves.count, __ATOMIC_RELAXED);
 }
 
 /* Appends the leaves of a task. */
@@ -313,35 +307,34 @@ static tm_status join_task(const descent *d, const task *t)
     return d->leaves ? tm_leaf_list_append(d->leaves, &t->leaves, d->error) : TM_OK;
 }
 
-static void free_tasks(const descent *d, task_list *list)
+static void free_tasks(const descent *d)
 {
-    for (size_t i = 0; i < list->count; i++) {
-        task *t = &list->task[i];
+    for (size_t i = 0; i < d->tasks; i++) {
+        task *t = &d->task[i];
         for (size_t s = 0; t->triangle && s < d->sources; s++)
             free(t->triangle[s]);
         free(t->triangle);
         free(t->octant.part);
         free(t->leaves.leaf);
     }
-    free(list->task);
+    free(d->task);
 }
 
 /* A cube that has all roots is met by all triangles. p4est has the roots in Z order too.
  * Large octants are visited one after the other, what is in those at the same time. */
 static tm_status visit_brick(descent *d)
 {
-    task_list later = {.of = d};
     octant o = {.shift = tm_octree_shift(d->octree), .part = d->part};
     tm_octree_box(d->octree, o.anchor, o.shift, o.low, o.high);
     for (size_t s = 0; s < d->sources; s++)
         o.part[s] = (part){.count = d->source[s].surface->triangles};
-    d->later = &later;
+    d->cuts = true;
     tm_status status = visit(d, &o);
     if (status == TM_OK)
-        tm_parallel(d->octree->threads, later.count, make_task, &later);
-    for (size_t i = 0; status == TM_OK && i < later.count; i++)
-        status = join_task(d, &later.task[i]);
-    free_tasks(d, &later);
+        tm_parallel(d->octree->threads, d->tasks, make_task, d);
+    for (size_t i = 0; status == TM_OK && i < d->tasks; i++)
+        status = join_task(d, &d->task[i]);
+    free_tasks(d);
     return status;
 }
 

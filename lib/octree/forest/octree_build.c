@@ -107,17 +107,16 @@ static tm_status split_listed(tm_leaf_list *leaves, const tm_octree *octree,
     return status;
 }
 
-static tm_status build(tm_octree *octree, tm_leaf_list *leaves, const tm_brick *brick,
-                       const tm_surface *surface, const tm_octree_rule *rule,
-                       size_t rules, tm_error *error)
+static tm_status build(tm_octree *octree, tm_leaf_list *leaves, const tm_surface *surface,
+                       const tm_octree_rule *rule, size_t rules, tm_error *error)
 {
     tm_status status = tm_octree_descend(leaves, octree, surface, rule, rules, error);
     if (status == TM_OK)
-        status = tm_balance(leaves, octree, brick, surface, error);
+        status = tm_balance(leaves, octree, surface, error);
     if (status == TM_OK && has_list(rule, rules)) {
         status = split_listed(leaves, octree, surface, rule, rules, error);
         if (status == TM_OK)
-            status = tm_balance(leaves, octree, brick, surface, error);
+            status = tm_balance(leaves, octree, surface, error);
     }
     if (status == TM_OK)
         status = finish(octree, leaves, error);
@@ -141,7 +140,7 @@ tm_status tm_octree_build(tm_octree *octree, const tm_surface *surface,
                         : tm_fail_memory(error);
     if (status == TM_OK) {
         *octree = on_brick(&brick, surface->threads);
-        status = build(octree, &leaves, &brick, surface, levels, rules, error);
+        status = build(octree, &leaves, surface, levels, rules, error);
     }
     free(leaves.leaf);
     free(levels);
@@ -162,7 +161,7 @@ tm_status tm_octree_refine(tm_octree *octree, const tm_surface *surface,
         status = split_leaves(&leaves, octree, surface, octree->leaf, octree->leaves,
                               split, error);
     if (status == TM_OK)
-        status = tm_balance(&leaves, octree, &brick, surface, error);
+        status = tm_balance(&leaves, octree, surface, error);
     if (status == TM_OK)
         status = finish(&now, &leaves, error);
     tm_brick_free(&brick);
