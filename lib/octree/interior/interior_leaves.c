@@ -42,22 +42,28 @@ typedef struct {
 static void ask_chunk(void *context, size_t first, size_t past)
 {
     const chooser *c = context;
+    bool *chosen = c->interior->chosen;
     for (size_t l = first; l < past; l++) {
-        if (l > 0 && tm_leaf_is_as_before(c->octree, l))
+        if (l > 0 && tm_leaf_is_as_before(c->octree, l)) {
+            chosen[l] = l > first && chosen[l - 1];
             continue;
+        }
         double centre[3];
         tm_leaf_centre(c->octree, &c->octree->leaf[l], centre);
-        c->interior->chosen[l] = tm_surface_has_inside(c->surface, centre);
+        chosen[l] = tm_surface_has_inside(c->surface, centre);
     }
 }
 
-static void classify(tm_interior *interior, const tm_octree *octree,
+/* The first leaves of a chunk may be as the last one of the chunk before it. */
+static void classify(const tm_interior *interior, const tm_octree *octree,
                      const tm_surface *surface)
 {
     chooser c = {interior, octree, surface};
     tm_parallel_runs(octree->threads, octree->leaves, TM_CHUNK, ask_chunk, &c);
-    for (size_t l = 1; l < octree->leaves; l++)
-        if (tm_leaf_is_as_before(octree, l))
+    for (size_t first = TM_CHUNK; first < octree->leaves; first += TM_CHUNK)
+        for (size_t l = first; l < octree->leaves && tm_leaf_is_as_before(octree, l) &&
+                               l < first + TM_CHUNK;
+             l++)
             interior->chosen[l] = interior->chosen[l - 1];
 }
 
@@ -73,6 +79,23 @@ static void put_in_masks(tm_interior *interior, const tm_octree *octree, size_t 
         else
             interior->mask[node] &= (tm_octant_mask)~tm_point_octants[p];
     }
+}
+
+static void fill_chunk(void *context, size_t first, size_t past)
+{
+    const chooser *c = context;
+    for (size_t l = first; l < past; l++)
+        for (int p = 0; c->interior->chosen[l] && p < TM_LEAF_NODES; p++)
+            if (c->octree->node[l][p] != TM_NONE)
+                __atomic_fetch_or(&c->interior->mask[c->octree->node[l][p]],
+                                  tm_point_octants[p], __ATOMIC_RELAXED);
+}
+
+/* Sets the octants of all chosen leaves in masks that are empty. */
+static void fill_masks(const tm_interior *interior, const tm_octree *octree)
+{
+    chooser c = {.interior = interior, .octree = octree};
+    tm_parallel_runs(octree->threads, octree->leaves, TM_CHUNK, fill_chunk, &c);
 }
 
 void tm_interior_flip(tm_interior *interior, const tm_octree *octree, size_t leaf)
@@ -237,9 +260,7 @@ tm_status tm_interior_choose(tm_interior *interior, const tm_octree *octree,
         return labelled;
     }
     classify(interior, octree, surface);
-    for (size_t l = 0; l < octree->leaves; l++)
-        if (interior->chosen[l])
-            put_in_masks(interior, octree, l);
+    fill_masks(interior, octree);
     bool *bad = malloc(octree->nodes);
     if (!bad)
         return tm_fail_memory(error);
@@ -352,9 +373,7 @@ tm_status tm_interior_find_enclosed(tm_interior *enclosed, tm_interior *interior
         tm_interior_free(enclosed);
         return TM_OK;
     }
-    for (size_t l = 0; l < octree->leaves; l++)
-        if (enclosed->chosen[l])
-            put_in_masks(enclosed, octree, l);
+    fill_masks(enclosed, octree);
     share_used(enclosed, interior, octree);
     return TM_OK;
 }
