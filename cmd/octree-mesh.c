@@ -479,6 +479,7 @@ int main(int argc, char **argv)
     filter_start(&f, argc, argv);
     settings o = read_options(&f);
     filter_operands(&f);
+    o.surface.threads = f.threads;
     tm_surface surface;
     tm_stream stream;
     tm_octree octree;

@@ -134,6 +134,7 @@ static void build_surface(program *p, const tm_stream *stream)
     tm_status status =
         surface_input_of_stream(stream, filter_input_name(&p->f), &polygons, &error);
     p->surface.walls = true;
+    p->surface.threads = p->f.threads;
     while (status == TM_OK) {
         status = tm_surface_build(&p->boundary, &polygons, &p->surface, &error);
         if (status != TM_ERROR_INPUT || !p->boundary.walls)
@@ -473,13 +474,16 @@ static bool run(program *p, tm_stream *stream)
     filter_stage(&p->f, "examining");
     if (tm_repair_from_stream(&state, stream, &error) != TM_OK)
         fail(p, &error);
+    state.mesh.threads = p->f.threads;
     const bool measured = p->f.json && tm_stream_find(stream, "surface.node");
     if (tm_repair_is_needed(&state, stream, p->repair.threshold) || p->trace ||
         p->octants || measured)
         prepare(p, stream, &state, &notes);
     p->has_regions = notes.regions;
     repair(p, stream, &state, &report, &before, &after);
-    remainder_list left = find_left(p, &state);
+    remainder_list left = {0};
+    if (!is_done(&after))
+        left = find_left(p, &state);
     const bool done = is_done(&after) && !early_end_by_signal();
     if (!is_done(&after))
         note_left(p, &left, &after.score, stream->base);

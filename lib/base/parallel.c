@@ -48,3 +48,24 @@ unsigned tm_cores(void)
     const long online = sysconf(_SC_NPROCESSORS_ONLN);
     return online > 0 ? (unsigned)online : 1;
 }
+
+typedef struct runs {
+    void (*work)(void *context, size_t first, size_t past);
+    void *context;
+    size_t count, size;
+} runs;
+
+static void work_on_run(void *context, size_t chunk)
+{
+    const runs *r = context;
+    const size_t first = chunk * r->size, left = r->count - first;
+    r->work(r->context, first, first + (left < r->size ? left : r->size));
+}
+
+void tm_parallel_runs(unsigned threads, size_t count, size_t size,
+                      void (*work)(void *context, size_t first, size_t past),
+                      void *context)
+{
+    runs r = {work, context, count, size};
+    tm_parallel(threads, tm_parallel_chunks(count, size), work_on_run, &r);
+}

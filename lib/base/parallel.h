@@ -7,6 +7,7 @@
 
 #include "extern_c.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 TM_EXTERN_C_BEGIN
@@ -39,6 +40,29 @@ static inline size_t tm_chunk_end(size_t from, size_t size, size_t items)
 {
     return items - from < size ? items : from + size;
 }
+
+/* The same of things 0 … count-1 in chunks of `size`, the last one of what is left: calls
+ * work(context, first, past) for each chunk; first / size is its number. */
+void tm_parallel_runs(unsigned threads, size_t count, size_t size,
+                      void (*work)(void *context, size_t first, size_t past),
+                      void *context);
+
+/* How many chunks these are. */
+static inline size_t tm_parallel_chunks(size_t count, size_t size)
+{
+    return count / size + (count % size != 0);
+}
+
+/* Marks something that other threads may mark too, or look at, at the same time: what
+ * they find there is either value. */
+static inline void tm_mark(bool *mark)
+{
+    if (!__atomic_load_n(mark, __ATOMIC_RELAXED))
+        __atomic_store_n(mark, true, __ATOMIC_RELAXED);
+}
+
+/* Things that a chunk's work goes over at a time, where nothing else is said. */
+enum { TM_CHUNK = 4096 };
 
 TM_EXTERN_C_END
 

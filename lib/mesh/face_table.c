@@ -388,23 +388,62 @@ static void note_mates(uint32_t *mate, const tm_face_table *table, const tm_face
     }
 }
 
+/* Nodes cut into runs, each with a table of its own for the lists of all. */
+typedef struct matching {
+    const tm_face_table *table;
+    uint32_t *mate;
+    uint32_t *cut; /* [runs + 1] */
+    bool *failed;  /* [runs] */
+} matching;
+
+static void match_run(void *context, size_t run)
+{
+    const matching *m = context;
+    tm_face_table table;
+    tm_error error;
+    tm_status status = TM_OK;
+    tm_face_table_share(&table, m->table);
+    for (uint32_t v = m->cut[run]; v < m->cut[run + 1] && status == TM_OK; v++) {
+        status = tm_face_table_at(&table, v, &error);
+        for (size_t f = 0; f < table.faces && status == TM_OK; f++)
+            note_mates(m->mate, &table, &table.face[f]);
+    }
+    m->failed[run] = status != TM_OK;
+    tm_face_table_free(&table);
+}
+
+static bool match_all(const tm_face_table *table, uint32_t *mate)
+{
+    enum { RUNS_PER_THREAD = 4 };
+    const unsigned threads = table->mesh->threads;
+    const size_t runs = threads > 1 ? (size_t)threads * RUNS_PER_THREAD : 1;
+    matching m = {table, mate, tm_new(runs + 1, sizeof *m.cut),
+                  calloc(runs, sizeof *m.failed)};
+    bool done = m.cut && m.failed;
+    if (done) {
+        tm_face_table_cut(table, runs, m.cut);
+        tm_parallel(threads, runs, match_run, &m);
+    }
+    for (size_t run = 0; run < runs && done; run++)
+        done = !m.failed[run];
+    free(m.cut);
+    free(m.failed);
+    return done;
+}
+
 tm_status tm_face_mates(uint32_t **mate, const tm_mesh_view *mesh, tm_error *error)
 {
     tm_face_table table;
     *mate = NULL;
-    tm_status status = tm_face_table_make(&table, mesh, 1, error);
+    const unsigned threads = mesh->threads > 0 ? mesh->threads : 1;
+    tm_status status = tm_face_table_make(&table, mesh, threads, error);
     const size_t members = table.first_row + mesh->faces + mesh->facets;
     if (status == TM_OK) {
         *mate = tm_new(members, sizeof **mate);
         if (*mate)
             memset(*mate, UINT8_MAX, members * sizeof **mate);
-        else
+        if (!*mate || !match_all(&table, *mate))
             status = tm_fail_memory(error);
-    }
-    for (uint32_t v = 0; v < mesh->nodes && status == TM_OK; v++) {
-        status = tm_face_table_at(&table, v, error);
-        for (size_t f = 0; f < table.faces && status == TM_OK; f++)
-            note_mates(*mate, &table, &table.face[f]);
     }
     tm_face_table_free(&table);
     return status;

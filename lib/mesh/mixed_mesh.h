@@ -19,6 +19,7 @@ typedef struct tm_mixed_mesh {
     size_t elements;
     size_t *start;
     uint32_t *item;
+    unsigned threads; /* for work on it: no result depends on it; 0: one */
 } tm_mixed_mesh;
 
 /* J_ENS of element e. */

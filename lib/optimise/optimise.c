@@ -2,6 +2,7 @@
 #include "optimise.h"
 
 #include "../base/array.h"
+#include "../base/parallel.h"
 #include "../element/jens.h"
 #include "../stream/stream.h"
 #include "optimise_parts.h"
@@ -11,16 +12,36 @@
 /* Nodes of how many rings of elements around the bad ones may move, at most. */
 enum { RINGS_MOST = 2 };
 
-static void count_elements(const tm_optimise_work *w, size_t *bad, size_t *inverted,
-                           double *worst)
+static void tally_chunk(void *context, size_t first, size_t past)
 {
-    *bad = *inverted = 0;
-    *worst = 1;
-    for (size_t e = 0; e < w->mesh->elements; e++) {
-        *bad += w->jens[e] < tm_threshold_of(w->options, e);
-        *inverted += w->jens[e] <= 0;
-        *worst = w->jens[e] < *worst ? w->jens[e] : *worst;
+    const tm_optimise_work *w = context;
+    tm_optimise_tally t = {.worst = 1};
+    for (size_t e = first; e < past; e++) {
+        t.bad += w->jens[e] < tm_threshold_of(w->options, e);
+        t.inverted += w->jens[e] <= 0;
+        t.worst = w->jens[e] < t.worst ? w->jens[e] : t.worst;
     }
+    w->tally[first / TM_CHUNK] = t;
+}
+
+static void measure_chunk(void *context, size_t first, size_t past)
+{
+    const tm_optimise_work *w = context;
+    for (size_t e = first; e < past; e++)
+        w->jens[e] = tm_mixed_jens(w->mesh, e);
+    tally_chunk(context, first, past);
+}
+
+/* Of all chunks as they were counted. */
+static tm_optimise_tally count_elements(const tm_optimise_work *w)
+{
+    tm_optimise_tally all = {.worst = 1};
+    for (size_t i = 0; i < tm_parallel_chunks(w->mesh->elements, TM_CHUNK); i++) {
+        all.bad += w->tally[i].bad;
+        all.inverted += w->tally[i].inverted;
+        all.worst = w->tally[i].worst < all.worst ? w->tally[i].worst : all.worst;
+    }
+    return all;
 }
 
 static size_t count_off_surface(const tm_optimise_work *w)
@@ -31,21 +52,31 @@ static size_t count_off_surface(const tm_optimise_work *w)
     return off_surface;
 }
 
-/* Lists the bad elements. */
+static void list_chunk(void *context, size_t first, size_t past)
+{
+    const tm_optimise_work *w = context;
+    size_t next = w->tally[first / TM_CHUNK].before;
+    for (size_t e = first; e < past; e++)
+        if (w->jens[e] < tm_threshold_of(w->options, e))
+            w->bad[next++] = (uint32_t)e;
+}
+
+/* Lists the bad elements, which were counted. */
 static tm_status find_bad(tm_optimise_work *w, tm_error *error)
 {
     const size_t elements = w->mesh->elements;
     size_t bads = 0;
-    for (size_t e = 0; e < elements; e++)
-        bads += w->jens[e] < tm_threshold_of(w->options, e);
+    for (size_t i = 0; i < tm_parallel_chunks(elements, TM_CHUNK); i++) {
+        w->tally[i].before = bads;
+        bads += w->tally[i].bad;
+    }
     free(w->bad);
     w->bads = 0;
     w->bad = tm_new(bads, sizeof *w->bad);
     if (!w->bad)
         return tm_fail_memory(error);
-    for (size_t e = 0; e < elements; e++)
-        if (w->jens[e] < tm_threshold_of(w->options, e))
-            w->bad[w->bads++] = (uint32_t)e;
+    tm_parallel_runs(w->mesh->threads, elements, TM_CHUNK, list_chunk, w);
+    w->bads = bads;
     return TM_OK;
 }
 
@@ -53,14 +84,15 @@ static tm_status start_work(tm_optimise_work *w, tm_error *error)
 {
     const size_t elements = w->mesh->elements;
     w->jens = tm_new(elements, sizeof *w->jens);
-    if (!w->jens)
+    w->tally = tm_new(tm_parallel_chunks(elements, TM_CHUNK), sizeof *w->tally);
+    if (!w->jens || !w->tally)
         return tm_fail_memory(error);
-    for (size_t e = 0; e < elements; e++)
-        w->jens[e] = tm_mixed_jens(w->mesh, e);
-    tm_optimise_report *report = w->report;
-    count_elements(w, &report->bad_before, &report->inverted_before,
-                   &report->worst_before);
-    report->off_surface_before = count_off_surface(w);
+    tm_parallel_runs(w->mesh->threads, elements, TM_CHUNK, measure_chunk, w);
+    const tm_optimise_tally all = count_elements(w);
+    w->report->bad_before = all.bad;
+    w->report->inverted_before = all.inverted;
+    w->report->worst_before = all.worst;
+    w->report->off_surface_before = count_off_surface(w);
     return find_bad(w, error);
 }
 
@@ -89,6 +121,7 @@ static tm_status start_moving(tm_optimise_work *w, const tm_boundary *boundary,
 static void end_work(tm_optimise_work *w)
 {
     free(w->jens);
+    free(w->tally);
     free(w->bad);
     free(w->visited);
     free(w->moved);
@@ -101,6 +134,7 @@ static void end_work(tm_optimise_work *w)
 /* What nodes that were off the surface have left bad. */
 static tm_status mend_again(tm_optimise_work *w, tm_error *error)
 {
+    tm_parallel_runs(w->mesh->threads, w->mesh->elements, TM_CHUNK, tally_chunk, w);
     tm_status status = find_bad(w, error);
     if (status != TM_OK || w->bads == 0)
         return status;
@@ -134,8 +168,11 @@ tm_status tm_mixed_optimise(tm_mixed_mesh *mesh, tm_node_rule *rule,
             status = mend_again(&w, error);
     }
     if (w.bad) {
-        count_elements(&w, &report->bad_after, &report->inverted_after,
-                       &report->worst_after);
+        tm_parallel_runs(mesh->threads, mesh->elements, TM_CHUNK, tally_chunk, &w);
+        const tm_optimise_tally all = count_elements(&w);
+        report->bad_after = all.bad;
+        report->inverted_after = all.inverted;
+        report->worst_after = all.worst;
         report->off_surface_after = count_off_surface(&w);
         for (size_t v = 0; w.moved && v < mesh->nodes; v++)
             report->moved += w.moved[v];

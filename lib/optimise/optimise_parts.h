@@ -151,15 +151,23 @@ void tm_cluster_approach(tm_cluster *cluster, size_t v, double factor, double th
 double tm_cluster_descend(tm_cluster *cluster, tm_objective objective,
                           unsigned iterations);
 
+/* Elements of a chunk of TM_CHUNK. */
+typedef struct tm_optimise_tally {
+    size_t bad, inverted; /* J_ENS <= 0 */
+    size_t before;        /* bad ones of the chunks before it */
+    double worst;
+} tm_optimise_tally;
+
 /* A call of tm_mixed_optimise(). */
 typedef struct tm_optimise_work {
     tm_mixed_mesh *mesh;
     tm_node_rule *rule;
     const tm_optimise_options *options;
-    double *jens;  /* [elements] */
-    bool *visited; /* [elements]: in this pass */
-    bool *moved;   /* [nodes] */
-    uint32_t *bad; /* elements, the worst first */
+    double *jens;             /* [elements] */
+    tm_optimise_tally *tally; /* [chunks of elements]: as they were counted last */
+    bool *visited;            /* [elements]: in this pass */
+    bool *moved;              /* [nodes] */
+    uint32_t *bad;            /* elements, the worst first */
     size_t bads;
     tm_vicinity vicinity;
     tm_cluster_source source;

@@ -4,6 +4,8 @@
 #include "optimise_parts.h"
 
 #include "../base/array.h"
+#include "../base/parallel.h"
+#include "../mesh/node_rows.h"
 #include "../stream/stream.h"
 
 #include <stdlib.h>
@@ -23,19 +25,39 @@ static void mark_seeds(uint8_t *ring, const tm_mixed_mesh *mesh, const uint32_t 
             ring[v] = 0;
 }
 
+/* Threads mark rings at the same time: a node that one of them marks is not of the ring
+ * that others look for. */
+typedef struct {
+    const tm_mixed_mesh *mesh;
+    uint8_t *ring; /* [nodes] */
+    uint8_t number;
+} marking;
+
+static uint8_t ring_of(const marking *m, uint32_t v)
+{
+    return __atomic_load_n(&m->ring[v], __ATOMIC_RELAXED);
+}
+
+static void mark_chunk(void *context, size_t first, size_t past)
+{
+    const marking *m = context;
+    for (size_t e = first; e < past; e++) {
+        const uint32_t *node = m->mesh->item + m->mesh->start[e];
+        const size_t nodes = m->mesh->start[e + 1] - m->mesh->start[e];
+        bool touches = false;
+        for (size_t i = 0; i < nodes; i++)
+            touches |= ring_of(m, node[i]) == m->number - 1;
+        for (size_t i = 0; touches && i < nodes; i++)
+            if (ring_of(m, node[i]) == FAR)
+                __atomic_store_n(&m->ring[node[i]], m->number, __ATOMIC_RELAXED);
+    }
+}
+
 /* Nodes that are one element further away than those of ring - 1. */
 static void mark_ring(uint8_t *ring, const tm_mixed_mesh *mesh, uint8_t number)
 {
-    for (size_t e = 0; e < mesh->elements; e++) {
-        const uint32_t *node = mesh->item + mesh->start[e];
-        const size_t nodes = mesh->start[e + 1] - mesh->start[e];
-        bool touches = false;
-        for (size_t i = 0; i < nodes; i++)
-            touches |= ring[node[i]] == number - 1;
-        for (size_t i = 0; touches && i < nodes; i++)
-            if (ring[node[i]] == FAR)
-                ring[node[i]] = number;
-    }
+    marking m = {mesh, ring, number};
+    tm_parallel_runs(mesh->threads, mesh->elements, TM_CHUNK, mark_chunk, &m);
 }
 
 static tm_status number_rows(tm_vicinity *vicinity, const tm_mixed_mesh *mesh,
@@ -50,29 +72,52 @@ static tm_status number_rows(tm_vicinity *vicinity, const tm_mixed_mesh *mesh,
     return vicinity->start ? TM_OK : tm_fail_memory(error);
 }
 
+typedef struct {
+    const tm_vicinity *vicinity;
+    const tm_mixed_mesh *mesh;
+    size_t *next;
+} filling;
+
+static void count_element(void *context, size_t e, tm_row_range range)
+{
+    const filling *f = context;
+    for (size_t i = f->mesh->start[e]; i < f->mesh->start[e + 1]; i++) {
+        const uint32_t row = f->vicinity->row[f->mesh->item[i]];
+        if (tm_row_is_in(range, row))
+            f->next[row + 1]++;
+    }
+}
+
+static void enter_element(void *context, size_t e, tm_row_range range)
+{
+    const filling *f = context;
+    for (size_t i = f->mesh->start[e]; i < f->mesh->start[e + 1]; i++) {
+        const uint32_t row = f->vicinity->row[f->mesh->item[i]];
+        if (tm_row_is_in(range, row))
+            f->vicinity->element[f->next[row]++] = (uint32_t)e;
+    }
+}
+
 /* Counting sort: start[] is one row ahead while rows are filled. */
 static tm_status fill_rows(tm_vicinity *vicinity, const tm_mixed_mesh *mesh,
                            tm_error *error)
 {
     size_t *next = vicinity->start + 1;
-    for (size_t i = 0; i < mesh->start[mesh->elements]; i++) {
-        const uint32_t row = vicinity->row[mesh->item[i]];
-        if (row != TM_NONE)
-            next[row + 1]++;
-    }
-    for (size_t r = 0; r < vicinity->rows; r++)
+    filling f = {vicinity, mesh, next};
+    tm_node_rows rows;
+    tm_status status =
+        tm_node_rows_find(&rows, mesh, vicinity->row, vicinity->rows, error);
+    if (status == TM_OK)
+        tm_node_rows_visit(&rows, count_element, &f);
+    for (size_t r = 0; status == TM_OK && r < vicinity->rows; r++)
         next[r + 1] += next[r];
     vicinity->element = tm_new(next[vicinity->rows], sizeof *vicinity->element);
-    if (!vicinity->element)
-        return tm_fail_memory(error);
-    for (size_t e = 0; e < mesh->elements; e++) {
-        for (size_t i = mesh->start[e]; i < mesh->start[e + 1]; i++) {
-            const uint32_t row = vicinity->row[mesh->item[i]];
-            if (row != TM_NONE)
-                vicinity->element[next[row]++] = (uint32_t)e;
-        }
-    }
-    return TM_OK;
+    if (status == TM_OK && !vicinity->element)
+        status = tm_fail_memory(error);
+    if (status == TM_OK)
+        tm_node_rows_visit(&rows, enter_element, &f);
+    tm_node_rows_free(&rows);
+    return status;
 }
 
 tm_status tm_vicinity_find(tm_vicinity *vicinity, const tm_mixed_mesh *mesh,

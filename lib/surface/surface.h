@@ -70,6 +70,7 @@ typedef struct tm_surface {
     size_t repeated_regions; /* of the file, in one with another one before */
     size_t holes;            /* points in what is a hole all the same */
     double (*hole)[3];
+    unsigned threads; /* how many may ask it at a time, where there is much to ask */
 } tm_surface;
 
 /* The default of feature_angle: degrees. */
@@ -82,6 +83,7 @@ typedef struct tm_surface_options {
     bool lenient;         /* open surfaces, and such that cross themselves, are taken */
     bool regions;         /* a shell in another one bounds a region, not a hole */
     bool walls;           /* walls between regions are taken, where no edge is open */
+    unsigned threads;     /* for what is made with the surface, see there; 0: one */
 } tm_surface_options;
 
 /* Makes the surface of the polygons: nodes with equal coordinates become one, polygons

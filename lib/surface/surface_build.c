@@ -87,7 +87,7 @@ static tm_status prepare(tm_surface *surface, const tm_polygon_surface *polygons
 tm_status tm_surface_build(tm_surface *surface, const tm_polygon_surface *polygons,
                            const tm_surface_options *options, tm_error *error)
 {
-    *surface = (tm_surface){0};
+    *surface = (tm_surface){.threads = options->threads};
     tm_status status = tm_surface_triangulate(surface, polygons, error);
     tm_group_init(&surface->group, ".group");
     if (status == TM_OK)

@@ -1,162 +1,268 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Two leaves that share a face or some of an edge differ by one level at most just if
+ * every octant that is split has all neighbours of its size beyond its faces and edges,
+ * as leaves or split: their parents are split, too. Of these only some are not its own:
+ * its parent's neighbours on the side where it is. So levels are gone through from the
+ * deepest up; a split that is missing is of a level that is still to come. Which those
+ * are is asked in chunks, by several threads; there are few, and they are made one after
+ * the other. The result is the only one with as few leaves as can be, which p4est's
+ * balance finds too. */
 #include "octree_parts.h"
 
 #include "../../base/array.h"
-#include "p4est_call.h"
+#include "../../base/parallel.h"
+#include "leaf_tree.h"
 
-#include <p8est_extended.h>
-#include <p8est_io.h>
 #include <stdlib.h>
+#include <string.h>
 
-/* p4est's grid is one level finer than ours. */
-enum { FINER = P8EST_MAXLEVEL - TM_OCTREE_FINEST, FIELDS = 4 };
+enum { CHILDREN = 8, AXES = 3, SIDES = 6 };
 
-_Static_assert(TM_OCTREE_FINEST == P8EST_QMAXLEVEL, "the deepest level of p4est");
+typedef struct anchors {
+    size_t count, room;
+    uint32_t (*anchor)[AXES];
+} anchors;
 
-/* Leaves on their way into a forest; until[t]: how many there are up to tree t. */
-typedef struct inflation {
-    const tm_leaf_list *leaves;
-    const tm_brick *brick;
-    p4est_gloidx_t *until; /* [trees + 1] */
-    p8est_t *forest;
-} inflation;
+/* Cells of the tree that are leaves have the numbers of those that are given, then of
+ * those that are added. */
+typedef struct balancer {
+    tm_octree octree; /* with the leaves that are given */
+    tm_leaf_tree tree;
+    anchors split[TM_OCTREE_FINEST]; /* octants that are, by level */
+    unsigned level;                  /* of those that are looked at */
+    anchors *missing;                /* [chunks]: octants of a level less that must be */
+    size_t added, room;
+    uint32_t *origin; /* [added]: the leaf that it is a part of */
+    const tm_surface *surface;
+    tm_leaf *now; /* all leaves, in the end */
+    size_t leaves;
+    size_t fresh; /* the number of parts among them */
+    size_t *part; /* [fresh]: these, where the surface meets what they are a part of */
+    bool failed;
+} balancer;
 
-/* The tree that the leaf is in, from the one that the leaf before it is in. */
-static size_t tree_of(const tm_brick *brick, size_t tree, const uint32_t anchor[3])
+static bool note(anchors *list, const uint32_t anchor[AXES])
 {
-    for (;; tree++) {
-        const uint32_t *root = brick->root[tree];
-        if (anchor[0] >> TM_OCTREE_FINEST == root[0] &&
-            anchor[1] >> TM_OCTREE_FINEST == root[1] &&
-            anchor[2] >> TM_OCTREE_FINEST == root[2])
-            return tree;
-    }
-}
-
-/* x y z level of each leaf in its tree. */
-static void deflate(const inflation *in, p4est_qcoord_t *out)
-{
-    const uint32_t within = ((uint32_t)1 << TM_OCTREE_FINEST) - 1;
-    const tm_leaf_list *leaves = in->leaves;
-    size_t tree = 0;
-    for (size_t i = 0; i < leaves->count; i++) {
-        const tm_leaf *leaf = &leaves->leaf[i];
-        for (const size_t now = tree_of(in->brick, tree, leaf->anchor); tree < now;)
-            in->until[++tree] = (p4est_gloidx_t)i;
-        for (int k = 0; k < 3; k++)
-            *out++ = (p4est_qcoord_t)((leaf->anchor[k] & within) << FINER);
-        *out++ = leaf->level;
-    }
-    while (tree < in->brick->count)
-        in->until[++tree] = (p4est_gloidx_t)leaves->count;
-}
-
-static void inflate(void *user)
-{
-    inflation *in = user;
-    const size_t count = in->leaves->count;
-    sc_array_t *quadrants = sc_array_new_count(sizeof(p4est_qcoord_t), FIELDS * count);
-    deflate(in, (p4est_qcoord_t *)(void *)quadrants->array);
-    const p4est_gloidx_t first[2] = {0, (p4est_gloidx_t)count};
-    in->forest = p8est_inflate(sc_MPI_COMM_SELF, in->brick->trees, first, in->until,
-                               quadrants, NULL, NULL);
-    sc_array_destroy(quadrants);
-}
-
-static void balance(void *forest)
-{
-    p8est_balance(forest, P8EST_CONNECT_EDGE, NULL);
-}
-
-/* A balanced forest of the leaves. */
-static tm_status plant(p8est_t **forest, const tm_leaf_list *leaves,
-                       const tm_brick *brick, tm_error *error)
-{
-    inflation in = {.leaves = leaves, .brick = brick};
-    in.until = calloc(brick->count + 1, sizeof *in.until);
-    tm_status status =
-        in.until ? tm_p4est_call(inflate, &in, error) : tm_fail_memory(error);
-    free(in.until);
-    if (status == TM_OK)
-        status = tm_p4est_call(balance, in.forest, error);
-    if (status == TM_OK)
-        *forest = in.forest;
-    return status;
-}
-
-static void leaf_of(const p8est_quadrant_t *q, const uint32_t root[3], tm_leaf *leaf)
-{
-    *leaf =
-        (tm_leaf){.anchor = {(root[0] << TM_OCTREE_FINEST) + ((uint32_t)q->x >> FINER),
-                             (root[1] << TM_OCTREE_FINEST) + ((uint32_t)q->y >> FINER),
-                             (root[2] << TM_OCTREE_FINEST) + ((uint32_t)q->z >> FINER)},
-                  .level = (uint8_t)q->level};
-}
-
-/* Whether the leaf is the old one or a part of it. */
-static bool within(const tm_leaf *leaf, const tm_leaf *old)
-{
-    const unsigned shift = TM_OCTREE_FINEST - old->level;
-    for (int i = 0; i < 3; i++)
-        if (leaf->anchor[i] >> shift != old->anchor[i] >> shift)
-            return false;
+    void *grown =
+        tm_grow(list->anchor, &list->room, list->count + 1, sizeof *list->anchor);
+    if (!grown)
+        return false;
+    list->anchor = grown;
+    memcpy(list->anchor[list->count++], anchor, sizeof *list->anchor);
     return true;
 }
 
-static bool crossed(const tm_leaf *leaf, const tm_leaf *old, const tm_octree *octree,
-                    const tm_surface *surface)
+/* Notes all octants that are split, of roots and below. */
+static bool note_splits(balancer *b, uint32_t cell, const uint32_t anchor[AXES],
+                        unsigned shift)
 {
-    if (!old->crossed || leaf->level == old->level)
-        return old->crossed;
-    double low[3], high[3];
-    tm_octree_box(octree, leaf->anchor, tm_leaf_shift(leaf), low, high);
-    return tm_surface_meets_box(surface, low, high);
-}
-
-/* The leaves of the forest, in place of those that it was made of. */
-static void replace(tm_leaf_list *leaves, tm_leaf *now, p8est_t *forest,
-                    const tm_octree *octree, const tm_brick *brick,
-                    const tm_surface *surface)
-{
-    const tm_leaf *old = leaves->leaf;
-    size_t count = 0;
-    for (size_t tree = 0; tree < brick->count; tree++) {
-        p8est_tree_t *t = p8est_tree_array_index(forest->trees, (p4est_topidx_t)tree);
-        for (size_t i = 0; i < t->quadrants.elem_count; i++) {
-            tm_leaf *leaf = &now[count++];
-            leaf_of(p8est_quadrant_array_index(&t->quadrants, i), brick->root[tree],
-                    leaf);
-            while (!within(leaf, old))
-                old++;
-            leaf->crossed = crossed(leaf, old, octree, surface);
-        }
+    if (!tm_is_split(cell))
+        return true;
+    bool done =
+        shift > TM_OCTREE_FINEST || note(&b->split[TM_OCTREE_FINEST - shift], anchor);
+    for (unsigned c = 0; c < CHILDREN && done; c++) {
+        uint32_t low[AXES];
+        tm_octree_child(anchor, shift, c, low);
+        done = note_splits(b, b->tree.child[cell][c], low, shift - 1);
     }
-    free(leaves->leaf);
-    *leaves = (tm_leaf_list){.count = count, .room = count, .leaf = now};
+    return done;
 }
 
-static tm_status take_leaves(tm_leaf_list *leaves, p8est_t *forest,
-                             const tm_octree *octree, const tm_brick *brick,
-                             const tm_surface *surface, tm_error *error)
+/* The child of an octant of 2^shift units that a point is in. */
+static unsigned child_at(const uint32_t point[AXES], unsigned shift)
 {
-    const size_t count = (size_t)forest->local_num_quadrants;
-    if (count == leaves->count)
-        return TM_OK;
-    tm_leaf *now = tm_new(count, sizeof *now);
-    if (!now)
+    unsigned c = 0;
+    for (unsigned i = 0; i < AXES; i++)
+        c |= (point[i] >> (shift - 1) & 1) << i;
+    return c;
+}
+
+/* Whether the octant of 2^shift units at that place is there and split. */
+static bool is_split(const balancer *b, const uint32_t anchor[AXES], unsigned shift)
+{
+    uint32_t cell = b->tree.top;
+    for (unsigned s = tm_octree_shift(&b->octree); s > shift && tm_is_split(cell); s--)
+        cell = b->tree.child[cell][child_at(anchor, s)];
+    return tm_is_split(cell);
+}
+
+/* The neighbour of an octant's parent, of 2^shift units, on the sides where the octant
+ * is, along those axes; false where it is outside of the brick. */
+static bool find_neighbour(const balancer *b, const uint32_t octant[AXES], unsigned shift,
+                           const bool along[AXES], uint32_t neighbour[AXES])
+{
+    const uint32_t side = (uint32_t)1 << shift;
+    for (int i = 0; i < AXES; i++) {
+        const bool high = octant[i] & side >> 1;
+        neighbour[i] = octant[i] & ~(side - 1);
+        if (!along[i])
+            continue;
+        if (!high && neighbour[i] == 0)
+            return false;
+        neighbour[i] = high ? neighbour[i] + side : neighbour[i] - side;
+        if (neighbour[i] >> TM_OCTREE_FINEST >= b->octree.roots[i])
+            return false;
+    }
+    return true;
+}
+
+static void look_at(void *context, size_t first, size_t past)
+{
+    static const bool along[SIDES][AXES] = {{true, false, false}, {false, true, false},
+                                            {false, false, true}, {true, true, false},
+                                            {true, false, true},  {false, true, true}};
+    balancer *b = context;
+    const unsigned shift = TM_OCTREE_FINEST + 1 - b->level; /* of parents */
+    anchors *missing = &b->missing[first / TM_CHUNK];
+    for (size_t i = first; i < past; i++)
+        for (int s = 0; s < SIDES; s++) {
+            uint32_t neighbour[AXES];
+            if (find_neighbour(b, b->split[b->level].anchor[i], shift, along[s],
+                               neighbour) &&
+                !is_split(b, neighbour, shift) && !note(missing, neighbour))
+                tm_mark(&b->failed);
+        }
+}
+
+/* Splits the leaf that is a child of an octant, of 2^shift units at that place. */
+static bool split_child(balancer *b, uint32_t octant, unsigned c,
+                        const uint32_t anchor[AXES], unsigned shift)
+{
+    const uint32_t leaf = b->tree.child[octant][c] & ~TM_LEAF_BIT;
+    const size_t given = b->octree.leaves;
+    void *child =
+        tm_grow(b->tree.child, &b->tree.room, b->tree.octants + 1, sizeof *b->tree.child);
+    b->tree.child = child ? child : b->tree.child;
+    uint32_t *origin =
+        tm_grow(b->origin, &b->room, b->added + CHILDREN, sizeof *b->origin);
+    b->origin = origin ? origin : b->origin;
+    if (!child || !origin)
+        return false;
+    const uint32_t of = leaf < given ? leaf : origin[leaf - given];
+    const uint32_t cell = (uint32_t)b->tree.octants++;
+    b->tree.child[octant][c] = cell;
+    for (unsigned i = 0; i < CHILDREN; i++) {
+        origin[b->added] = of;
+        b->tree.child[cell][i] = TM_LEAF_BIT | (uint32_t)(given + b->added++);
+    }
+    return note(&b->split[TM_OCTREE_FINEST - shift], anchor);
+}
+
+/* Splits what is at that place down to octants of 2^shift units, and these. Roots can be
+ * leaves, what is above is split. */
+static bool split_at(balancer *b, const uint32_t anchor[AXES], unsigned shift)
+{
+    uint32_t cell = b->tree.top;
+    for (unsigned s = tm_octree_shift(&b->octree); s > shift; s--) {
+        const unsigned c = child_at(anchor, s);
+        const uint32_t low[AXES] = {anchor[0] >> (s - 1) << (s - 1),
+                                    anchor[1] >> (s - 1) << (s - 1),
+                                    anchor[2] >> (s - 1) << (s - 1)};
+        if (!tm_is_split(b->tree.child[cell][c]) && !split_child(b, cell, c, low, s - 1))
+            return false;
+        cell = b->tree.child[cell][c];
+    }
+    return true;
+}
+
+/* Makes the splits that are missing for those of a level. */
+static bool complete(balancer *b, unsigned level)
+{
+    const unsigned threads = b->octree.threads;
+    const size_t count = b->split[level].count;
+    const size_t chunks = tm_parallel_chunks(count, TM_CHUNK);
+    b->level = level;
+    b->missing = calloc(chunks + 1, sizeof *b->missing);
+    b->failed = !b->missing;
+    if (b->missing)
+        tm_parallel_runs(threads, count, TM_CHUNK, look_at, b);
+    for (size_t c = 0; b->missing && c < chunks; c++) {
+        const anchors *missing = &b->missing[c];
+        for (size_t i = 0; i < missing->count && !b->failed; i++)
+            b->failed = !split_at(b, missing->anchor[i], TM_OCTREE_FINEST + 1 - level);
+        free(missing->anchor);
+    }
+    free(b->missing);
+    return !b->failed;
+}
+
+/* The leaves of a cell. */
+static void list_leaves(balancer *b, uint32_t cell, const uint32_t anchor[AXES],
+                        unsigned shift)
+{
+    if (cell == TM_NONE)
+        return;
+    if (tm_is_leaf(cell)) {
+        const size_t leaf = cell & ~TM_LEAF_BIT, given = b->octree.leaves;
+        const bool is_part = leaf >= given;
+        const tm_leaf *of = &b->octree.leaf[is_part ? b->origin[leaf - given] : leaf];
+        if (is_part && of->crossed)
+            b->part[b->fresh++] = b->leaves;
+        b->now[b->leaves++] = (tm_leaf){.anchor = {anchor[0], anchor[1], anchor[2]},
+                                        .level = (uint8_t)(TM_OCTREE_FINEST - shift),
+                                        .crossed = of->crossed};
+        return;
+    }
+    for (unsigned c = 0; c < CHILDREN; c++) {
+        uint32_t low[AXES];
+        tm_octree_child(anchor, shift, c, low);
+        list_leaves(b, b->tree.child[cell][c], low, shift - 1);
+    }
+}
+
+/* Whether the surface meets parts of leaves that it meets. */
+static void cross_parts(void *context, size_t first, size_t past)
+{
+    const balancer *b = context;
+    for (size_t i = first; i < past; i++) {
+        tm_leaf *leaf = &b->now[b->part[i]];
+        double low[3], high[3];
+        tm_octree_box(&b->octree, leaf->anchor, tm_leaf_shift(leaf), low, high);
+        leaf->crossed = tm_surface_meets_box(b->surface, low, high);
+    }
+}
+
+static tm_status replace(balancer *b, tm_leaf_list *leaves, tm_error *error)
+{
+    static const uint32_t low[AXES] = {0, 0, 0};
+    const size_t count = leaves->count + b->added - b->added / CHILDREN;
+    const tm_status status = tm_leaf_list_check(count, error);
+    if (status != TM_OK)
+        return status;
+    b->now = tm_new(count, sizeof *b->now);
+    b->part = tm_new(b->added, sizeof *b->part);
+    if (!b->now || !b->part) {
+        free(b->now);
         return tm_fail_memory(error);
-    replace(leaves, now, forest, octree, brick, surface);
+    }
+    list_leaves(b, b->tree.top, low, tm_octree_shift(&b->octree));
+    tm_parallel_runs(b->octree.threads, b->fresh, TM_CHUNK, cross_parts, b);
+    free(leaves->leaf);
+    *leaves = (tm_leaf_list){.count = count, .room = count, .leaf = b->now};
     return TM_OK;
 }
 
-tm_status tm_balance(tm_leaf_list *leaves, const tm_octree *octree, const tm_brick *brick,
+tm_status tm_balance(tm_leaf_list *leaves, const tm_octree *octree,
                      const tm_surface *surface, tm_error *error)
 {
-    p8est_t *forest = NULL;
-    tm_status status = plant(&forest, leaves, brick, error);
+    static const uint32_t low[AXES] = {0, 0, 0};
+    balancer b = {.octree = *octree, .surface = surface};
+    b.octree.leaf = leaves->leaf;
+    b.octree.leaves = leaves->count;
+    tm_status status = tm_leaf_tree_make(&b.tree, &b.octree, error);
     if (status != TM_OK)
         return status;
-    status = take_leaves(leaves, forest, octree, brick, surface, error);
-    p8est_destroy(forest);
+    bool done = note_splits(&b, b.tree.top, low, tm_octree_shift(octree));
+    for (unsigned level = TM_OCTREE_FINEST - 1; level > 0 && done; level--)
+        done = complete(&b, level);
+    if (!done)
+        status = tm_fail_memory(error);
+    else if (b.added > 0)
+        status = replace(&b, leaves, error);
+    tm_leaf_tree_free(&b.tree);
+    for (unsigned level = 0; level < TM_OCTREE_FINEST; level++)
+        free(b.split[level].anchor);
+    free(b.origin);
+    free(b.part);
     return status;
 }

@@ -2,8 +2,10 @@
 #include "octree_parts.h"
 
 #include "../../base/array.h"
+#include "../../base/parallel.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum { CHILDREN = 8, BATCH = 4, SHIFTS = 32 };
 
@@ -50,8 +52,26 @@ typedef struct descent {
     part *part;           /* [SHIFTS][sources]: of the octants on the way down */
     tm_leaf_list *leaves; /* that are made, or NULL: */
     tm_leaf *given;       /* the leaves that are there, from the next one on */
+    bool cuts;            /* octants of some depth become tasks */
+    size_t tasks, task_room;
+    struct task *task;
+    size_t found; /* leaves of tasks that are done: none is begun where they are many */
     tm_error *error;
 } descent;
+
+/* An octant that is visited by itself, at the same time as others, with what it needs of
+ * the one that it is in; and the leaves that it has. */
+typedef struct task {
+    octant octant;
+    uint32_t **triangle; /* [sources] */
+    tm_leaf_list leaves;
+    tm_leaf *given;
+    tm_status status;
+    tm_error error;
+} task;
+
+/* Octants of tasks are so many levels below the cube that has all roots. */
+enum { TASK_DEPTH = 4 };
 
 /* The triangles that meet the octant, of those that meet its parent. */
 static tm_status cull(descent *d, octant *o, size_t s, const part *parent)
@@ -187,10 +207,14 @@ static bool outside_brick(const descent *d, const octant *o)
     return false;
 }
 
+static tm_status add_task(descent *d, const octant *o);
+
 static tm_status visit(descent *d, octant *o)
 {
+    if (d->cuts && o->shift + TASK_DEPTH <= tm_octree_shift(d->octree))
+        return add_task(d, o);
     if (!is_split(d, o))
-        return take_leaf(d, o);
+        return d->cuts ? add_task(d, o) : take_leaf(d, o);
     octant child = {.shift = o->shift - 1, .part = o->part + d->sources};
     tm_status status = TM_OK;
     for (unsigned c = 0; c < CHILDREN && status == TM_OK; c++) {
@@ -207,15 +231,111 @@ static tm_status visit(descent *d, octant *o)
     return status;
 }
 
+/* Leaves that are in an octant; they are in order. */
+static size_t count_within(const descent *d, const octant *o)
+{
+    const tm_leaf *end = d->octree->leaf + d->octree->leaves;
+    size_t count = 0;
+    for (const tm_leaf *leaf = d->given; leaf < end; leaf++, count++)
+        for (int i = 0; i < 3; i++)
+            if (leaf->anchor[i] >> o->shift != o->anchor[i] >> o->shift)
+                return count;
+    return count;
+}
+
+/* Notes an octant; the leaves that are given go on behind those that it has. */
+static tm_status add_task(descent *d, const octant *o)
+{
+    task *grown = tm_grow(d->task, &d->task_room, d->tasks + 1, sizeof *grown);
+    if (!grown)
+        return tm_fail_memory(d->error);
+    d->task = grown;
+    task *t = &grown[d->tasks++];
+    *t = (task){.octant = *o, .given = d->given};
+    t->octant.part = tm_new(SHIFTS * d->sources, sizeof *t->octant.part);
+    t->triangle = calloc(d->sources, sizeof *t->triangle);
+    if (!t->octant.part || !t->triangle)
+        return tm_fail_memory(d->error);
+    for (size_t s = 0; s < d->sources; s++) {
+        const part *of = &o->part[s];
+        t->octant.part[s] = (part){.count = of->count, .where = of->where};
+        t->triangle[s] = tm_new(of->count, sizeof **t->triangle);
+        if (!t->triangle[s])
+            return tm_fail_memory(d->error);
+        memcpy(t->triangle[s], d->source[s].triangle + of->start,
+               of->count * sizeof **t->triangle);
+    }
+    if (!d->leaves)
+        d->given += count_within(d, o);
+    return TM_OK;
+}
+
+static void make_task(void *context, size_t i)
+{
+    descent *all = context;
+    task *t = &all->task[i];
+    descent d = *all;
+    d.cuts = false;
+    d.error = &t->error;
+    d.part = t->octant.part;
+    d.leaves = d.leaves ? &t->leaves : NULL;
+    d.given = t->given;
+    t->status =
+        tm_leaf_list_check(__atomic_load_n(&all->found, __ATOMIC_RELAXED), d.error);
+    d.source = t->status == TM_OK ? tm_new(d.sources, sizeof *d.source) : NULL;
+    if (!d.source) {
+        t->status = t->status == TM_OK ? tm_fail_memory(d.error) : t->status;
+        return;
+    }
+    for (size_t s = 0; s < d.sources; s++)
+        d.source[s] = (source){.surface = all->source[s].surface,
+                               .room = t->octant.part[s].count,
+                               .triangle = t->triangle[s]};
+    t->status = visit(&d, &t->octant);
+    for (size_t s = 0; s < d.sources; s++)
+        t->triangle[s] = d.source[s].triangle;
+    free(d.source);
+    __atomic_fetch_add(&all->found, t->leaves.count, __ATOMIC_RELAXED);
+}
+
+/* Appends the leaves of a task. */
+static tm_status join_task(const descent *d, const task *t)
+{
+    tm_status status = t->status;
+    if (status != TM_OK)
+        return tm_fail_as(d->error, &t->error);
+    return d->leaves ? tm_leaf_list_append(d->leaves, &t->leaves, d->error) : TM_OK;
+}
+
+static void free_tasks(const descent *d)
+{
+    for (size_t i = 0; i < d->tasks; i++) {
+        task *t = &d->task[i];
+        for (size_t s = 0; t->triangle && s < d->sources; s++)
+            free(t->triangle[s]);
+        free(t->triangle);
+        free(t->octant.part);
+        free(t->leaves.leaf);
+    }
+    free(d->task);
+}
+
 /* A cube that has all roots is met by all triangles. p4est has the roots in Z order too.
- */
+ * Large octants are visited one after the other, what is in those at the same time. */
 static tm_status visit_brick(descent *d)
 {
     octant o = {.shift = tm_octree_shift(d->octree), .part = d->part};
     tm_octree_box(d->octree, o.anchor, o.shift, o.low, o.high);
     for (size_t s = 0; s < d->sources; s++)
         o.part[s] = (part){.count = d->source[s].surface->triangles};
-    return visit(d, &o);
+    d->cuts = true;
+    tm_status status = visit(d, &o);
+    if (status == TM_OK)
+        tm_parallel(d->octree->threads, d->tasks, make_task, d);
+    for (size_t i = 0; status == TM_OK && i < d->tasks; i++)
+        status = join_task(d, &d->task[i]);
+    free_tasks(d);
+    return status;
 }
 
 static tm_status start_source(descent *d, const tm_surface *surface, size_t *number)

@@ -50,6 +50,14 @@ static inline void tm_octree_child(const uint32_t anchor[3], unsigned shift, uns
         child[i] = anchor[i] + ((c >> i & 1) ? half : 0);
 }
 
+/* Whether an octree can have so many leaves: TM_ERROR_SYSTEM where the machine's memory
+ * would not hold it, TM_ERROR_INPUT where there are more than TM_LEAVES_MAX. */
+tm_status tm_leaf_list_check(size_t count, tm_error *error);
+
+/* Appends the leaves of another list; the same errors. */
+tm_status tm_leaf_list_append(tm_leaf_list *list, const tm_leaf_list *more,
+                              tm_error *error);
+
 /* Appends a leaf. TM_ERROR_SYSTEM: memory, also that of an octree of so many leaves;
  * TM_ERROR_INPUT: there are more than TM_LEAVES_MAX. */
 tm_status tm_leaf_list_add(tm_leaf_list *list, const uint32_t anchor[3], unsigned level,

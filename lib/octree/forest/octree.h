@@ -54,6 +54,7 @@ typedef struct tm_octree {
     uint32_t (*node)[TM_LEAF_NODES]; /* [leaves]: corners, then the nodes that smaller
                                         neighbours have in the middle of its edges and
                                         faces, TM_NONE where there is none */
+    unsigned threads; /* for work on it, those of the surface: no result depends on it */
 } tm_octree;
 
 /* The coordinates of a point of the grid. */

@@ -9,9 +9,10 @@
 #include <stdlib.h>
 
 /* An octree without leaves. */
-static tm_octree on_brick(const tm_brick *brick)
+static tm_octree on_brick(const tm_brick *brick, unsigned threads)
 {
-    return (tm_octree){.low = {brick->low[0], brick->low[1], brick->low[2]},
+    return (tm_octree){.threads = threads,
+                       .low = {brick->low[0], brick->low[1], brick->low[2]},
                        .side = brick->side,
                        .roots = {brick->roots[0], brick->roots[1], brick->roots[2]},
                        .finest = TM_OCTREE_FINEST};
@@ -106,17 +107,16 @@ static tm_status split_listed(tm_leaf_list *leaves, const tm_octree *octree,
     return status;
 }
 
-static tm_status build(tm_octree *octree, tm_leaf_list *leaves, const tm_brick *brick,
-                       const tm_surface *surface, const tm_octree_rule *rule,
-                       size_t rules, tm_error *error)
+static tm_status build(tm_octree *octree, tm_leaf_list *leaves, const tm_surface *surface,
+                       const tm_octree_rule *rule, size_t rules, tm_error *error)
 {
     tm_status status = tm_octree_descend(leaves, octree, surface, rule, rules, error);
     if (status == TM_OK)
-        status = tm_balance(leaves, octree, brick, surface, error);
+        status = tm_balance(leaves, octree, surface, error);
     if (status == TM_OK && has_list(rule, rules)) {
         status = split_listed(leaves, octree, surface, rule, rules, error);
         if (status == TM_OK)
-            status = tm_balance(leaves, octree, brick, surface, error);
+            status = tm_balance(leaves, octree, surface, error);
     }
     if (status == TM_OK)
         status = finish(octree, leaves, error);
@@ -139,8 +139,8 @@ tm_status tm_octree_build(tm_octree *octree, const tm_surface *surface,
         status = levels ? tm_octree_set_levels(rule, rules, brick.side, levels, error)
                         : tm_fail_memory(error);
     if (status == TM_OK) {
-        *octree = on_brick(&brick);
-        status = build(octree, &leaves, &brick, surface, levels, rules, error);
+        *octree = on_brick(&brick, surface->threads);
+        status = build(octree, &leaves, surface, levels, rules, error);
     }
     free(leaves.leaf);
     free(levels);
@@ -155,13 +155,13 @@ tm_status tm_octree_refine(tm_octree *octree, const tm_surface *surface,
 {
     tm_brick brick;
     tm_status status = tm_brick_of(&brick, octree, error);
-    tm_octree now = on_brick(&brick);
+    tm_octree now = on_brick(&brick, octree->threads);
     tm_leaf_list leaves = {.count = 0};
     if (status == TM_OK)
         status = split_leaves(&leaves, octree, surface, octree->leaf, octree->leaves,
                               split, error);
     if (status == TM_OK)
-        status = tm_balance(&leaves, octree, &brick, surface, error);
+        status = tm_balance(&leaves, octree, surface, error);
     if (status == TM_OK)
         status = finish(&now, &leaves, error);
     tm_brick_free(&brick);

@@ -43,15 +43,14 @@ double tm_octree_least_size(const tm_octree_rule *rule, size_t rules);
 tm_status tm_octree_set_levels(const tm_octree_rule *rule, size_t rules, double side,
                                tm_octree_rule *out, tm_error *error);
 
-/* balance.c: 2:1 balance, which p4est does (C. Burstedde, L. C. Wilcox, O. Ghattas,
- * p4est: scalable algorithms for parallel adaptive mesh refinement on forests of octrees,
- * SIAM Journal on Scientific Computing 33, 2011). */
+/* balance.c: 2:1 balance. */
 
 /* Splits as few leaves as can be until two that share a face or some of an edge differ by
  * one level at most. The leaves are in order and fill the brick, before and after; a new
  * one knows whether the surface meets it (which is only asked where its parent says that
- * the surface meets that). O(leaves log leaves), 0.15 µs per leaf. */
-tm_status tm_balance(tm_leaf_list *leaves, const tm_octree *octree, const tm_brick *brick,
+ * the surface meets that; `surface` may be NULL where none does). The errors of
+ * tm_leaf_list_check(). O(leaves), 0.05 µs per leaf. */
+tm_status tm_balance(tm_leaf_list *leaves, const tm_octree *octree,
                      const tm_surface *surface, tm_error *error);
 
 /* octree_nodes.c: the nodes of an octree. */

@@ -184,7 +184,7 @@ tm_status tm_octree_read_blocks(tm_octree *octree, const tm_stream *stream,
                                 const tm_surface *surface, uint32_t **order,
                                 tm_error *error)
 {
-    *octree = (tm_octree){.leaves = 0};
+    *octree = (tm_octree){.threads = surface ? surface->threads : 1};
     *order = NULL;
     const tm_block *root = tm_stream_find(stream, ".root");
     const tm_block *octant = tm_stream_find(stream, ".octant");

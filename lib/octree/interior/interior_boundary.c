@@ -2,6 +2,7 @@
 #include "interior_boundary.h"
 
 #include "../../base/array.h"
+#include "../../base/parallel.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -12,10 +13,12 @@ typedef struct {
     const tm_octree *octree;
     const tm_interior *part;
     size_t parts;
-    const tm_interior *interior; /* the part whose faces are found */
     tm_interior_boundary *boundary;
     uint32_t *boundary_node; /* [nodes of the octree]: TM_NONE where it is none */
-    size_t face_room, leaf_room, piece_room, region_room;
+    uint8_t *count;          /* [leaves]: its faces */
+    size_t chunks;           /* of leaves */
+    size_t *first;           /* [parts][chunks]: how many faces, then the first of them */
+    size_t at;               /* the part whose faces are found */
 } finder;
 
 tm_leaf_state tm_interior_leaf_state(const tm_interior *interior, const tm_octree *octree,
@@ -89,8 +92,8 @@ static bool is_open(const finder *find, size_t leaf, unsigned f, unsigned corner
     const unsigned own = tm_point_octants[corner];
     const unsigned step = 1u << f / 2;
     const unsigned beyond = f % 2 ? own << step : own >> step;
-    for (const tm_interior *p = find->part; p <= find->interior; p++)
-        if (p->mask[node] & beyond)
+    for (size_t p = 0; p <= find->at; p++)
+        if (find->part[p].mask[node] & beyond)
             return false;
     return true;
 }
@@ -106,66 +109,42 @@ static unsigned corner_of(unsigned f, const tm_piece *piece)
 }
 
 /* The regions on both sides of a piece of face f of a leaf, which has that corner. */
-static tm_status add_regions(finder *find, size_t leaf, unsigned f, unsigned corner,
-                             tm_error *error)
+static void set_regions(const finder *find, size_t face, size_t leaf, unsigned f,
+                        unsigned corner)
 {
-    tm_interior_boundary *boundary = find->boundary;
-    if (!find->part->label)
-        return TM_OK;
-    void *region = tm_grow(boundary->region, &find->region_room, boundary->faces + 1,
-                           sizeof *boundary->region);
-    if (!region)
-        return tm_fail_memory(error);
-    boundary->region = region;
     const unsigned step = 1u << f / 2, own = 7 - corner;
-    boundary->region[boundary->faces][0] = find->part->label[leaf];
-    boundary->region[boundary->faces][1] =
+    find->boundary->region[face][0] = find->part->label[leaf];
+    find->boundary->region[face][1] =
         find->part->octant[find->octree->node[leaf][corner]][own ^ step];
-    return TM_OK;
 }
 
-static tm_status add_face(finder *find, size_t leaf, const tm_piece *piece,
-                          unsigned which, tm_error *error)
+static void set_face(const finder *find, size_t face, size_t leaf, const tm_piece *piece,
+                     unsigned which)
 {
     tm_interior_boundary *boundary = find->boundary;
-    void *face = tm_grow(boundary->face, &find->face_room, boundary->faces + 1,
-                         sizeof *boundary->face);
-    if (!face)
-        return tm_fail_memory(error);
-    boundary->face = face;
-    void *leaves = tm_grow(boundary->leaf, &find->leaf_room, boundary->faces + 1,
-                           sizeof *boundary->leaf);
-    if (!leaves)
-        return tm_fail_memory(error);
-    boundary->leaf = leaves;
-    void *pieces = tm_grow(boundary->piece, &find->piece_room, boundary->faces + 1,
-                           sizeof *boundary->piece);
-    if (!pieces)
-        return tm_fail_memory(error);
-    boundary->piece = pieces;
-    boundary->piece[boundary->faces] = (uint8_t)which;
-    uint32_t *corner = boundary->face[boundary->faces];
+    uint32_t *corner = boundary->face[face];
     corner[3] = TM_NONE;
     for (unsigned i = 0; i < piece->k; i++)
         corner[i] = find->boundary_node[find->octree->node[leaf][piece->point[i]]];
-    boundary->leaf[boundary->faces++] = (uint32_t)leaf;
-    return TM_OK;
+    boundary->piece[face] = (uint8_t)which;
+    boundary->leaf[face] = (uint32_t)leaf;
 }
 
 static bool has_boundary(const finder *find, size_t leaf)
 {
+    const tm_octant_mask *mask = find->part[find->at].mask;
     for (int p = 0; p < TM_LEAF_EDGE; p++)
-        if (find->interior->mask[find->octree->node[leaf][p]] != TM_ALL_OCTANTS)
+        if (mask[find->octree->node[leaf][p]] != TM_ALL_OCTANTS)
             return true;
     return false;
 }
 
-static tm_status add_faces_of(finder *find, size_t leaf, tm_error *error)
+/* The faces of a leaf: how many, and, where they are wanted, what they are. */
+static unsigned find_faces_of(const finder *find, size_t leaf, const size_t *first)
 {
-    if (!has_boundary(find, leaf))
-        return TM_OK;
+    unsigned count = 0;
     const tm_leaf_state state =
-        tm_interior_leaf_state(find->interior, find->octree, leaf);
+        tm_interior_leaf_state(&find->part[find->at], find->octree, leaf);
     for (unsigned f = 0; f < LEAF_FACES; f++) {
         tm_piece piece[TM_FACE_PIECES];
         const unsigned pieces = tm_face_pieces(state, f, piece);
@@ -173,13 +152,70 @@ static tm_status add_faces_of(finder *find, size_t leaf, tm_error *error)
             const unsigned corner = corner_of(f, &piece[i]);
             if (!is_open(find, leaf, f, corner))
                 continue;
-            tm_status status = add_regions(find, leaf, f, corner, error);
-            if (status == TM_OK)
-                status = add_face(find, leaf, &piece[i], TM_FACE_PIECES * f + i, error);
-            if (status != TM_OK)
-                return status;
+            if (first && find->part->label)
+                set_regions(find, *first + count, leaf, f, corner);
+            if (first)
+                set_face(find, *first + count, leaf, &piece[i], TM_FACE_PIECES * f + i);
+            count++;
         }
     }
+    return count;
+}
+
+static void count_chunk(void *context, size_t first, size_t past)
+{
+    const finder *find = context;
+    size_t *faces = &find->first[find->at * find->chunks + first / TM_CHUNK];
+    *faces = 0;
+    for (size_t l = first; l < past; l++) {
+        if (!find->part[find->at].chosen[l])
+            continue;
+        find->count[l] =
+            (uint8_t)(has_boundary(find, l) ? find_faces_of(find, l, NULL) : 0);
+        *faces += find->count[l];
+    }
+}
+
+static void fill_chunk(void *context, size_t first, size_t past)
+{
+    const finder *find = context;
+    size_t face = find->first[find->at * find->chunks + first / TM_CHUNK];
+    for (size_t l = first; l < past; l++)
+        if (find->part[find->at].chosen[l] && find->count[l] > 0)
+            face += find_faces_of(find, l, &face);
+}
+
+/* Calls work for the leaves of all parts. */
+static void go_over(finder *find, void (*work)(void *context, size_t first, size_t past))
+{
+    for (find->at = 0; find->at < find->parts; find->at++)
+        tm_parallel_runs(find->octree->threads, find->octree->leaves, TM_CHUNK, work,
+                         find);
+}
+
+static tm_status find_faces(finder *find, tm_error *error)
+{
+    tm_interior_boundary *boundary = find->boundary;
+    find->chunks = tm_parallel_chunks(find->octree->leaves, TM_CHUNK);
+    find->count = tm_new(find->octree->leaves, sizeof *find->count);
+    find->first = tm_new(find->parts * find->chunks, sizeof *find->first);
+    if (!find->count || !find->first)
+        return tm_fail_memory(error);
+    go_over(find, count_chunk);
+    for (size_t i = 0; i < find->parts * find->chunks; i++) {
+        const size_t faces = find->first[i];
+        find->first[i] = boundary->faces;
+        boundary->faces += faces;
+    }
+    boundary->face = tm_new(boundary->faces, sizeof *boundary->face);
+    boundary->leaf = tm_new(boundary->faces, sizeof *boundary->leaf);
+    boundary->piece = tm_new(boundary->faces, sizeof *boundary->piece);
+    if (find->part->label)
+        boundary->region = tm_new(boundary->faces, sizeof *boundary->region);
+    if (!boundary->face || !boundary->leaf || !boundary->piece ||
+        (find->part->label && !boundary->region))
+        return tm_fail_memory(error);
+    go_over(find, fill_chunk);
     return TM_OK;
 }
 
@@ -212,17 +248,15 @@ tm_status tm_interior_boundary_of_parts(tm_interior_boundary *boundary,
     memcpy(boundary->low, octree->low, sizeof boundary->low);
     finder find = {.octree = octree, .part = part, .parts = parts, .boundary = boundary};
     tm_status status = number_nodes(&find, error);
-    for (size_t p = 0; status == TM_OK && p < parts; p++) {
-        find.interior = &part[p];
-        for (size_t l = 0; status == TM_OK && l < octree->leaves; l++)
-            if (part[p].chosen[l])
-                status = add_faces_of(&find, l, error);
-    }
+    if (status == TM_OK)
+        status = find_faces(&find, error);
     if (status == TM_OK)
         status = find_sizes(boundary, octree, error);
     if (status == TM_OK)
         status = find_around(boundary, error);
     free(find.boundary_node);
+    free(find.count);
+    free(find.first);
     return status;
 }
 

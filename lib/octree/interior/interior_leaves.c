@@ -5,6 +5,7 @@
 
 #include "../../base/array.h"
 #include "../../base/disjoint_sets.h"
+#include "../../base/parallel.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -31,19 +32,39 @@ bool tm_leaf_is_as_before(const tm_octree *octree, size_t leaf)
     return !own->crossed && !own[-1].crossed && touch(octree, own, own - 1);
 }
 
-static void classify(tm_interior *interior, const tm_octree *octree,
-                     const tm_surface *surface)
+typedef struct {
+    const tm_interior *interior; /* whose arrays are filled */
+    const tm_octree *octree;
+    const tm_surface *surface;
+} chooser;
+
+/* Asks of leaves that are not as the one before. */
+static void ask_chunk(void *context, size_t first, size_t past)
 {
-    for (size_t l = 0; l < octree->leaves; l++) {
-        const tm_leaf *leaf = &octree->leaf[l];
-        if (l > 0 && tm_leaf_is_as_before(octree, l)) {
-            interior->chosen[l] = interior->chosen[l - 1];
+    const chooser *c = context;
+    bool *chosen = c->interior->chosen;
+    for (size_t l = first; l < past; l++) {
+        if (l > 0 && tm_leaf_is_as_before(c->octree, l)) {
+            chosen[l] = l > first && chosen[l - 1];
             continue;
         }
         double centre[3];
-        tm_leaf_centre(octree, leaf, centre);
-        interior->chosen[l] = tm_surface_has_inside(surface, centre);
+        tm_leaf_centre(c->octree, &c->octree->leaf[l], centre);
+        chosen[l] = tm_surface_has_inside(c->surface, centre);
     }
+}
+
+/* The first leaves of a chunk may be as the last one of the chunk before it. */
+static void classify(const tm_interior *interior, const tm_octree *octree,
+                     const tm_surface *surface)
+{
+    chooser c = {interior, octree, surface};
+    tm_parallel_runs(octree->threads, octree->leaves, TM_CHUNK, ask_chunk, &c);
+    for (size_t first = TM_CHUNK; first < octree->leaves; first += TM_CHUNK)
+        for (size_t l = first; l < octree->leaves && tm_leaf_is_as_before(octree, l) &&
+                               l < first + TM_CHUNK;
+             l++)
+            interior->chosen[l] = interior->chosen[l - 1];
 }
 
 /* Sets the octants of a leaf's nodes to whether it is chosen. */
@@ -58,6 +79,23 @@ static void put_in_masks(tm_interior *interior, const tm_octree *octree, size_t 
         else
             interior->mask[node] &= (tm_octant_mask)~tm_point_octants[p];
     }
+}
+
+static void fill_chunk(void *context, size_t first, size_t past)
+{
+    const chooser *c = context;
+    for (size_t l = first; l < past; l++)
+        for (int p = 0; c->interior->chosen[l] && p < TM_LEAF_NODES; p++)
+            if (c->octree->node[l][p] != TM_NONE)
+                __atomic_fetch_or(&c->interior->mask[c->octree->node[l][p]],
+                                  tm_point_octants[p], __ATOMIC_RELAXED);
+}
+
+/* Sets the octants of all chosen leaves in masks that are empty. */
+static void fill_masks(const tm_interior *interior, const tm_octree *octree)
+{
+    chooser c = {.interior = interior, .octree = octree};
+    tm_parallel_runs(octree->threads, octree->leaves, TM_CHUNK, fill_chunk, &c);
 }
 
 void tm_interior_flip(tm_interior *interior, const tm_octree *octree, size_t leaf)
@@ -87,11 +125,17 @@ typedef struct {
     tm_contacts contacts;
 } cleaner;
 
+static void mark_bad(void *context, size_t first, size_t past)
+{
+    const cleaner *c = context;
+    for (size_t n = first; n < past; n++)
+        c->bad[n] = !tm_octant_mask_is_good(c->interior->mask[n]);
+}
+
 /* Lists the leaves at nodes whose mask is bad. */
 static tm_status find_contacts(cleaner *c, tm_error *error)
 {
-    for (size_t n = 0; n < c->octree->nodes; n++)
-        c->bad[n] = !tm_octant_mask_is_good(c->interior->mask[n]);
+    tm_parallel_runs(c->octree->threads, c->octree->nodes, TM_CHUNK, mark_bad, c);
     return tm_contacts_find(&c->contacts, c->octree, c->bad, error);
 }
 
@@ -160,26 +204,43 @@ static tm_status clean(cleaner *c, tm_error *error)
     }
 }
 
+/* Marks nodes of chosen leaves. */
+static void use_nodes(void *context, size_t first, size_t past)
+{
+    const chooser *c = context;
+    for (size_t l = first; l < past; l++)
+        for (int p = 0; c->interior->chosen[l] && p < TM_LEAF_EDGE; p++)
+            tm_mark(&c->interior->used[c->octree->node[l][p]]);
+}
+
+/* Marks those in the middle of edges of divided faces; no centre of a face is one. */
+static void use_middles(void *context, size_t first, size_t past)
+{
+    const chooser *c = context;
+    const tm_octree *octree = c->octree;
+    for (size_t l = first; l < past; l++) {
+        for (int f = 0; c->interior->chosen[l] && f < 6; f++) {
+            const uint32_t centre = octree->node[l][TM_LEAF_FACE + f];
+            if (centre == TM_NONE || !c->interior->used[centre])
+                continue;
+            for (int i = 0; i < 4; i++)
+                tm_mark(&c->interior
+                             ->used[octree->node[l][TM_LEAF_EDGE + tm_face_edge[f][i]]]);
+        }
+    }
+}
+
 /* The nodes that the mesh has. A face of which a part is shared with a smaller chosen
  * leaf has its centre, and is then divided in four. */
 void tm_interior_find_used(tm_interior *interior, const tm_octree *octree)
 {
+    chooser c = {.interior = interior, .octree = octree};
     interior->count = 0;
     memset(interior->used, false, octree->nodes);
-    for (size_t l = 0; l < octree->leaves; l++) {
+    for (size_t l = 0; l < octree->leaves; l++)
         interior->count += interior->chosen[l];
-        for (int p = 0; interior->chosen[l] && p < TM_LEAF_EDGE; p++)
-            interior->used[octree->node[l][p]] = true;
-    }
-    for (size_t l = 0; l < octree->leaves; l++) {
-        for (int f = 0; interior->chosen[l] && f < 6; f++) {
-            const uint32_t centre = octree->node[l][TM_LEAF_FACE + f];
-            if (centre == TM_NONE || !interior->used[centre])
-                continue;
-            for (int i = 0; i < 4; i++)
-                interior->used[octree->node[l][TM_LEAF_EDGE + tm_face_edge[f][i]]] = true;
-        }
-    }
+    tm_parallel_runs(octree->threads, octree->leaves, TM_CHUNK, use_nodes, &c);
+    tm_parallel_runs(octree->threads, octree->leaves, TM_CHUNK, use_middles, &c);
 }
 
 tm_status tm_interior_choose(tm_interior *interior, const tm_octree *octree,
@@ -199,9 +260,7 @@ tm_status tm_interior_choose(tm_interior *interior, const tm_octree *octree,
         return labelled;
     }
     classify(interior, octree, surface);
-    for (size_t l = 0; l < octree->leaves; l++)
-        if (interior->chosen[l])
-            put_in_masks(interior, octree, l);
+    fill_masks(interior, octree);
     bool *bad = malloc(octree->nodes);
     if (!bad)
         return tm_fail_memory(error);
@@ -314,9 +373,7 @@ tm_status tm_interior_find_enclosed(tm_interior *enclosed, tm_interior *interior
         tm_interior_free(enclosed);
         return TM_OK;
     }
-    for (size_t l = 0; l < octree->leaves; l++)
-        if (enclosed->chosen[l])
-            put_in_masks(enclosed, octree, l);
+    fill_masks(enclosed, octree);
     share_used(enclosed, interior, octree);
     return TM_OK;
 }
@@ -330,20 +387,35 @@ static bool has_several(const uint32_t octant[8])
     return several;
 }
 
-size_t tm_interior_find_lost(const tm_interior *interior, const tm_octree *octree,
-                             const tm_surface *surface, uint8_t *lost)
+typedef struct {
+    chooser of;
+    uint8_t *lost;
+} loss_finder;
+
+static void find_lost(void *context, size_t first, size_t past)
 {
-    size_t count = 0;
-    for (size_t l = 0; l < octree->leaves; l++) {
-        bool near = !octree->leaf[l].crossed || surface->by_winding;
+    const loss_finder *f = context;
+    const tm_interior *interior = f->of.interior;
+    const tm_octree *octree = f->of.octree;
+    for (size_t l = first; l < past; l++) {
+        bool near = !octree->leaf[l].crossed || f->of.surface->by_winding;
         for (int p = 0; !near && p < TM_LEAF_EDGE; p++) {
             const uint32_t node = octree->node[l][p];
             const tm_octant_mask mask = interior->mask[node];
             near = interior->octant ? has_several(interior->octant[node])
                                     : mask != 0 && mask != TM_ALL_OCTANTS;
         }
-        lost[l] = !near;
-        count += !near;
+        f->lost[l] = !near;
     }
+}
+
+size_t tm_interior_find_lost(const tm_interior *interior, const tm_octree *octree,
+                             const tm_surface *surface, uint8_t *lost)
+{
+    loss_finder f = {{interior, octree, surface}, lost};
+    size_t count = 0;
+    tm_parallel_runs(octree->threads, octree->leaves, TM_CHUNK, find_lost, &f);
+    for (size_t l = 0; l < octree->leaves; l++)
+        count += lost[l];
     return count;
 }

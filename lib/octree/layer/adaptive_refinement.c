@@ -3,6 +3,7 @@
 
 #include "../../base/array.h"
 #include "../../base/disjoint_sets.h"
+#include "../../base/parallel.h"
 #include "../forest/octree_build.h"
 #include "../interior/wall_refinement.h"
 #include "octree_mesh_parts.h"
@@ -51,25 +52,42 @@ static bool is_behind_boundary(const tm_interior *interior, const tm_octree *oct
     return false;
 }
 
-/* Marks such leaves where many touch, as along a plane: the boundary has large faces
- * there. A few only are everywhere. */
-static tm_status mark_behind_boundary(const tm_interior *interior,
-                                      const tm_octree *octree, unsigned level,
-                                      uint8_t *split, tm_error *error)
+typedef struct {
+    const tm_interior *interior;
+    const tm_octree *octree;
+    unsigned level;
+    bool *behind; /* [leaves] */
+    bool any;
+} behind_finder;
+
+static void find_behind(void *context, size_t first, size_t past)
+{
+    behind_finder *f = context;
+    bool any = false;
+    for (size_t l = first; l < past; l++) {
+        f->behind[l] = is_behind_boundary(f->interior, f->octree, f->level, l);
+        any |= f->behind[l];
+    }
+    if (any)
+        tm_mark(&f->any);
+}
+
+/* Marks those of the leaves where many touch. */
+static bool mark_many(const behind_finder *f, uint8_t *split)
 {
     const uint32_t many = 8;
+    const tm_octree *octree = f->octree;
     uint32_t *parent = tm_new(octree->nodes, sizeof *parent);
     uint32_t *count = calloc(octree->nodes + 1, sizeof *count);
     const bool ok = parent && count;
     for (size_t n = 0; ok && n < octree->nodes; n++)
         parent[n] = (uint32_t)n;
     for (size_t l = 0; ok && l < octree->leaves; l++)
-        if (is_behind_boundary(interior, octree, level, l))
-            for (int p = 1; p < TM_LEAF_EDGE; p++)
-                tm_set_unite(parent, octree->node[l][0], octree->node[l][p]);
+        for (int p = 1; f->behind[l] && p < TM_LEAF_EDGE; p++)
+            tm_set_unite(parent, octree->node[l][0], octree->node[l][p]);
     for (int round = 0; ok && round < 2; round++)
         for (size_t l = 0; l < octree->leaves; l++) {
-            if (!is_behind_boundary(interior, octree, level, l))
+            if (!f->behind[l])
                 continue;
             uint32_t *of = &count[tm_set_root(parent, octree->node[l][0])];
             if (round == 0)
@@ -79,6 +97,25 @@ static tm_status mark_behind_boundary(const tm_interior *interior,
         }
     free(parent);
     free(count);
+    return ok;
+}
+
+/* Marks such leaves where many touch, as along a plane: the boundary has large faces
+ * there. A few only are everywhere. */
+static tm_status mark_behind_boundary(const tm_interior *interior,
+                                      const tm_octree *octree, unsigned level,
+                                      uint8_t *split, tm_error *error)
+{
+    behind_finder f = {.interior = interior,
+                       .octree = octree,
+                       .level = level,
+                       .behind = tm_new(octree->leaves, sizeof *f.behind)};
+    bool ok = f.behind != NULL;
+    if (ok)
+        tm_parallel_runs(octree->threads, octree->leaves, TM_CHUNK, find_behind, &f);
+    if (ok && f.any)
+        ok = mark_many(&f, split);
+    free(f.behind);
     return ok ? TM_OK : tm_fail_memory(error);
 }
 

@@ -2,6 +2,7 @@
 #include "assemble.h"
 
 #include "../../base/array.h"
+#include "../../base/parallel.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -21,7 +22,6 @@ typedef struct {
     uint32_t *outer;     /* [nodes of its boundary]: of the interior boundary; NULL: the
                             same */
     uint32_t *layer;     /* [faces of its boundary] */
-    size_t face;         /* so far */
 } side;
 
 typedef struct {
@@ -30,10 +30,19 @@ typedef struct {
     tm_assembly *assembly;
     size_t sides;
     side *side;
-    side *at;                        /* that of the leaf */
+    size_t middles, elements, items; /* of all leaves */
+    struct filler *chunk;            /* [chunks of leaves] */
+    size_t *face;                    /* [chunks][sides]: where a chunk is */
+} assembler;
+
+/* The elements of a chunk of leaves: counted, or written behind those before it. */
+typedef struct filler {
+    const assembler *all;
     bool counting;                   /* nothing is written yet */
     size_t middles, elements, items; /* so far */
-} assembler;
+    const side *at;                  /* that of the leaf */
+    size_t *face;                    /* the face of its boundary that comes next */
+} filler;
 
 /* The nodes that leaves of a side have, and its copies of boundary nodes. */
 static tm_status number_side(assembler *a, side *s, tm_error *error)
@@ -78,6 +87,7 @@ static tm_status allocate(const assembler *a, tm_error *error)
     tm_mixed_mesh *mesh = &to->mesh;
     mesh->nodes = to->core + a->boundary->nodes + a->middles;
     mesh->elements = a->elements;
+    mesh->threads = a->octree->threads;
     if (mesh->nodes >= TM_NONE || mesh->elements >= TM_NONE)
         return tm_fail(error, TM_ERROR_SYSTEM,
                        "the mesh would have %zu nodes and %zu elements, more than 32 "
@@ -94,9 +104,9 @@ static tm_status allocate(const assembler *a, tm_error *error)
     return TM_OK;
 }
 
-static void add_element(assembler *a, unsigned k, const uint32_t *node)
+static void add_element(filler *a, unsigned k, const uint32_t *node)
 {
-    tm_mixed_mesh *mesh = &a->assembly->mesh;
+    tm_mixed_mesh *mesh = &a->all->assembly->mesh;
     if (!a->counting) {
         mesh->start[a->elements] = a->items;
         memcpy(mesh->item + a->items, node, k * sizeof *node);
@@ -106,16 +116,16 @@ static void add_element(assembler *a, unsigned k, const uint32_t *node)
 }
 
 /* A node in the middle of leaf l. */
-static uint32_t new_middle(assembler *a, size_t l)
+static uint32_t new_middle(filler *a, size_t l)
 {
     if (!a->counting)
-        a->assembly->middle_leaf[a->middles] = (uint32_t)l;
-    return (uint32_t)(a->assembly->core + a->boundary->nodes + a->middles++);
+        a->all->assembly->middle_leaf[a->middles] = (uint32_t)l;
+    return (uint32_t)(a->all->assembly->core + a->all->boundary->nodes + a->middles++);
 }
 
 /* The element between a face of a leaf, whose k nodes turn counter-clockwise seen from
  * outside, and the node in the middle of the leaf. */
-static void add_to_middle(assembler *a, unsigned k, const uint32_t *face, uint32_t middle)
+static void add_to_middle(filler *a, unsigned k, const uint32_t *face, uint32_t middle)
 {
     uint32_t node[MOST_NODES];
     for (unsigned i = 0; i < k; i++)
@@ -125,7 +135,7 @@ static void add_to_middle(assembler *a, unsigned k, const uint32_t *face, uint32
 }
 
 /* Whether the face of the interior boundary that comes next is that piece of leaf l. */
-static bool is_next(const assembler *a, size_t face, size_t l, unsigned piece)
+static bool is_next(const filler *a, size_t face, size_t l, unsigned piece)
 {
     const tm_interior_boundary *boundary = a->at->boundary;
     return face < boundary->faces && boundary->leaf[face] == l &&
@@ -134,11 +144,12 @@ static bool is_next(const assembler *a, size_t face, size_t l, unsigned piece)
 
 /* Divides a leaf from its centre, with the pieces of its faces that are cut as triangles.
  */
-static void add_star(assembler *a, size_t l, const uint32_t at[TM_LEAF_NODES])
+static void add_star(filler *a, size_t l, const uint32_t at[TM_LEAF_NODES])
 {
-    const tm_leaf_state state = tm_interior_leaf_state(a->at->interior, a->octree, l);
+    const tm_leaf_state state =
+        tm_interior_leaf_state(a->at->interior, a->all->octree, l);
     const uint32_t middle = new_middle(a, l);
-    size_t next = a->at->face;
+    size_t next = *a->face;
     for (unsigned f = 0; f < LEAF_FACES; f++) {
         tm_piece piece[TM_FACE_PIECES];
         const unsigned pieces = tm_face_pieces(state, f, piece);
@@ -162,20 +173,20 @@ static void add_star(assembler *a, size_t l, const uint32_t at[TM_LEAF_NODES])
     }
 }
 
-static bool has_cut(const assembler *a, size_t l)
+static bool has_cut(const filler *a, size_t l)
 {
     const tm_interior_boundary *boundary = a->at->boundary;
-    for (size_t f = a->at->face; f < boundary->faces && boundary->leaf[f] == l; f++)
+    for (size_t f = *a->face; f < boundary->faces && boundary->leaf[f] == l; f++)
         if (boundary->cut[f] != TM_UNCUT)
             return true;
     return false;
 }
 
-static void add_leaf(assembler *a, size_t l)
+static void add_leaf(filler *a, size_t l)
 {
     uint32_t at[TM_LEAF_CENTRE + 1];
     for (int p = 0; p < TM_LEAF_NODES; p++) {
-        const uint32_t node = a->octree->node[l][p];
+        const uint32_t node = a->all->octree->node[l][p];
         at[p] = node == TM_NONE ? TM_NONE : a->at->core_node[node];
     }
     if (has_cut(a, l)) {
@@ -183,7 +194,7 @@ static void add_leaf(assembler *a, size_t l)
         return;
     }
     const tm_transition t =
-        tm_transition_of(tm_interior_leaf_state(a->at->interior, a->octree, l));
+        tm_transition_of(tm_interior_leaf_state(a->at->interior, a->all->octree, l));
     at[TM_LEAF_CENTRE] = t.centre ? new_middle(a, l) : TM_NONE;
     for (unsigned i = 0; i < t.pieces; i++) {
         uint32_t node[MOST_NODES];
@@ -195,7 +206,7 @@ static void add_leaf(assembler *a, size_t l)
 
 /* The wedge between the triangle of corners c of the interior boundary's face and its
  * copy. */
-static void add_wedge(assembler *a, const uint32_t *in, const uint32_t *out,
+static void add_wedge(filler *a, const uint32_t *in, const uint32_t *out,
                       const uint8_t c[3])
 {
     add_element(
@@ -204,12 +215,12 @@ static void add_wedge(assembler *a, const uint32_t *in, const uint32_t *out,
 }
 
 /* The layer's elements under the faces of leaf l. */
-static void add_layer(assembler *a, size_t l)
+static void add_layer(filler *a, size_t l)
 {
-    side *s = a->at;
+    const side *s = a->at;
     const tm_interior_boundary *boundary = s->boundary;
-    for (; s->face < boundary->faces && boundary->leaf[s->face] == l; s->face++) {
-        const size_t f = s->face;
+    for (; *a->face < boundary->faces && boundary->leaf[*a->face] == l; ++*a->face) {
+        const size_t f = *a->face;
         uint32_t in[4];
         uint32_t out[4];
         const unsigned k = tm_boundary_face_corners(boundary, f);
@@ -218,7 +229,7 @@ static void add_layer(assembler *a, size_t l)
         for (unsigned i = 0; i < k; i++) {
             const uint32_t node = boundary->face[f][i];
             in[i] = s->inner[node];
-            out[i] = a->assembly->outer + (s->outer ? s->outer[node] : node);
+            out[i] = a->all->assembly->outer + (s->outer ? s->outer[node] : node);
         }
         if (k == 3)
             add_wedge(a, in, out, (const uint8_t[]){0, 1, 2});
@@ -232,38 +243,92 @@ static void add_layer(assembler *a, size_t l)
     }
 }
 
-/* All elements, leaf by leaf: counted, or written. */
-static void add_all(assembler *a, bool counting)
+/* The first face of a boundary that is of a leaf, or of one behind it. */
+static size_t first_face(const tm_interior_boundary *boundary, size_t leaf)
 {
-    a->counting = counting;
-    a->middles = a->elements = a->items = 0;
+    size_t begin = 0, end = boundary->faces;
+    while (begin < end) {
+        const size_t middle = begin + (end - begin) / 2;
+        if (boundary->leaf[middle] < leaf)
+            begin = middle + 1;
+        else
+            end = middle;
+    }
+    return begin;
+}
+
+/* The elements of a chunk, leaf by leaf. */
+static void fill_chunk(void *context, size_t first, size_t past)
+{
+    const assembler *a = context;
+    filler *f = &a->chunk[first / TM_CHUNK];
+    size_t *face = a->face + first / TM_CHUNK * a->sides;
     for (size_t p = 0; p < a->sides; p++)
-        a->side[p].face = 0;
-    for (size_t l = 0; l < a->octree->leaves; l++) {
-        if (!counting)
-            a->assembly->first[l] = (uint32_t)a->elements;
-        a->at = a->side;
-        while (a->at < a->side + a->sides && !a->at->interior->chosen[l])
-            a->at++;
-        if (a->at < a->side + a->sides) {
-            add_leaf(a, l);
-            add_layer(a, l);
-        }
+        face[p] = first_face(a->side[p].boundary, first);
+    for (size_t l = first; l < past; l++) {
+        if (!f->counting)
+            a->assembly->first[l] = (uint32_t)f->elements;
+        size_t p = 0;
+        while (p < a->sides && !a->side[p].interior->chosen[l])
+            p++;
+        if (p == a->sides)
+            continue;
+        f->at = &a->side[p];
+        f->face = &face[p];
+        add_leaf(f, l);
+        add_layer(f, l);
     }
 }
 
+/* Counts what all leaves have, and where that of each chunk begins. */
+static tm_status count_all(assembler *a, tm_error *error)
+{
+    const size_t leaves = a->octree->leaves;
+    const size_t chunks = tm_parallel_chunks(leaves, TM_CHUNK);
+    a->chunk = tm_new(chunks, sizeof *a->chunk);
+    a->face = tm_new(chunks * a->sides, sizeof *a->face);
+    if (!a->chunk || !a->face)
+        return tm_fail_memory(error);
+    for (size_t c = 0; c < chunks; c++)
+        a->chunk[c] = (filler){.all = a, .counting = true};
+    tm_parallel_runs(a->octree->threads, leaves, TM_CHUNK, fill_chunk, a);
+    for (size_t c = 0; c < chunks; c++) {
+        const filler counted = a->chunk[c];
+        a->chunk[c] = (filler){
+            .all = a, .middles = a->middles, .elements = a->elements, .items = a->items};
+        a->middles += counted.middles;
+        a->elements += counted.elements;
+        a->items += counted.items;
+    }
+    return TM_OK;
+}
+
+static void set_core_points(void *context, size_t first, size_t past)
+{
+    const assembler *a = context;
+    const tm_assembly *to = a->assembly;
+    for (size_t n = first; n < past; n++)
+        tm_octree_point(a->octree, a->octree->grid[to->grid_node[n]], to->mesh.xyz[n]);
+}
+
+static void set_middle_points(void *context, size_t first, size_t past)
+{
+    const assembler *a = context;
+    const tm_assembly *to = a->assembly;
+    double(*xyz)[3] = to->mesh.xyz + to->core + a->boundary->nodes;
+    for (size_t m = first; m < past; m++)
+        tm_leaf_centre(a->octree, &a->octree->leaf[to->middle_leaf[m]], xyz[m]);
+}
+
 /* All nodes on the lattice. */
-static void set_points(const assembler *a)
+static void set_points(assembler *a)
 {
     const tm_assembly *to = a->assembly;
-    double(*xyz)[3] = to->mesh.xyz;
-    for (size_t n = 0; n < to->core; n++)
-        tm_octree_point(a->octree, a->octree->grid[to->grid_node[n]], xyz[n]);
+    const unsigned threads = a->octree->threads;
+    tm_parallel_runs(threads, to->core, TM_CHUNK, set_core_points, a);
     for (size_t s = 0; s < a->boundary->nodes; s++)
-        tm_boundary_node_point(a->boundary, s, xyz[to->outer + s]);
-    for (size_t m = 0; m < to->middles; m++)
-        tm_leaf_centre(a->octree, &a->octree->leaf[to->middle_leaf[m]],
-                       xyz[to->core + a->boundary->nodes + m]);
+        tm_boundary_node_point(a->boundary, s, to->mesh.xyz[to->outer + s]);
+    tm_parallel_runs(threads, to->middles, TM_CHUNK, set_middle_points, a);
 }
 
 /* The face of the interior boundary that a face of a part's is. */
@@ -355,13 +420,13 @@ static tm_status assemble(assembler *a, tm_error *error)
 {
     tm_assembly *to = a->assembly;
     tm_status status = number_core(a, error);
-    if (status == TM_OK) {
-        add_all(a, true);
+    if (status == TM_OK)
+        status = count_all(a, error);
+    if (status == TM_OK)
         status = allocate(a, error);
-    }
     if (status != TM_OK)
         return status;
-    add_all(a, false);
+    tm_parallel_runs(a->octree->threads, a->octree->leaves, TM_CHUNK, fill_chunk, a);
     to->first[a->octree->leaves] = (uint32_t)a->elements;
     to->mesh.start[a->elements] = a->items;
     set_points(a);
@@ -419,6 +484,8 @@ tm_status tm_assemble(tm_assembly *assembly, const tm_octree *octree,
     if (status == TM_OK)
         status = assemble(&a, error);
     end_sides(&a);
+    free(a.chunk);
+    free(a.face);
     return status;
 }
 

@@ -3,6 +3,7 @@
 
 #include "../../base/array.h"
 #include "../../base/disjoint_sets.h"
+#include "../../base/parallel.h"
 #include "../../surface/surface_tree.h"
 #include "../interior/region_leaves.h"
 #include "octree_mesh_parts.h"
@@ -70,23 +71,38 @@ static void set_patches(tm_surface *surface, const uint32_t *patch)
     tm_surface_tree_refresh(surface);
 }
 
+typedef struct {
+    tm_octree_mesh *mesh;
+    const tm_surface *surface;
+    const uint32_t *patch; /* [nodes of the interior boundary], or NULL */
+} closest_finder;
+
+/* Neighbours in number are mostly close to each other, so that each begins where the last
+ * one ended. */
+static void find_closest_of(void *context, size_t first, size_t past)
+{
+    const closest_finder *f = context;
+    tm_octree_mesh *m = f->mesh;
+    uint32_t guess = TM_NONE;
+    for (size_t s = first; s < past; s++) {
+        const uint32_t of = f->patch ? f->patch[s] : TM_NONE;
+        double xyz[3];
+        tm_boundary_node_point(&m->boundary, s, xyz);
+        if (of != TM_NONE && guess != TM_NONE && f->surface->patch[guess] != of)
+            guess = TM_NONE;
+        m->at[s].triangle = guess;
+        tm_surface_closest(f->surface, xyz, of, &m->at[s]);
+        guess = m->at[s].triangle;
+    }
+}
+
 /* Where the interior boundary's nodes are closest to the surface, of the patches that are
- * given; NULL: to any. Neighbours in number are mostly close to each other, so that each
- * begins where the last one ended. */
+ * given; NULL: to any. */
 static void find_closest_on(tm_octree_mesh *m, const tm_surface *surface,
                             const uint32_t *patch)
 {
-    uint32_t guess = TM_NONE;
-    for (size_t s = 0; s < m->boundary.nodes; s++) {
-        const uint32_t of = patch ? patch[s] : TM_NONE;
-        double xyz[3];
-        tm_boundary_node_point(&m->boundary, s, xyz);
-        if (of != TM_NONE && guess != TM_NONE && surface->patch[guess] != of)
-            guess = TM_NONE;
-        m->at[s].triangle = guess;
-        tm_surface_closest(surface, xyz, of, &m->at[s]);
-        guess = m->at[s].triangle;
-    }
+    closest_finder f = {m, surface, patch};
+    tm_parallel_runs(surface->threads, m->boundary.nodes, TM_CHUNK, find_closest_of, &f);
 }
 
 static tm_status find_closest(tm_octree_mesh *m, tm_surface *surface, tm_error *error)
@@ -233,6 +249,8 @@ static tm_status find_boundary(tm_octree_mesh *m, const tm_octree *octree,
         status = find_boundary_once(m, octree, surface, error);
     if (status != TM_OK || !surface->regions)
         return status;
+    if (m->report.components < 2) /* what is enclosed has a boundary of its own */
+        return TM_OK;
     status = tm_interior_find_enclosed(&m->part[1], m->part, octree, surface, error);
     m->parts += m->part[1].chosen != NULL;
     if (status == TM_OK && m->parts > 1)

@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "octree_mesh_parts.h"
+#include "sweep.h"
 
 #include "../../base/array.h"
+#include "../../base/parallel.h"
 #include "../../element/shape.h"
+#include "../../mesh/node_rows.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -17,6 +20,8 @@ typedef struct {
     const tm_feature *feature;
     const tm_surface *surface;
     tm_surface_point *at;
+    unsigned threads;
+    bool curves_only; /* in this sweep */
 } fitter;
 
 /* Puts an outer node to the point of its feature that is closest to one. */
@@ -70,10 +75,12 @@ static void mean_on_boundary(const fitter *projection, size_t s, double mean[3])
         mean[i] = sum[i] / (double)count;
 }
 
-static void project_boundary(const fitter *projection)
+/* Puts outer nodes where they are first. */
+static void put_first(void *context, size_t first, size_t past)
 {
+    const fitter *projection = context;
     double point[3];
-    for (size_t s = 0; s < projection->boundary->nodes; s++) {
+    for (size_t s = first; s < past; s++) {
         double *outer = projection->assembly->mesh.xyz[projection->assembly->outer + s];
         const uint32_t of = projection->feature->of[s];
         if (projection->feature->kind[s] == TM_ON_PATCH &&
@@ -86,19 +93,57 @@ static void project_boundary(const fitter *projection)
         memcpy(point, outer, sizeof point);
         put(projection, s, point);
     }
-    for (int sweep = 0; sweep < CURVE_SWEEPS + BOUNDARY_SWEEPS; sweep++)
-        for (size_t s = 0; s < projection->boundary->nodes; s++) {
-            const uint8_t kind = projection->feature->kind[s];
-            if (kind == TM_ON_CORNER || (kind == TM_ON_PATCH && sweep < CURVE_SWEEPS))
-                continue;
-            mean_on_boundary(projection, s, point);
-            put(projection, s, point);
+}
+
+static void sweep_boundary(void *context, size_t first, size_t past)
+{
+    const fitter *projection = context;
+    for (size_t s = first; s < past; s++) {
+        const uint8_t kind = projection->feature->kind[s];
+        double point[3];
+        if (kind == TM_ON_CORNER || (kind == TM_ON_PATCH && projection->curves_only))
+            continue;
+        mean_on_boundary(projection, s, point);
+        put(projection, s, point);
+    }
+}
+
+static void look_around(const void *context, size_t s, uint64_t *seen)
+{
+    const fitter *projection = context;
+    const tm_interior_boundary *boundary = projection->boundary;
+    for (int j = 0; projection->feature->kind[s] == TM_ON_CURVE && j < 2; j++)
+        tm_sweep_sees(seen, projection->feature->along[s][j]);
+    for (size_t a = boundary->around_start[s]; a < boundary->around_start[s + 1]; a++) {
+        const uint32_t *face = boundary->face[boundary->around[a]];
+        const unsigned k = tm_boundary_face_corners(boundary, boundary->around[a]);
+        for (unsigned c = 0; c < k; c++)
+            tm_sweep_sees(seen, face[c]);
+    }
+}
+
+static tm_status project_boundary(fitter *projection, tm_error *error)
+{
+    const size_t nodes = projection->boundary->nodes;
+    tm_sweep sweep;
+    const tm_status status =
+        tm_sweep_plan(&sweep, nodes, projection->threads, look_around, projection, error);
+    if (status == TM_OK) {
+        tm_parallel_runs(projection->threads, nodes, TM_CHUNK, put_first, projection);
+        for (int i = 0; i < CURVE_SWEEPS + BOUNDARY_SWEEPS; i++) {
+            projection->curves_only = i < CURVE_SWEEPS;
+            tm_sweep_make(&sweep, sweep_boundary, projection);
         }
+    }
+    tm_sweep_free(&sweep);
+    return status;
 }
 
 /* The nodes below the interior boundary that may move, and their neighbours. */
 typedef struct {
+    const tm_mixed_mesh *mesh;
     uint32_t *order; /* [nodes of the mesh]: its index in node[], or TM_NONE */
+    bool *moves;     /* [nodes of the mesh], while they are looked for */
     size_t nodes;
     uint32_t *node;
     size_t *start;   /* [nodes + 1] */
@@ -115,6 +160,17 @@ static bool has_moving(const zone *z, const tm_mixed_mesh *mesh, size_t e)
     return false;
 }
 
+/* Marks nodes of elements with an inner node, or that are no hexahedra. */
+static void mark_moving(void *context, size_t first, size_t past)
+{
+    const zone *z = context;
+    const tm_mixed_mesh *mesh = z->mesh;
+    for (size_t e = first; e < past; e++)
+        if (mesh->start[e + 1] - mesh->start[e] != HEXAHEDRON || has_moving(z, mesh, e))
+            for (size_t i = mesh->start[e]; i < mesh->start[e + 1]; i++)
+                tm_mark(&z->moves[mesh->item[i]]);
+}
+
 /* The inner nodes, those in an element with one of them, and those of elements that are
  * no hexahedra, without the outer ones. */
 static tm_status find_moving(const fitter *projection, zone *z, tm_error *error)
@@ -123,11 +179,9 @@ static tm_status find_moving(const fitter *projection, zone *z, tm_error *error)
     const tm_mixed_mesh *mesh = &a->mesh;
     const size_t outer_end = a->outer + projection->boundary->nodes;
     z->order = tm_new(mesh->nodes, sizeof *z->order);
-    bool *moves = calloc(mesh->nodes + 1, 1);
-    if (!z->order || !moves) {
-        free(moves);
+    z->moves = calloc(mesh->nodes + 1, 1);
+    if (!z->order || !z->moves)
         return tm_fail_memory(error);
-    }
     for (size_t n = 0; n < mesh->nodes; n++)
         z->order[n] = TM_NONE;
     for (size_t s = 0; s < projection->boundary->nodes; s++) {
@@ -135,15 +189,11 @@ static tm_status find_moving(const fitter *projection, zone *z, tm_error *error)
             if (a->inner[p][s] != TM_NONE)
                 z->order[a->inner[p][s]] = 0;
     }
-    for (size_t e = 0; e < mesh->elements; e++)
-        if (has_moving(z, mesh, e) || mesh->start[e + 1] - mesh->start[e] != HEXAHEDRON)
-            for (size_t i = mesh->start[e]; i < mesh->start[e + 1]; i++)
-                moves[mesh->item[i]] = true;
+    tm_parallel_runs(projection->threads, mesh->elements, TM_CHUNK, mark_moving, z);
     for (size_t n = 0; n < mesh->nodes; n++) {
         const bool is_outer = n >= a->outer && n < outer_end;
-        z->order[n] = moves[n] && !is_outer ? (uint32_t)z->nodes++ : TM_NONE;
+        z->order[n] = z->moves[n] && !is_outer ? (uint32_t)z->nodes++ : TM_NONE;
     }
-    free(moves);
     z->node = tm_new(z->nodes, sizeof *z->node);
     z->start = calloc(z->nodes + 1, sizeof *z->start);
     z->count = calloc(z->nodes + 1, sizeof *z->count);
@@ -155,17 +205,18 @@ static tm_status find_moving(const fitter *projection, zone *z, tm_error *error)
     return TM_OK;
 }
 
-/* Calls visit for both directions of an element's edges whose first end moves. */
-static void visit_edges(zone *z, const tm_mixed_mesh *mesh, size_t e,
-                        void (*visit)(zone *z, uint32_t from, uint32_t to))
+/* Calls visit for both directions of an element's edges whose first end is in a range. */
+static inline void visit_edges(zone *z, size_t e, tm_row_range range,
+                               void (*visit)(zone *z, uint32_t from, uint32_t to))
 {
+    const tm_mixed_mesh *mesh = z->mesh;
     const uint32_t *item = mesh->item + mesh->start[e];
     const tm_element_shape *shape =
         &tm_element_shapes[mesh->start[e + 1] - mesh->start[e]];
     for (unsigned i = 0; i < shape->edges; i++)
         for (unsigned end = 0; end < 2; end++) {
             const uint32_t from = z->order[item[shape->edge[i][end]]];
-            if (from != TM_NONE)
+            if (tm_row_is_in(range, from))
                 visit(z, from, item[shape->edge[i][1 - end]]);
         }
 }
@@ -186,14 +237,22 @@ static void enter_neighbour(zone *z, uint32_t from, uint32_t to)
         list[z->count[from]++] = to;
 }
 
+static void count_neighbours(void *z, size_t e, tm_row_range range)
+{
+    visit_edges(z, e, range, count_neighbour);
+}
+
+static void enter_neighbours(void *z, size_t e, tm_row_range range)
+{
+    visit_edges(z, e, range, enter_neighbour);
+}
+
 /* An edge inside has three elements at least, so a third of the edges that are counted is
  * room enough for the neighbours. */
-static tm_status find_neighbours(zone *z, const tm_mixed_mesh *mesh, tm_error *error)
+static tm_status list_neighbours(zone *z, const tm_node_rows *rows, tm_error *error)
 {
     const uint32_t elements_least = 3;
-    for (size_t e = 0; e < mesh->elements; e++)
-        if (has_moving(z, mesh, e))
-            visit_edges(z, mesh, e, count_neighbour);
+    tm_node_rows_visit(rows, count_neighbours, z);
     for (size_t n = 0; n < z->nodes; n++) {
         z->start[n + 1] = z->start[n] + z->count[n] / elements_least;
         z->count[n] = 0;
@@ -201,15 +260,24 @@ static tm_status find_neighbours(zone *z, const tm_mixed_mesh *mesh, tm_error *e
     z->neighbour = tm_new(z->start[z->nodes], sizeof *z->neighbour);
     if (!z->neighbour)
         return tm_fail_memory(error);
-    for (size_t e = 0; e < mesh->elements; e++)
-        if (has_moving(z, mesh, e))
-            visit_edges(z, mesh, e, enter_neighbour);
+    tm_node_rows_visit(rows, enter_neighbours, z);
     return TM_OK;
 }
 
-/* The mean of a node's neighbours. */
-static void mean_of(const zone *z, size_t n, const double (*xyz)[3], double mean[3])
+static tm_status find_neighbours(zone *z, tm_error *error)
 {
+    tm_node_rows rows;
+    tm_status status = tm_node_rows_find(&rows, z->mesh, z->order, z->nodes, error);
+    if (status == TM_OK)
+        status = list_neighbours(z, &rows, error);
+    tm_node_rows_free(&rows);
+    return status;
+}
+
+/* The mean of a node's neighbours. */
+static void mean_of(const zone *z, size_t n, double mean[3])
+{
+    const double(*xyz)[3] = (const double(*)[3])z->mesh->xyz;
     const uint32_t *neighbour = z->neighbour + z->start[n];
     double sum[3] = {0, 0, 0};
     for (uint32_t i = 0; i < z->count[n]; i++)
@@ -219,25 +287,38 @@ static void mean_of(const zone *z, size_t n, const double (*xyz)[3], double mean
         mean[j] = sum[j] / (double)z->count[n];
 }
 
+typedef struct {
+    const zone *zone;
+    const tm_assembly *assembly;
+} biased;
+
 /* A node below the interior boundary that has smaller neighbours on one side only is not
  * at their mean on the lattice. The middle of a leaf stays so; other nodes go half of the
  * way: then a leaf is less high than wide over a face that is divided in four, and its
  * elements are better than on the lattice (J_ENS of tetrahedra 0.59 in the mean, not
  * 0.47). */
-static tm_status find_bias(const fitter *projection, zone *z, tm_error *error)
+static void set_bias(void *context, size_t first, size_t past)
 {
-    const tm_assembly *a = projection->assembly;
+    const biased *b = context;
+    const zone *z = b->zone;
     const double core_share = 0.5;
-    z->bias = calloc(z->nodes + 1, sizeof *z->bias);
-    if (!z->bias)
-        return tm_fail_memory(error);
-    for (size_t n = 0; n < z->nodes; n++) {
-        const double *at = a->mesh.xyz[z->node[n]];
-        const double share = z->node[n] < a->outer ? core_share : 1;
-        mean_of(z, n, (const double(*)[3])a->mesh.xyz, z->bias[n]);
+    for (size_t n = first; n < past; n++) {
+        const double *at = z->mesh->xyz[z->node[n]];
+        const double share = z->node[n] < b->assembly->outer ? core_share : 1;
+        mean_of(z, n, z->bias[n]);
         for (int j = 0; j < 3; j++)
             z->bias[n][j] = share * (at[j] - z->bias[n][j]);
     }
+}
+
+static tm_status find_bias(const fitter *projection, zone *z, tm_error *error)
+{
+    const tm_assembly *a = projection->assembly;
+    z->bias = tm_new(z->nodes, sizeof *z->bias);
+    if (!z->bias)
+        return tm_fail_memory(error);
+    biased b = {z, a};
+    tm_parallel_runs(projection->threads, z->nodes, TM_CHUNK, set_bias, &b);
     for (size_t s = 0; s < projection->boundary->nodes; s++) {
         for (size_t p = 0; p < a->parts; p++)
             if (a->inner[p][s] != TM_NONE)
@@ -246,33 +327,60 @@ static tm_status find_bias(const fitter *projection, zone *z, tm_error *error)
     return TM_OK;
 }
 
-static void average(const zone *z, tm_mixed_mesh *mesh)
+static void average_run(void *context, size_t first, size_t past)
 {
-    for (int sweep = 0; sweep < CORE_SWEEPS; sweep++)
-        for (size_t n = 0; n < z->nodes; n++) {
-            double mean[3];
-            mean_of(z, n, (const double(*)[3])mesh->xyz, mean);
-            for (int j = 0; j < 3; j++)
-                mesh->xyz[z->node[n]][j] = mean[j] + z->bias[n][j];
-        }
+    const zone *z = context;
+    for (size_t n = first; n < past; n++) {
+        double mean[3];
+        mean_of(z, n, mean);
+        for (int j = 0; j < 3; j++)
+            z->mesh->xyz[z->node[n]][j] = mean[j] + z->bias[n][j];
+    }
+}
+
+static void look_at_neighbours(const void *context, size_t n, uint64_t *seen)
+{
+    const zone *z = context;
+    for (uint32_t i = 0; i < z->count[n]; i++) {
+        const uint32_t order = z->order[z->neighbour[z->start[n] + i]];
+        if (order != TM_NONE)
+            tm_sweep_sees(seen, order);
+    }
+}
+
+static tm_status average(zone *z, unsigned threads, tm_error *error)
+{
+    tm_sweep sweep;
+    const tm_status status =
+        tm_sweep_plan(&sweep, z->nodes, threads, look_at_neighbours, z, error);
+    for (int i = 0; status == TM_OK && i < CORE_SWEEPS; i++)
+        tm_sweep_make(&sweep, average_run, z);
+    tm_sweep_free(&sweep);
+    return status;
 }
 
 tm_status tm_project_layer(tm_assembly *assembly, const tm_interior_boundary *boundary,
                            const tm_feature *feature, const tm_surface *surface,
                            tm_surface_point *at, tm_error *error)
 {
-    const fitter projection = {assembly, boundary, feature, surface, at};
-    zone z = {0};
+    fitter projection = {.assembly = assembly,
+                         .boundary = boundary,
+                         .feature = feature,
+                         .surface = surface,
+                         .at = at,
+                         .threads = surface->threads};
+    zone z = {.mesh = &assembly->mesh};
     tm_status status = find_moving(&projection, &z, error);
     if (status == TM_OK)
-        status = find_neighbours(&z, &assembly->mesh, error);
+        status = find_neighbours(&z, error);
     if (status == TM_OK)
         status = find_bias(&projection, &z, error);
-    if (status == TM_OK) {
-        project_boundary(&projection);
-        average(&z, &assembly->mesh);
-    }
+    if (status == TM_OK)
+        status = project_boundary(&projection, error);
+    if (status == TM_OK)
+        status = average(&z, surface->threads, error);
     free(z.order);
+    free(z.moves);
     free(z.node);
     free(z.start);
     free(z.count);

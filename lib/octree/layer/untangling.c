@@ -2,6 +2,7 @@
 #include "octree_mesh_parts.h"
 
 #include "../../base/array.h"
+#include "../../base/parallel.h"
 #include "../../element/shape.h"
 #include "../../geom/vector.h"
 #include "../../optimise/optimise_surface.h"
@@ -47,14 +48,28 @@ static bool is_turned(const tm_mixed_mesh *mesh, size_t e)
     return volume <= 0;
 }
 
+typedef struct {
+    const tm_octree_mesh *mesh;
+    bool any;
+} turned_finder;
+
+static void find_turned(void *context, size_t first, size_t past)
+{
+    turned_finder *t = context;
+    const tm_octree_mesh *m = t->mesh;
+    for (size_t f = first; f < past; f++)
+        for (unsigned i = 0; i < (m->boundary.cut[f] == TM_UNCUT ? 1u : 2u); i++)
+            if (is_turned(&m->assembly.mesh, m->assembly.layer[f] + i))
+                tm_mark(&t->any);
+}
+
 /* The same of any element of the layer: others are not turned so far. */
 static bool any_is_turned(const tm_octree_mesh *m)
 {
-    for (size_t f = 0; f < m->boundary.faces; f++)
-        for (unsigned i = 0; i < (m->boundary.cut[f] == TM_UNCUT ? 1u : 2u); i++)
-            if (is_turned(&m->assembly.mesh, m->assembly.layer[f] + i))
-                return true;
-    return false;
+    turned_finder t = {.mesh = m};
+    tm_parallel_runs(m->assembly.mesh.threads, m->boundary.faces, TM_CHUNK, find_turned,
+                     &t);
+    return t.any;
 }
 
 static bool is_valid(const tm_mixed_mesh *mesh, size_t e)
@@ -199,12 +214,26 @@ typedef struct {
     double (*kept)[3]; /* [nodes] */
 } releaser;
 
+typedef struct {
+    const tm_mixed_mesh *mesh;
+    size_t invalid;
+} invalid_counter;
+
+static void count_chunk(void *context, size_t first, size_t past)
+{
+    invalid_counter *c = context;
+    size_t invalid = 0;
+    for (size_t e = first; e < past; e++)
+        invalid += !is_valid(c->mesh, e);
+    if (invalid > 0)
+        __atomic_fetch_add(&c->invalid, invalid, __ATOMIC_RELAXED);
+}
+
 static size_t count_invalid(const tm_mixed_mesh *mesh)
 {
-    size_t invalid = 0;
-    for (size_t e = 0; e < mesh->elements; e++)
-        invalid += !is_valid(mesh, e);
-    return invalid;
+    invalid_counter c = {.mesh = mesh};
+    tm_parallel_runs(mesh->threads, mesh->elements, TM_CHUNK, count_chunk, &c);
+    return c.invalid;
 }
 
 /* Fills ring[] up to so many: the nodes of invalid elements are the first one. */

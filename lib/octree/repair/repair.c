@@ -258,12 +258,16 @@ static tm_status refine_some(repair *r, bool wide, bool *better, tm_error *error
     return status;
 }
 
-/* Tells the caller of a state. */
+/* Tells the caller of a state; with off_surface its score is known: of one that is done
+ * no element has to be measured. */
 static tm_status show(const repair *r, bool off_surface, size_t *count, tm_error *error)
 {
-    uint32_t *octant;
-    tm_status status = tm_repair_bad_octants(r->state, r->options->threshold, off_surface,
-                                             NULL, &octant, count, error);
+    uint32_t *octant = NULL;
+    tm_status status = TM_OK;
+    *count = 0;
+    if (!off_surface || !is_done(&r->report->after))
+        status = tm_repair_bad_octants(r->state, r->options->threshold, off_surface, NULL,
+                                       &octant, count, error);
     if (status == TM_OK && r->options->visit)
         status = r->options->visit(r->options->context, r->report->iterations, r->state,
                                    octant, *count, error);

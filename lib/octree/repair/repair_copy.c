@@ -28,6 +28,7 @@ tm_status tm_repair_copy_mesh(tm_repair_state *to, const tm_repair_state *from,
     const size_t items = from->mesh.start[elements];
     to->mesh.nodes = nodes;
     to->mesh.elements = elements;
+    to->mesh.threads = from->mesh.threads;
     to->divided = from->divided;
     to->progress = from->progress;
     to->stop = from->stop;

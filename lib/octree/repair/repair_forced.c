@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "repair_forced.h"
 
+#include "../../base/parallel.h"
 #include "../../element/jens.h"
 #include "../../element/shape.h"
 #include "../../geom/vector.h"
@@ -97,26 +98,60 @@ static double limit_at_tips(const candidate *c)
     return limit;
 }
 
+typedef struct {
+    const tm_repair_state *state;
+    double threshold;
+    const uint32_t *face; /* of the boundary, ascending */
+    size_t faces;
+    bool *forced;
+} finder;
+
+/* The first face of the boundary of element e, or of one behind it. */
+static size_t first_face(const finder *f, size_t e)
+{
+    size_t begin = 0, end = f->faces;
+    while (begin < end) {
+        const size_t middle = begin + (end - begin) / 2;
+        if (f->face[middle] >> TM_FACE_SHIFT < e)
+            begin = middle + 1;
+        else
+            end = middle;
+    }
+    return begin;
+}
+
+static void find_chunk(void *context, size_t first, size_t past)
+{
+    const finder *f = context;
+    const tm_mixed_mesh *mesh = &f->state->mesh;
+    size_t next = first_face(f, first);
+    for (size_t e = first; e < past; e++) {
+        candidate c = {f->state, &tm_element_shapes[mesh->start[e + 1] - mesh->start[e]],
+                       mesh->item + mesh->start[e], 0};
+        for (; next < f->faces && f->face[next] >> TM_FACE_SHIFT == e; next++)
+            c.open |= 1U << (f->face[next] & ((1U << TM_FACE_SHIFT) - 1));
+        f->forced[e] = false;
+        const double jens = c.open == 0 ? 1 : tm_mixed_jens(mesh, e);
+        if (jens >= f->threshold || c.open == 0 || tm_repair_is_bad(mesh, e, jens, 0))
+            continue;
+        const double limit = fmin(limit_at_edges(&c), limit_at_tips(&c));
+        f->forced[e] = limit < f->threshold && jens >= enough * limit;
+    }
+}
+
 tm_status tm_repair_find_forced(const tm_repair_state *state, double threshold,
                                 bool *forced, size_t *count, tm_error *error)
 {
     const tm_mixed_mesh *mesh = &state->mesh;
     uint32_t *face;
-    size_t faces, next = 0;
+    size_t faces;
     *count = 0;
     const tm_status status = tm_mixed_boundary_faces(mesh, &face, &faces, error);
-    for (size_t e = 0; status == TM_OK && e < mesh->elements; e++) {
-        const double jens = tm_mixed_jens(mesh, e);
-        candidate c = {state, &tm_element_shapes[mesh->start[e + 1] - mesh->start[e]],
-                       mesh->item + mesh->start[e], 0};
-        for (; next < faces && face[next] >> TM_FACE_SHIFT == e; next++)
-            c.open |= 1U << (face[next] & ((1U << TM_FACE_SHIFT) - 1));
-        forced[e] = false;
-        if (jens >= threshold || c.open == 0 || tm_repair_is_bad(mesh, e, jens, 0))
-            continue;
-        const double limit = fmin(limit_at_edges(&c), limit_at_tips(&c));
-        forced[e] = limit < threshold && jens >= enough * limit;
-        *count += forced[e];
+    if (status == TM_OK) {
+        finder f = {state, threshold, face, faces, forced};
+        tm_parallel_runs(mesh->threads, mesh->elements, TM_CHUNK, find_chunk, &f);
+        for (size_t e = 0; e < mesh->elements; e++)
+            *count += forced[e];
     }
     free(face);
     return status;

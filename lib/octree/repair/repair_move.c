@@ -3,6 +3,7 @@
 #include "repair_trial.h"
 
 #include "../../base/array.h"
+#include "../../base/parallel.h"
 #include "../../optimise/optimise_surface.h"
 
 #include <math.h>
@@ -111,20 +112,42 @@ static tm_status move_in(tm_repair_state *state, const tm_surface *surface,
     return status;
 }
 
+typedef struct {
+    const tm_repair_state *state;
+    double threshold;
+    bool *is; /* [elements] */
+} core_finder;
+
+static void find_core_chunk(void *context, size_t first, size_t past)
+{
+    const core_finder *f = context;
+    const tm_mixed_mesh *mesh = &f->state->mesh;
+    for (size_t e = first; e < past; e++) {
+        bool is = tm_repair_is_bad(mesh, e, tm_mixed_jens(mesh, e), f->threshold);
+        for (size_t i = mesh->start[e]; i < mesh->start[e + 1]; i++)
+            is |= f->state->rule[mesh->item[i]].off_surface;
+        f->is[e] = is;
+    }
+}
+
 /* The elements that are to become better, and those at nodes off the surface; malloc'ed.
  */
 static uint32_t *find_core(const tm_repair_state *state, double threshold, size_t *count)
 {
     const tm_mixed_mesh *mesh = &state->mesh;
+    core_finder f = {state, threshold, tm_new(mesh->elements, sizeof *f.is)};
     uint32_t *core = tm_new(mesh->elements, sizeof *core);
     *count = 0;
-    for (uint32_t e = 0; core && e < mesh->elements; e++) {
-        bool is = tm_repair_is_bad(mesh, e, tm_mixed_jens(mesh, e), threshold);
-        for (size_t i = mesh->start[e]; i < mesh->start[e + 1]; i++)
-            is |= state->rule[mesh->item[i]].off_surface;
-        if (is)
+    if (f.is && core)
+        tm_parallel_runs(mesh->threads, mesh->elements, TM_CHUNK, find_core_chunk, &f);
+    for (uint32_t e = 0; f.is && core && e < mesh->elements; e++)
+        if (f.is[e])
             core[(*count)++] = e;
+    if (!f.is) {
+        free(core);
+        core = NULL;
     }
+    free(f.is);
     return core;
 }
 
@@ -141,6 +164,7 @@ static tm_status move_part(tm_repair_state *state, const tm_surface *surface,
         status = tm_trial_gather(&trial, core, cores, PART_RINGS, error);
     trial.part.progress = state->progress;
     trial.part.stop = state->stop;
+    trial.part.mesh.threads = state->mesh.threads;
     if (status == TM_OK)
         status = move_in(&trial.part, surface, threshold, effort, least, error);
     if (status == TM_OK)

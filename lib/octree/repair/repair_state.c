@@ -2,6 +2,7 @@
 #include "repair_state.h"
 
 #include "../../base/array.h"
+#include "../../base/parallel.h"
 #include "../../element/certify.h"
 #include "../../stream/stream.h"
 
@@ -26,6 +27,37 @@ double tm_repair_quality(const tm_mixed_mesh *mesh, size_t e, double jens)
     return jens <= 0 || is_certified(mesh, e) ? jens : 0;
 }
 
+/* Elements are measured in so many parts at most, which depend on their number alone. */
+enum { PARTS_MOST = 512 };
+
+typedef struct {
+    const tm_repair_state *state;
+    double threshold;
+    size_t size; /* elements of a part */
+    tm_repair_score part[PARTS_MOST];
+    double sum[PARTS_MOST];
+} measuring;
+
+static void measure_part(void *context, size_t first, size_t past)
+{
+    measuring *m = context;
+    const tm_mixed_mesh *mesh = &m->state->mesh;
+    tm_repair_score score = {.worst = 1, .least = 1};
+    double sum = 0;
+    for (size_t e = first; e < past; e++) {
+        const double jens = tm_mixed_jens(mesh, e);
+        const double quality = tm_repair_quality(mesh, e, jens);
+        const bool invalid = quality < TM_REPAIR_LEAST;
+        score.invalid += invalid;
+        score.bad += invalid || jens < m->threshold;
+        score.worst = fmin(score.worst, jens);
+        score.least = fmin(score.least, quality);
+        sum += jens;
+    }
+    m->part[first / m->size] = score;
+    m->sum[first / m->size] = sum;
+}
+
 tm_repair_score tm_repair_measure(const tm_repair_state *state, double threshold)
 {
     const tm_mixed_mesh *mesh = &state->mesh;
@@ -34,15 +66,16 @@ tm_repair_score tm_repair_measure(const tm_repair_state *state, double threshold
     double sum = 0;
     for (size_t v = 0; v < mesh->nodes; v++)
         score.off_surface += state->rule[v].off_surface;
-    for (size_t e = 0; e < mesh->elements; e++) {
-        const double jens = tm_mixed_jens(mesh, e);
-        const double quality = tm_repair_quality(mesh, e, jens);
-        const bool invalid = quality < TM_REPAIR_LEAST;
-        score.invalid += invalid;
-        score.bad += invalid || jens < threshold;
-        score.worst = fmin(score.worst, jens);
-        score.least = fmin(score.least, quality);
-        sum += jens;
+    measuring m = {.state = state, .threshold = threshold, .size = TM_CHUNK};
+    while (tm_parallel_chunks(mesh->elements, m.size) > PARTS_MOST)
+        m.size *= 2;
+    tm_parallel_runs(mesh->threads, mesh->elements, m.size, measure_part, &m);
+    for (size_t i = 0; i < tm_parallel_chunks(mesh->elements, m.size); i++) {
+        score.invalid += m.part[i].invalid;
+        score.bad += m.part[i].bad;
+        score.worst = fmin(score.worst, m.part[i].worst);
+        score.least = fmin(score.least, m.part[i].least);
+        sum += m.sum[i];
     }
     if (mesh->elements > 0)
         score.average = sum / (double)mesh->elements;
@@ -80,6 +113,27 @@ static bool has_off_surface(const tm_repair_state *state, size_t e)
     return false;
 }
 
+typedef struct {
+    const tm_repair_state *state;
+    double threshold;
+    bool off_surface;
+    const bool *except;
+    bool *bad; /* [elements]: its octant is listed */
+} lister;
+
+static void find_bad(void *context, size_t first, size_t past)
+{
+    const lister *l = context;
+    const tm_repair_state *state = l->state;
+    for (size_t e = first; e < past; e++) {
+        const double jens = tm_mixed_jens(&state->mesh, e);
+        const bool bad = tm_repair_is_bad(&state->mesh, e, jens, l->threshold) &&
+                         !(l->except && l->except[e]);
+        l->bad[e] = state->octant[e] != TM_NONE &&
+                    (bad || (l->off_surface && has_off_surface(state, e)));
+    }
+}
+
 tm_status tm_repair_bad_octants(const tm_repair_state *state, double threshold,
                                 bool off_surface, const bool *except, uint32_t **octant,
                                 size_t *count, tm_error *error)
@@ -88,19 +142,17 @@ tm_status tm_repair_bad_octants(const tm_repair_state *state, double threshold,
     size_t room = 0;
     *octant = NULL;
     *count = 0;
-    for (size_t e = 0; e < mesh->elements; e++) {
-        const double jens = tm_mixed_jens(mesh, e);
-        const bool bad =
-            tm_repair_is_bad(mesh, e, jens, threshold) && !(except && except[e]);
-        if (state->octant[e] == TM_NONE ||
-            !(bad || (off_surface && has_off_surface(state, e))))
-            continue;
-        uint32_t *grown = tm_grow(*octant, &room, *count + 1, sizeof *grown);
-        if (!grown)
-            return tm_fail_memory(error);
-        *octant = grown;
-        grown[(*count)++] = state->octant[e];
-    }
+    lister l = {state, threshold, off_surface, except,
+                tm_new(mesh->elements, sizeof *l.bad)};
+    bool done = l.bad != NULL;
+    if (done)
+        tm_parallel_runs(mesh->threads, mesh->elements, TM_CHUNK, find_bad, &l);
+    for (size_t e = 0; done && e < mesh->elements; e++)
+        if (l.bad[e])
+            done = tm_append(octant, count, &room, state->octant[e]);
+    free(l.bad);
+    if (!done)
+        return tm_fail_memory(error);
     *count = sort_once(*octant, *count);
     return TM_OK;
 }
