@@ -103,7 +103,8 @@ tm_status tm_octree_mesh_choose(tm_octree_mesh *mesh, tm_octree *octree,
     if (status == TM_OK && surface->walls && mesh->report.off_surface > 0)
         status = tm_walls_are_sharp(surface, &sharp, error);
     for (unsigned n = plan->levels + 1; surface->walls && n-- > 0;)
-        for (int laid_out = 1; laid_out >= !sharp; laid_out--) {
+        for (int way = 0; way < (sharp ? 2 : 1); way++) {
+            const bool laid_out = way == 0;
             if (status != TM_OK || mesh->report.off_surface == 0)
                 break;
             if (laid_out && n == best.levels && best.laid_out)

@@ -316,7 +316,7 @@ static tm_status try_sharp_corner(corners *t, uint32_t corner, uint32_t middle,
     if (status == TM_OK)
         score = tm_repair_measure(&t->trial.part, t->threshold);
     for (int whole = 1; whole >= 0 && status == TM_OK && score.bad > 0; whole--) {
-        tm_sharp_corner parts;
+        tm_sharp_corner parts = {.parts = 0};
         tm_repair_score after;
         if (whole == 0)
             status = tm_trial_gather(&t->trial, core, cores, RINGS, error);
