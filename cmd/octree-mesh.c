@@ -5,15 +5,13 @@
 #include "common/input/surface_input.h"
 #include "common/process/mpi_environment.h"
 
-#include "../lib/octree/forest/octree_build.h"
 #include "../lib/octree/forest/octree_estimate.h"
 #include "../lib/octree/layer/octree_mesh_stream.h"
-#include "../lib/octree/layer/adaptive_refinement.h"
+#include "../lib/octree/layer/mesh_choice.h"
 #include "../lib/element/jens.h"
 #include "../lib/poly/octant/join_octants.h"
 #include "../lib/surface/measure/surface_curvature.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -91,9 +89,9 @@ static const double pi = 3.14159265358979323846;
 typedef struct {
     octree_rules rules;
     tm_surface_options surface;
-    unsigned resolve, deeper; /* deeper: what --resolve gives, 0 without it */
-    double most;              /* elements */
-    double curvature;         /* degrees; 0: not asked */
+    tm_mesh_plan plan;
+    double most;      /* elements */
+    double curvature; /* degrees; 0: not asked */
     bool levels, polyhedra;
 } settings;
 
@@ -109,23 +107,13 @@ static void add_size(const filter *f, settings *o, const char *option,
         filter_fail(f, &error);
 }
 
-/* Splits octants by so many levels more where that is needed, at most. */
-static void set_resolve(settings *o, unsigned levels)
-{
-    o->resolve = levels;
-    o->deeper = o->deeper > 0 ? levels : 0;
-    for (size_t r = 0; r < o->rules.rules.count; r++)
-        o->rules.rules.rule[r].deeper =
-            o->rules.rules.rule[r].kind == TM_RULE_SURFACE ? o->deeper : 0;
-}
-
 static settings read_options(filter *f)
 {
     const double most_default = 5e7, most_ids = 4e9, least_turn = 0.1, most_turn = 90;
     settings o = {.surface = {.feature_angle = default_angle,
                               .unless_rough = true,
                               .regions = true},
-                  .resolve = 1,
+                  .plan.levels = 1,
                   .most = most_default};
     const unsigned default_level = 5;
     int c;
@@ -136,10 +124,11 @@ static settings read_options(filter *f)
             o.surface.feature_angle =
                 filter_number(f, "--feature-angle", optarg, 0, straight_angle);
             o.surface.unless_rough = false;
-        } else if (c == RESOLVE)
-            o.resolve = o.deeper =
+        } else if (c == RESOLVE) {
+            o.plan.levels =
                 (unsigned)filter_integer(f, "--resolve", optarg, 0, TM_OCTREE_LEVEL_MAX);
-        else if (c == CAVITIES)
+            o.plan.deeper = true;
+        } else if (c == CAVITIES)
             o.surface.regions = false;
         else if (c == POLYHEDRA)
             o.polyhedra = true;
@@ -159,7 +148,9 @@ static settings read_options(filter *f)
     o.surface.walls = o.surface.regions && !o.surface.lenient;
     if (o.rules.rules.count == 0)
         octree_rules_add_level(f, &o.rules, TM_RULE_SURFACE, default_level);
-    set_resolve(&o, o.resolve);
+    o.plan.rule = o.rules.rules.rule;
+    o.plan.rules = o.rules.rules.count;
+    tm_mesh_plan_set_levels(&o.plan, o.plan.levels);
     return o;
 }
 
@@ -319,85 +310,23 @@ static void note_losses(const filter *f, const tm_surface *s,
         filter_note(f, "%zu elements are inverted", r->invalid);
 }
 
-static unsigned deepest_level(const tm_octree *octree)
-{
-    unsigned deepest = 0;
-    for (size_t l = 0; l < octree->leaves; l++)
-        if (octree->leaf[l].level > deepest)
-            deepest = octree->leaf[l].level;
-    return deepest;
-}
-
-/* The deepest level of an octree that rules ask for, without what --resolve adds. */
-static unsigned level_of(const settings *o, const tm_octree *octree, const tm_surface *s)
-{
-    const unsigned deepest = deepest_level(octree);
-    unsigned asked = 0;
-    for (size_t r = 0; r < o->rules.rules.count; r++) {
-        const tm_octree_rule *rule = &o->rules.rules.rule[r];
-        const unsigned level = tm_octree_rule_level(rule, octree->side);
-        if (level > asked && tm_octree_rule_reaches(rule, s))
-            asked = level;
-    }
-    return o->deeper > 0 && asked < deepest ? asked : deepest;
-}
-
 /* The octree, and its mesh. */
-static void make_mesh(filter *f, const settings *o, tm_surface *surface,
-                      tm_octree *octree, tm_octree_mesh *mesh)
+static void make_mesh(filter *f, settings *o, tm_surface *surface, tm_octree *octree,
+                      tm_octree_mesh *mesh)
 {
+    const unsigned most = o->plan.levels;
     tm_error error;
-    filter_stage(f, "splitting octants");
-    if (tm_octree_build(octree, surface, o->rules.rules.rule, o->rules.rules.count,
-                        &error) != TM_OK ||
-        tm_octree_mesh_refine_lost(mesh, octree, surface, level_of(o, octree, surface),
-                                   o->resolve, filter_progress(f), &error) != TM_OK)
+    o->plan.progress = filter_progress(f);
+    if (tm_octree_mesh_choose(mesh, octree, surface, &o->plan, &error) != TM_OK)
         filter_fail(f, &error);
-}
-
-/* Whether a mesh has fewer nodes off the surface than another one, and nothing is worse.
- */
-static bool is_better(const tm_octree_mesh_report *a, const tm_octree_mesh_report *b,
-                      const tm_surface *surface)
-{
-    const int64_t euler = surface->euler;
-    return a->off_surface < b->off_surface && a->invalid <= b->invalid &&
-           a->lost <= b->lost && a->rounded <= b->rounded && a->dropped <= b->dropped &&
-           a->corners_lost <= b->corners_lost && a->curves_lost <= b->curves_lost &&
-           a->regions_lost <= b->regions_lost && a->components <= b->components &&
-           imaxabs(a->euler - euler) <= imaxabs(b->euler - euler);
-}
-
-/* Where walls meet, and nodes are held back: with fewer levels more, while some are, and
- * the best is kept. */
-static void try_fewer_levels(filter *f, settings *o, tm_surface *surface,
-                             tm_octree *octree, tm_octree_mesh *mesh)
-{
-    const unsigned most = o->resolve;
-    unsigned best = most;
-    for (unsigned n = most; n-- > 0 && mesh->report.off_surface > 0;) {
-        tm_octree other;
-        tm_octree_mesh made;
-        set_resolve(o, n);
-        make_mesh(f, o, surface, &other, &made);
-        if (is_better(&made.report, &mesh->report, surface)) {
-            const tm_octree_mesh worse = *mesh;
-            const tm_octree coarser = other;
-            best = n;
-            other = *octree;
-            *octree = coarser;
-            *mesh = made;
-            made = worse;
-        }
-        tm_octree_mesh_free(&made);
-        tm_octree_free(&other);
-    }
-    set_resolve(o, best);
-    if (best < most)
+    if (o->plan.levels < most)
         filter_note(f,
                     "octants are split up to %u times more, not %u (--resolve): with "
                     "more levels more nodes would be held back",
-                    best, most);
+                    o->plan.levels, most);
+    if (!o->plan.laid_out)
+        filter_verbose(f, "octants have the regions of their centres also where walls "
+                          "meet sharply: else more nodes would be held back");
 }
 
 typedef struct {
@@ -491,12 +420,10 @@ int main(int argc, char **argv)
     note_outside(&f, &o.rules, &surface);
     mpi_environment_set(&f);
     make_mesh(&f, &o, &surface, &octree, &mesh);
-    if (surface.walls)
-        try_fewer_levels(&f, &o, &surface, &octree, &mesh);
     octree_rules_free(&o.rules);
     free(largest);
     note_losses(&f, &surface, &mesh.report,
-                ldexp(octree.side, -(int)deepest_level(&octree)));
+                ldexp(octree.side, -(int)tm_octree_deepest(&octree)));
     report r = report_of(&octree, &mesh);
     const size_t elements = mesh.assembly.mesh.elements;
     filter_stage(&f, "numbering");

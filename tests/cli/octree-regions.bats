@@ -307,6 +307,16 @@ END
     [ "$(json report.json held_back)" -lt 200 ]
 }
 
+@test "walls at sharp angles: with the regions of centres where that holds fewer nodes" {
+    # 981 nodes are held, and the worst J_ENS is 0.1375, where they are laid out
+    tetrahedra 0.2 >walls.off
+    run -0 --separate-stderr octree-mesh -v -s 4 --resolve 0 --json report.json -o walls.tm walls.off
+    [[ "$stderr" == *"octants have the regions of their centres"* ]]
+    run -0 mesh-check walls.tm
+    run -0 jens-stats --fail-below 0.2 walls.tm
+    [ "$(json report.json held_back)" -lt 700 ]
+}
+
 @test "--resolve: where walls meet at a curve nothing is too close together" {
     shapes cells >walls.off
     octree-mesh -q --no-history -s 4 --resolve 0 -o plain.tm walls.off

@@ -256,6 +256,54 @@ static inline void check_state(const tm_repair_state *s, const tm_surface *surfa
         check_points(s, surface);
 }
 
+/* Its mesh, rules and places. */
+static inline tm_repair_state copy_elements(const tm_repair_state *s)
+{
+    tm_repair_state copy = {
+        .mesh = {.nodes = s->mesh.nodes, .elements = s->mesh.elements}};
+    const size_t items = s->mesh.start[s->mesh.elements];
+    copy.mesh.xyz = malloc(s->mesh.nodes * sizeof *copy.mesh.xyz);
+    copy.mesh.start = malloc((s->mesh.elements + 1) * sizeof *copy.mesh.start);
+    copy.mesh.item = malloc(items * sizeof *copy.mesh.item);
+    copy.rule = malloc(s->mesh.nodes * sizeof *copy.rule);
+    copy.on = malloc(s->mesh.nodes);
+    memcpy(copy.mesh.xyz, s->mesh.xyz, s->mesh.nodes * sizeof *copy.mesh.xyz);
+    memcpy(copy.mesh.start, s->mesh.start,
+           (s->mesh.elements + 1) * sizeof *copy.mesh.start);
+    memcpy(copy.mesh.item, s->mesh.item, items * sizeof *copy.mesh.item);
+    memcpy(copy.rule, s->rule, s->mesh.nodes * sizeof *copy.rule);
+    memcpy(copy.on, s->on, s->mesh.nodes);
+    return copy;
+}
+
+/* Nodes that may not move have not; and no node has another place. */
+static inline void check_still(const tm_repair_state *old, const tm_repair_state *now)
+{
+    for (size_t v = 0; v < old->mesh.nodes; v++) {
+        assert_int_equal(old->on[v], now->on[v]);
+        if (old->rule[v].freedom == TM_MOVES_NOT)
+            assert_memory_equal(old->mesh.xyz[v], now->mesh.xyz[v], 3 * sizeof(double));
+    }
+}
+
+static inline void check_same_elements(const tm_repair_state *old,
+                                       const tm_repair_state *now)
+{
+    assert_int_equal(old->mesh.nodes, now->mesh.nodes);
+    assert_int_equal(old->mesh.elements, now->mesh.elements);
+    assert_memory_equal(old->mesh.start, now->mesh.start,
+                        (old->mesh.elements + 1) * sizeof *old->mesh.start);
+    assert_memory_equal(old->mesh.item, now->mesh.item,
+                        old->mesh.start[old->mesh.elements] * sizeof *old->mesh.item);
+}
+
+static inline tm_repair_score measured(const tm_repair_state *s, double threshold)
+{
+    const tm_repair_score score = tm_repair_measure(s, threshold);
+    check_score(s, &score, threshold);
+    return score;
+}
+
 /* For all tests of a program. */
 static inline int start_mpi(void **unused)
 {

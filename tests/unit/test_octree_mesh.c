@@ -269,7 +269,7 @@ static void test_random(void **state)
         const size_t patches = surface.patches;
         const tm_status status =
             tm_octree_mesh_refine_lost(&mesh, &octree, &surface, deepest_level(&octree),
-                                       random_below(2), NULL, &error);
+                                       random_below(2), random_below(2), NULL, &error);
         assert_int_equal(status, has_solid(&octree, &surface) ? TM_OK : TM_ERROR_INPUT);
         if (status == TM_OK) {
             check_elements(&mesh);
@@ -330,8 +330,8 @@ static void test_resolve(void **state)
         tm_octree octree;
         tm_octree_mesh mesh;
         assert_ok(tm_octree_build(&octree, &surface, &rule, 1, &error), &error);
-        const tm_status status = tm_octree_mesh_refine_lost(&mesh, &octree, &surface,
-                                                            LEVEL, more, NULL, &error);
+        const tm_status status = tm_octree_mesh_refine_lost(
+            &mesh, &octree, &surface, LEVEL, more, true, NULL, &error);
         assert_int_equal(deepest_level(&octree), LEVEL + (more < NEEDED ? more : NEEDED));
         if (more < NEEDED) {
             assert_int_equal(status, TM_ERROR_INPUT);

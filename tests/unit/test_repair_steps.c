@@ -11,52 +11,6 @@
 
 enum { ROUNDS = 8 };
 
-static tm_repair_state copy_elements(const tm_repair_state *s)
-{
-    tm_repair_state copy = {
-        .mesh = {.nodes = s->mesh.nodes, .elements = s->mesh.elements}};
-    const size_t items = s->mesh.start[s->mesh.elements];
-    copy.mesh.xyz = malloc(s->mesh.nodes * sizeof *copy.mesh.xyz);
-    copy.mesh.start = malloc((s->mesh.elements + 1) * sizeof *copy.mesh.start);
-    copy.mesh.item = malloc(items * sizeof *copy.mesh.item);
-    copy.rule = malloc(s->mesh.nodes * sizeof *copy.rule);
-    copy.on = malloc(s->mesh.nodes);
-    memcpy(copy.mesh.xyz, s->mesh.xyz, s->mesh.nodes * sizeof *copy.mesh.xyz);
-    memcpy(copy.mesh.start, s->mesh.start,
-           (s->mesh.elements + 1) * sizeof *copy.mesh.start);
-    memcpy(copy.mesh.item, s->mesh.item, items * sizeof *copy.mesh.item);
-    memcpy(copy.rule, s->rule, s->mesh.nodes * sizeof *copy.rule);
-    memcpy(copy.on, s->on, s->mesh.nodes);
-    return copy;
-}
-
-/* Nodes that may not move have not; and no node has another place. */
-static void check_still(const tm_repair_state *old, const tm_repair_state *now)
-{
-    for (size_t v = 0; v < old->mesh.nodes; v++) {
-        assert_int_equal(old->on[v], now->on[v]);
-        if (old->rule[v].freedom == TM_MOVES_NOT)
-            assert_memory_equal(old->mesh.xyz[v], now->mesh.xyz[v], 3 * sizeof(double));
-    }
-}
-
-static void check_same_elements(const tm_repair_state *old, const tm_repair_state *now)
-{
-    assert_int_equal(old->mesh.nodes, now->mesh.nodes);
-    assert_int_equal(old->mesh.elements, now->mesh.elements);
-    assert_memory_equal(old->mesh.start, now->mesh.start,
-                        (old->mesh.elements + 1) * sizeof *old->mesh.start);
-    assert_memory_equal(old->mesh.item, now->mesh.item,
-                        old->mesh.start[old->mesh.elements] * sizeof *old->mesh.item);
-}
-
-static tm_repair_score measured(const tm_repair_state *s, double threshold)
-{
-    const tm_repair_score score = tm_repair_measure(s, threshold);
-    check_score(s, &score, threshold);
-    return score;
-}
-
 /* Nodes move: nothing else is other, and nothing is worse. */
 static void test_move(void **unused)
 {
@@ -195,54 +149,6 @@ static void test_shape(void **unused)
     assert_ok(tm_repair_shape_measure(&less, &c.state, &c.surface, &error), &error);
     assert_true(less.curves < whole.curves);
     end_case(&c);
-}
-
-/* Sharp corners: none lost, the solid is the same, and the worst is no worse. */
-static void check_sharp_corners(tm_polygon_surface *p, unsigned level, double threshold,
-                                size_t *made)
-{
-    tm_error error;
-    repair_case c;
-    size_t count = 0;
-    start_case(&c, p, level);
-    const tm_examination first = examine_state(&c.state);
-    const tm_repair_score before = measured(&c.state, threshold);
-    tm_repair_score after = before;
-    tm_repair_state old = copy_elements(&c.state);
-    assert_ok(
-        tm_repair_sharp_corners(&c.state, &c.surface, threshold, &after, &count, &error),
-        &error);
-    check_score(&c.state, &after, threshold);
-    check_not_worse(&before, &after);
-    check_still(&old, &c.state);
-    check_state(&c.state, &c.surface, &first);
-    assert_int_equal(c.state.divided, count > 0);
-    if (count == 0)
-        check_same_elements(&old, &c.state);
-    *made += count;
-    tm_repair_state_free(&old);
-    end_case(&c);
-}
-
-static void test_sharp_corners(void **unused)
-{
-    (void)unused;
-    static const struct {
-        double height; /* of a pyramid; 0: a wedge, whose corners cannot be better */
-        unsigned level;
-        double threshold;
-    } of[] = {{0.5, 2, 0.27}, {3, 2, 0.2}, {3, 2, 0.3}, {3, 3, 0.2}, {0, 2, 0.2}};
-    for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
-        tm_polygon_surface p;
-        size_t made = 0;
-        tm_polygon_surface_init(&p);
-        if (of[i].height > 0)
-            add_pyramid(&p, of[i].height);
-        else
-            add_wedge(&p, 2, 1);
-        check_sharp_corners(&p, of[i].level, of[i].threshold, &made);
-        assert_int_equal(made > 0, of[i].height > 0);
-    }
 }
 
 /* A case whose boundary may not move: what is bad is to be divided. */
@@ -696,13 +602,13 @@ int main(void)
 {
     random_start();
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_least),         cmocka_unit_test(test_uncertified),
-        cmocka_unit_test(test_better),        cmocka_unit_test(test_forced),
-        cmocka_unit_test(test_star),          cmocka_unit_test(test_rules),
-        cmocka_unit_test(test_move),          cmocka_unit_test(test_divide),
-        cmocka_unit_test(test_sharp_corners), cmocka_unit_test(test_take_back),
-        cmocka_unit_test(test_shape),         cmocka_unit_test(test_octants),
-        cmocka_unit_test(test_remake),        cmocka_unit_test(test_remake_tips),
+        cmocka_unit_test(test_least),       cmocka_unit_test(test_uncertified),
+        cmocka_unit_test(test_better),      cmocka_unit_test(test_forced),
+        cmocka_unit_test(test_star),        cmocka_unit_test(test_rules),
+        cmocka_unit_test(test_move),        cmocka_unit_test(test_divide),
+        cmocka_unit_test(test_take_back),   cmocka_unit_test(test_shape),
+        cmocka_unit_test(test_octants),     cmocka_unit_test(test_remake),
+        cmocka_unit_test(test_remake_tips),
     };
     return cmocka_run_group_tests(tests, start_mpi, NULL);
 }

@@ -345,9 +345,9 @@ static void test_meshes(void **state)
         assert_ok(tm_surface_check(&surface, &error), &error);
         assert_ok(tm_octree_build(&octree, &surface, &rule, 1, &error), &error);
         printf("mesh %d (TM_SEED=%" PRIu64 "): %zu leaves\n", round, seed, octree.leaves);
-        assert_ok(
-            tm_octree_mesh_refine_lost(&mesh, &octree, &surface, 3, 0, NULL, &error),
-            &error);
+        assert_ok(tm_octree_mesh_refine_lost(&mesh, &octree, &surface, 3, 0, true, NULL,
+                                             &error),
+                  &error);
         assert_int_equal(mesh.report.invalid, 0);
         const tm_mixed_mesh *m = &mesh.assembly.mesh;
         tm_examination found;
@@ -367,14 +367,36 @@ static void test_meshes(void **state)
     }
 }
 
+/* The ends of patterns: each number is that of one direction and the octants there. */
+static void test_ends(void **state)
+{
+    (void)state;
+    for (unsigned sectors = 3; sectors <= TM_SECTORS; sectors++) {
+        tm_line_patterns patterns;
+        tm_error error;
+        assert_ok(tm_line_patterns_make(&patterns, sectors, &error), &error);
+        assert_true(patterns.ends > 0 && patterns.ends < patterns.count);
+        for (uint32_t i = 0; i < patterns.count; i++) {
+            const tm_line_pattern *a = &patterns.pattern[i];
+            assert_true(a->end < patterns.ends);
+            for (uint32_t k = 0; k < i; k++) {
+                const tm_line_pattern *b = &patterns.pattern[k];
+                assert_int_equal(a->end == b->end,
+                                 a->to == b->to && tm_side_code(a->code, a->to) ==
+                                                       tm_side_code(b->code, b->to));
+            }
+        }
+        tm_line_patterns_free(&patterns);
+    }
+}
+
 int main(void)
 {
     random_start();
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_regions),
-        cmocka_unit_test(test_leaves),
-        cmocka_unit_test(test_layout),
-        cmocka_unit_test(test_meshes),
+        cmocka_unit_test(test_regions), cmocka_unit_test(test_leaves),
+        cmocka_unit_test(test_layout),  cmocka_unit_test(test_meshes),
+        cmocka_unit_test(test_ends),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

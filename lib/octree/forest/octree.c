@@ -14,6 +14,15 @@ void tm_octree_free(tm_octree *octree)
     *octree = (tm_octree){.leaves = 0};
 }
 
+unsigned tm_octree_deepest(const tm_octree *octree)
+{
+    unsigned deepest = 0;
+    for (size_t l = 0; l < octree->leaves; l++)
+        if (octree->leaf[l].level > deepest)
+            deepest = octree->leaf[l].level;
+    return deepest;
+}
+
 tm_status tm_octree_copy(tm_octree *copy, const tm_octree *octree, tm_error *error)
 {
     *copy = *octree;

@@ -81,6 +81,9 @@ static inline void tm_leaf_centre(const tm_octree *octree, const tm_leaf *leaf,
     tm_octree_point(octree, grid, centre);
 }
 
+/* The deepest level of a leaf. */
+unsigned tm_octree_deepest(const tm_octree *octree);
+
 /* What a leaf is split for, and to which level. */
 typedef enum tm_octree_rule_kind {
     TM_RULE_EVERYTHING, /* it is there */

@@ -21,15 +21,6 @@ static void root_corner(const tm_octree *octree, const uint32_t position[3],
         low[i] = octree->low[i] + octree->side * (double)position[i];
 }
 
-static unsigned deepest_level(const tm_octree *octree)
-{
-    unsigned deepest = 0;
-    for (size_t i = 0; i < octree->leaves; i++)
-        if (octree->leaf[i].level > deepest)
-            deepest = octree->leaf[i].level;
-    return deepest;
-}
-
 static tm_status roots_to_stream(const tm_octree *octree, unsigned finest,
                                  tm_stream *stream, tm_error *error)
 {
@@ -52,7 +43,7 @@ static tm_status roots_to_stream(const tm_octree *octree, unsigned finest,
 tm_status tm_octree_to_stream(const tm_octree *octree, const uint32_t *element,
                               tm_stream *stream, tm_error *error)
 {
-    const unsigned finest = deepest_level(octree);
+    const unsigned finest = tm_octree_deepest(octree);
     tm_status status = roots_to_stream(octree, finest, stream, error);
     if (status != TM_OK)
         return status;

@@ -246,6 +246,12 @@ void tm_interior_find_used(tm_interior *interior, const tm_octree *octree)
 tm_status tm_interior_choose(tm_interior *interior, const tm_octree *octree,
                              const tm_surface *surface, tm_error *error)
 {
+    return tm_interior_choose_how(interior, octree, surface, true, error);
+}
+
+tm_status tm_interior_choose_how(tm_interior *interior, const tm_octree *octree,
+                                 const tm_surface *surface, bool lay_out, tm_error *error)
+{
     *interior = (tm_interior){
         .chosen = calloc(octree->leaves, sizeof *interior->chosen),
         .mask = calloc(octree->nodes, sizeof *interior->mask),
@@ -254,7 +260,8 @@ tm_status tm_interior_choose(tm_interior *interior, const tm_octree *octree,
     if (!interior->chosen || !interior->mask || !interior->used)
         return tm_fail_memory(error);
     if (surface->walls) {
-        const tm_status labelled = tm_interior_label(interior, octree, surface, error);
+        const tm_status labelled =
+            tm_interior_label(interior, octree, surface, lay_out, error);
         if (labelled == TM_OK)
             tm_interior_find_used(interior, octree);
         return labelled;

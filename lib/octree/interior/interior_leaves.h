@@ -30,6 +30,10 @@ typedef struct tm_interior {
  * *interior is to be freed, after an error too. Expected O(leaves). */
 tm_status tm_interior_choose(tm_interior *interior, const tm_octree *octree,
                              const tm_surface *surface, tm_error *error);
+/* The same where it is asked that corners and curves of walls are not laid out. */
+tm_status tm_interior_choose_how(tm_interior *interior, const tm_octree *octree,
+                                 const tm_surface *surface, bool lay_out,
+                                 tm_error *error);
 void tm_interior_free(tm_interior *interior);
 
 /* Chooses, as another interior, the leaves that the chosen ones enclose: what is not

@@ -70,7 +70,7 @@ static bool look_at(tm_line_code code, unsigned sectors, tm_line_pattern *patter
         else if (tm_sectors_turn(in, sectors))
             from = side;
     }
-    *pattern = (tm_line_pattern){code, (uint8_t)from, (uint8_t)to};
+    *pattern = (tm_line_pattern){code, (uint8_t)from, (uint8_t)to, 0};
     return ends == 2 && from < SIDES && to < SIDES && has_good_masks(code, sectors) &&
            has_good_faces(code, sectors);
 }
@@ -92,6 +92,19 @@ static bool next_code(tm_line_code *code, unsigned sectors)
 static unsigned bucket_of(const tm_line_pattern *p)
 {
     return TM_SIDE_CODES * p->from + tm_side_code(p->code, p->from);
+}
+
+/* Numbers the ends of the patterns. */
+static void number_ends(tm_line_patterns *patterns)
+{
+    uint16_t number[SIDES * TM_SIDE_CODES] = {0}; /* 0: none yet */
+    for (uint32_t i = 0; i < patterns->count; i++) {
+        tm_line_pattern *p = &patterns->pattern[i];
+        uint16_t *of = &number[TM_SIDE_CODES * p->to + tm_side_code(p->code, p->to)];
+        if (*of == 0)
+            *of = (uint16_t)++patterns->ends;
+        p->end = (uint16_t)(*of - 1);
+    }
 }
 
 tm_status tm_line_patterns_make(tm_line_patterns *patterns, unsigned sectors,
@@ -119,6 +132,7 @@ tm_status tm_line_patterns_make(tm_line_patterns *patterns, unsigned sectors,
         if (look_at(code, sectors, &found))
             patterns->pattern[fill[bucket_of(&found)]++] = found;
     while (next_code(&code, sectors));
+    number_ends(patterns);
     return TM_OK;
 }
 

@@ -25,6 +25,8 @@ static inline unsigned tm_code_at(tm_line_code code, unsigned octant)
 typedef struct tm_line_pattern {
     tm_line_code code;
     uint8_t from, to;
+    uint16_t end; /* the number of its direction and octants there: how a line can go on
+                     depends on nothing else */
 } tm_line_pattern;
 
 enum { TM_SIDE_CODES = 256 };
@@ -32,7 +34,7 @@ enum { TM_SIDE_CODES = 256 };
 /* Those of a number of sectors, in order of the direction from which the line comes, and
  * of the octants on that side: start[TM_SIDE_CODES * from + tm_side_code()] … */
 typedef struct tm_line_patterns {
-    uint32_t count;
+    uint32_t count, ends;
     tm_line_pattern *pattern;
     uint32_t start[6 * TM_SIDE_CODES + 1];
 } tm_line_patterns;

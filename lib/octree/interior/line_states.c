@@ -41,16 +41,14 @@ static uint32_t pop(tm_line_states *s)
     return state;
 }
 
-static tm_status add_row(tm_line_states *s, uint32_t patterns, uint32_t *row,
-                         tm_error *error)
+static tm_status add_row(tm_line_states *s, uint32_t ends, uint32_t *row, tm_error *error)
 {
-    void *more =
-        tm_grow(s->slot, &s->slot_room, (s->rows + 1) * patterns, sizeof *s->slot);
+    void *more = tm_grow(s->slot, &s->slot_room, (s->rows + 1) * ends, sizeof *s->slot);
     if (!more)
         return tm_fail_memory(error);
     s->slot = more;
     *row = (uint32_t)s->rows++;
-    for (size_t i = *row * (size_t)patterns; i < s->rows * patterns; i++)
+    for (size_t i = *row * (size_t)ends; i < s->rows * ends; i++)
         s->slot[i] = TM_NONE;
     return TM_OK;
 }
@@ -68,13 +66,13 @@ void tm_line_states_free(tm_line_states *states)
     *states = (tm_line_states){0};
 }
 
-tm_status tm_line_states_reach(tm_line_states *s, uint32_t patterns, uint32_t p,
+tm_status tm_line_states_reach(tm_line_states *s, uint32_t ends, uint32_t end,
                                uint32_t *row, const tm_line_state *made, double left,
                                tm_error *error)
 {
-    if (*row == TM_NONE && add_row(s, patterns, row, error) != TM_OK)
+    if (*row == TM_NONE && add_row(s, ends, row, error) != TM_OK)
         return TM_ERROR_SYSTEM;
-    uint32_t *slot = &s->slot[*row * (size_t)patterns + p];
+    uint32_t *slot = &s->slot[*row * (size_t)ends + end];
     if (*slot != TM_NONE && s->state[*slot].cost <= made->cost)
         return TM_OK;
     if (*slot == TM_NONE) {

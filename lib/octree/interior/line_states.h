@@ -29,17 +29,17 @@ typedef struct tm_line_states {
     size_t entries, entry_room;
     tm_line_entry *heap;
     size_t rows, slot_room;
-    uint32_t *slot; /* [rows][patterns]: a state, or TM_NONE */
+    uint32_t *slot; /* [rows][ends]: a state, or TM_NONE */
 } tm_line_states;
 
 /* Forgets all; memory is kept. */
 void tm_line_states_clear(tm_line_states *states);
 void tm_line_states_free(tm_line_states *states);
 
-/* Enters a state with pattern p of so many if none as cheap is there with it, at the
- * node with that row; `left` is what the line may cost from there on. *row is TM_NONE at
- * first, and then the node's. TM_ERROR_SYSTEM where memory is out. */
-tm_status tm_line_states_reach(tm_line_states *states, uint32_t patterns, uint32_t p,
+/* Enters a state with that end of so many (line_patterns.h) if none as cheap is there
+ * with it, at the node with that row; `left` is what the line may cost from there on.
+ * *row is TM_NONE at first, and then the node's. TM_ERROR_SYSTEM where memory is out. */
+tm_status tm_line_states_reach(tm_line_states *states, uint32_t ends, uint32_t end,
                                uint32_t *row, const tm_line_state *made, double left,
                                tm_error *error);
 

@@ -426,7 +426,7 @@ static tm_status lay_out_once(cleaner *c, size_t *wrong, tm_error *error)
 
 /* The same again and again while something is wrong then: elsewhere, with what was learnt
  * (L. McMurchie and C. Ebeling, PathFinder, 1995). Leaves the best that was found. */
-static tm_status lay_out(cleaner *c, tm_error *error)
+static tm_status lay_out_best(cleaner *c, tm_error *error)
 {
     enum { TRIES = 6 };
     const size_t leaves = c->octree->leaves, bytes = leaves * sizeof(uint32_t);
@@ -461,7 +461,7 @@ static tm_status lay_out(cleaner *c, tm_error *error)
 }
 
 tm_status tm_interior_label(tm_interior *interior, const tm_octree *octree,
-                            const tm_surface *surface, tm_error *error)
+                            const tm_surface *surface, bool lay_out, tm_error *error)
 {
     interior->label = tm_new(octree->leaves, sizeof *interior->label);
     interior->octant = calloc(octree->nodes + 1, sizeof *interior->octant);
@@ -478,7 +478,8 @@ tm_status tm_interior_label(tm_interior *interior, const tm_octree *octree,
         status = tm_fail_memory(error);
     if (ok && status == TM_OK) {
         label_leaves(&c);
-        status = lay_out(&c, error);
+        c.fixed = c.laid;
+        status = lay_out ? lay_out_best(&c, error) : clean_all(&c, error);
         if (status == TM_OK)
             status = clean_masks(&c, error);
     }

@@ -10,11 +10,12 @@
 TM_EXTERN_C_BEGIN
 
 /* tm_interior_choose() of a surface with walls. Gives each leaf the region that its
- * centre is in, then others to some until at each node the octants of each region, and
+ * centre is in, with `lay_out` others to those at corners and curves (region_layout.h),
+ * then others to some until at each node the octants of each region, and
  * those of none, are a good mask (octant_mask.h). Fills label and octant, too; chosen are
  * the leaves of any region. Expected O(leaves). */
 tm_status tm_interior_label(tm_interior *interior, const tm_octree *octree,
-                            const tm_surface *surface, tm_error *error);
+                            const tm_surface *surface, bool lay_out, tm_error *error);
 
 /* Divides what tm_interior_label() filled, **part, an array of one: afterwards those are
  * *parts, each with the leaves of regions that have no node in common, and all with the

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The line of a curve is the cheapest way through states: a node, and sectors for the
  * octants around it (E. W. Dijkstra, 1959). A step goes along an edge, whose four leaves
- * are around both of its ends. */
+ * are around both of its ends: of states with the same of these only one is kept. */
 #include "region_layout.h"
 
 #include "../../base/array.h"
@@ -76,8 +76,8 @@ static tm_status reach(finder *f, view *v, uint32_t pattern, uint32_t from, doub
     const tm_line_state made = {
         .node = v->node, .code = p->code, .to = p->to, .from = from, .cost = cost};
     const double left = length_cost * along_curve(f, v->param, f->goal_param) / v->size;
-    return tm_line_states_reach(&f->states, patterns->count, pattern, &v->row, &made,
-                                left, f->error);
+    return tm_line_states_reach(&f->states, patterns->ends, p->end, &v->row, &made, left,
+                                f->error);
 }
 
 /* Whether the leaf of an octant has a label that it keeps. */

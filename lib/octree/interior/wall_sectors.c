@@ -193,6 +193,18 @@ tm_status tm_wall_sectors_find(tm_wall_sectors *sectors, const tm_surface *surfa
     return status;
 }
 
+tm_status tm_walls_are_sharp(const tm_surface *surface, bool *sharp, tm_error *error)
+{
+    tm_wall_sectors sectors;
+    const tm_status status = tm_wall_sectors_find(&sectors, surface, error);
+    *sharp = false;
+    for (size_t c = 0; status == TM_OK && c < surface->curves; c++)
+        *sharp |= tm_curve_is_of_walls(surface, c) &&
+                  (sectors.sharp[c] || sectors.count[c] == 0);
+    tm_wall_sectors_free(&sectors);
+    return status;
+}
+
 void tm_wall_sectors_free(tm_wall_sectors *sectors)
 {
     free(sectors->sharp);

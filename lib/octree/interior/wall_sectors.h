@@ -31,6 +31,10 @@ typedef struct tm_wall_sectors {
  * error too. O(n log n). */
 tm_status tm_wall_sectors_find(tm_wall_sectors *sectors, const tm_surface *surface,
                                tm_error *error);
+/* Whether octants that only know where their centres are may not do at some curve: it is
+ * sharp, or they cannot follow it. Errors and cost as above. */
+tm_status tm_walls_are_sharp(const tm_surface *surface, bool *sharp, tm_error *error);
+
 void tm_wall_sectors_free(tm_wall_sectors *sectors);
 
 /* How far a direction is beside a sector of `count`: the angle between them, times the

@@ -14,6 +14,12 @@
 /* Of a mesh with more elements nothing is tried: it would be made twice again. */
 static const size_t most_to_try = 5000000;
 
+/* How deep leaves may be, the deepest that is asked for, and how walls are treated. */
+typedef struct {
+    unsigned level, deepest;
+    bool lay_out;
+} depth;
+
 /* A stage. */
 static const char splitting[] = "splitting octants";
 
@@ -122,7 +128,7 @@ static tm_status mark_behind_boundary(const tm_interior *interior,
 /* Splits leaves with surface but no boundary close by, and those behind a boundary of
  * smaller ones, until there are none; then makes the mesh. */
 static tm_status make_without_loss(tm_octree_mesh *mesh, tm_octree *octree,
-                                   tm_surface *surface, unsigned level, unsigned deepest,
+                                   tm_surface *surface, const depth *to,
                                    const tm_progress *progress, tm_error *error)
 {
     tm_interior interior = {0};
@@ -131,13 +137,14 @@ static tm_status make_without_loss(tm_octree_mesh *mesh, tm_octree *octree,
         uint8_t *lost = calloc(octree->leaves + 1, sizeof *lost);
         tm_interior_free(&interior);
         tm_progress_stage(progress, "choosing octants");
-        status = lost ? tm_interior_choose(&interior, octree, surface, error)
-                      : tm_fail_memory(error);
+        status =
+            lost ? tm_interior_choose_how(&interior, octree, surface, to->lay_out, error)
+                 : tm_fail_memory(error);
         if (status == TM_OK) {
-            if (deepest > level)
+            if (to->deepest > to->level)
                 tm_interior_find_lost(&interior, octree, surface, lost);
-            status = mark_behind_boundary(&interior, octree, level, lost, error);
-            more = keep_shallow(octree, deepest, lost) > 0;
+            status = mark_behind_boundary(&interior, octree, to->level, lost, error);
+            more = keep_shallow(octree, to->deepest, lost) > 0;
         }
         if (status == TM_OK && more) {
             tm_progress_stage(progress, splitting);
@@ -189,12 +196,28 @@ static uint64_t topology_missing(const tm_octree_mesh *mesh, const tm_surface *s
            (uint64_t)(euler < 0 ? -euler : euler);
 }
 
+/* The mesh of an octree that is as it should be. */
+static tm_status make_again(tm_octree_mesh *mesh, const tm_octree *octree,
+                            tm_surface *surface, const depth *to,
+                            const tm_progress *progress, tm_error *error)
+{
+    tm_interior interior;
+    tm_progress_stage(progress, "choosing octants");
+    tm_status status =
+        tm_interior_choose_how(&interior, octree, surface, to->lay_out, error);
+    if (status == TM_OK)
+        status =
+            tm_octree_mesh_make_of(mesh, octree, &interior, surface, progress, error);
+    tm_interior_free(&interior);
+    return status;
+}
+
 /* The mesh of a copy of the octree with leaves split; *octree becomes the copy if fewer
  * nodes are off the surface and its topology is as good, else the mesh is made of it
  * again. Meshes are large: there is only one at a time. */
 static tm_status try_split(tm_octree_mesh *mesh, tm_octree *octree, tm_surface *surface,
-                           unsigned level, unsigned deepest, const uint8_t *split,
-                           bool *better, const tm_progress *progress, tm_error *error)
+                           const depth *to, const uint8_t *split, bool *better,
+                           const tm_progress *progress, tm_error *error)
 {
     const size_t off_surface = mesh->report.off_surface;
     const uint64_t missing = topology_missing(mesh, surface);
@@ -205,8 +228,7 @@ static tm_status try_split(tm_octree_mesh *mesh, tm_octree *octree, tm_surface *
     if (status == TM_OK)
         status = tm_octree_refine(&finer, surface, split, error);
     if (status == TM_OK)
-        status =
-            make_without_loss(mesh, &finer, surface, level, deepest, progress, error);
+        status = make_without_loss(mesh, &finer, surface, to, progress, error);
     *better = status == TM_OK && mesh->report.off_surface < off_surface &&
               topology_missing(mesh, surface) <= missing;
     if (*better) {
@@ -217,32 +239,32 @@ static tm_status try_split(tm_octree_mesh *mesh, tm_octree *octree, tm_surface *
     tm_octree_free(&finer);
     if (status == TM_OK) {
         tm_octree_mesh_free(mesh);
-        status = tm_octree_mesh_make(mesh, octree, surface, progress, error);
+        status = make_again(mesh, octree, surface, to, progress, error);
     }
     return status;
 }
 
 tm_status tm_octree_mesh_refine_lost(tm_octree_mesh *mesh, tm_octree *octree,
                                      tm_surface *surface, unsigned level, unsigned levels,
-                                     const tm_progress *progress, tm_error *error)
+                                     bool lay_out, const tm_progress *progress,
+                                     tm_error *error)
 {
-    unsigned deepest = level + levels;
+    const unsigned deepest = level + levels;
+    const depth to = {
+        level, deepest > TM_OCTREE_LEVEL_MAX ? TM_OCTREE_LEVEL_MAX : deepest, lay_out};
     *mesh = (tm_octree_mesh){0};
-    if (deepest > TM_OCTREE_LEVEL_MAX)
-        deepest = TM_OCTREE_LEVEL_MAX;
     tm_status status =
         surface->walls ? tm_octree_refine_walls(octree, surface, error) : TM_OK;
     if (status != TM_OK)
         return status;
-    status = make_without_loss(mesh, octree, surface, level, deepest, progress, error);
+    status = make_without_loss(mesh, octree, surface, &to, progress, error);
     for (bool better = levels > 0; status == TM_OK && better;) {
         const bool tries =
             mesh->report.off_surface > 0 && mesh->assembly.mesh.elements <= most_to_try;
-        uint8_t *split = tries ? mark_off_surface(mesh, octree, deepest) : NULL;
+        uint8_t *split = tries ? mark_off_surface(mesh, octree, to.deepest) : NULL;
         if (!split)
             break;
-        status = try_split(mesh, octree, surface, level, deepest, split, &better,
-                           progress, error);
+        status = try_split(mesh, octree, surface, &to, split, &better, progress, error);
         free(split);
     }
     tm_progress_stage(progress, "looking for losses");

@@ -8,6 +8,7 @@
 #include "../interior/region_leaves.h"
 #include "octree_mesh_parts.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -394,6 +395,14 @@ static tm_status count_regions(tm_octree_mesh *m, const tm_octree *octree,
     return status;
 }
 
+static double find_worst(const tm_mixed_mesh *mesh)
+{
+    double worst = 1;
+    for (size_t e = 0; e < mesh->elements; e++)
+        worst = fmin(worst, tm_mixed_jens(mesh, e));
+    return worst;
+}
+
 static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *surface,
                       const tm_progress *progress, tm_error *error)
 {
@@ -418,6 +427,8 @@ static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *su
                                   error);
     if (status == TM_OK)
         status = tm_untangle_layer(m, octree, surface, progress, error);
+    if (status == TM_OK && surface->walls)
+        r->worst = find_worst(&m->assembly.mesh);
     if (status == TM_OK && surface->walls)
         status = count_labels(m, octree, surface, error);
     else if (status == TM_OK && surface->regions)

@@ -16,7 +16,8 @@ enum { RINGS = 2, CORE_MOST = 24 };
 /* Elements at a tip that are as good are not made anew, whatever the threshold is: it is
  * not sharp. */
 static const double not_sharp = 0.3;
-static const tm_repair_effort effort = {1, TM_REPAIR_FLAT, 1, 0, 60000};
+static const tm_repair_effort effort[] = {{1, TM_REPAIR_FLAT, 1, 0, 15000},
+                                          {1, TM_REPAIR_FLAT, 1, 0, 20000}}; /* whole */
 
 /* What comes in the place of one element, with nodes of the whole mesh. */
 typedef struct {
@@ -280,31 +281,62 @@ static tm_status gather(corners *t, uint32_t middle, uint32_t core[CORE_MOST],
     }
 }
 
-/* Tries one corner; counts it if it is other then. */
+/* Makes the elements of the trial at a tip anew, and moves nodes; *parts has none where
+ * that cannot be. */
+static tm_status make_tip(corners *t, uint32_t corner, uint32_t middle, size_t cores,
+                          bool whole, tm_sharp_corner *parts, tm_repair_score *after,
+                          tm_error *error)
+{
+    uint32_t first[CORE_MOST];
+    tm_repair_state *part = &t->trial.part;
+    for (size_t i = 0; i < cores; i++)
+        first[i] = (uint32_t)i;
+    if (!tm_sharp_corner_divide(parts, &part->mesh, first, cores,
+                                local_of(&t->trial, corner), local_of(&t->trial, middle),
+                                whole)) {
+        parts->parts = 0;
+        return TM_OK;
+    }
+    replace_first(&part->mesh, cores, parts);
+    *after = tm_repair_measure(part, t->threshold);
+    return tm_repair_move(part, t->surface, t->threshold, effort[whole], after, error);
+}
+
+/* Tries one corner, with one element on all of the tip, and, where that leaves some bad,
+ * without; counts it if it is other then. */
 static tm_status try_sharp_corner(corners *t, uint32_t corner, uint32_t middle,
                                   size_t *count, tm_error *error)
 {
-    uint32_t core[CORE_MOST], first[CORE_MOST];
+    uint32_t core[CORE_MOST];
     size_t cores;
-    tm_repair_state *part = &t->trial.part;
+    tm_repair_points kept = {0};
+    tm_sharp_corner best = {.parts = 0};
     tm_status status = gather(t, middle, core, &cores, error);
-    if (status != TM_OK)
-        return status;
-    tm_sharp_corner parts;
-    for (size_t i = 0; i < cores; i++)
-        first[i] = (uint32_t)i;
-    if (!tm_sharp_corner_divide(&parts, &part->mesh, first, cores,
-                                local_of(&t->trial, corner), local_of(&t->trial, middle)))
-        return TM_OK;
-    const tm_repair_score before = tm_repair_measure(part, t->threshold);
-    replace_first(&part->mesh, cores, &parts);
-    tm_repair_score after = tm_repair_measure(part, t->threshold);
-    status = tm_repair_move(part, t->surface, t->threshold, effort, &after, error);
-    if (status != TM_OK || !tm_repair_better(&after, &before))
-        return status;
-    tm_trial_commit(&t->trial);
-    (*count)++;
-    return add_replacement(t, core, cores, &parts, error);
+    tm_repair_score score;
+    if (status == TM_OK)
+        score = tm_repair_measure(&t->trial.part, t->threshold);
+    for (int whole = 1; whole >= 0 && status == TM_OK && score.bad > 0; whole--) {
+        tm_sharp_corner parts = {.parts = 0};
+        tm_repair_score after;
+        if (whole == 0)
+            status = tm_trial_gather(&t->trial, core, cores, RINGS, error);
+        if (status == TM_OK)
+            status = make_tip(t, corner, middle, cores, whole, &parts, &after, error);
+        if (status != TM_OK || parts.parts == 0 || !tm_repair_better(&after, &score))
+            continue;
+        best = parts;
+        score = after;
+        tm_repair_points_free(&kept);
+        status = tm_repair_save(&kept, &t->trial.part, error);
+    }
+    if (status == TM_OK && best.parts > 0) {
+        tm_repair_restore(&kept, &t->trial.part);
+        tm_trial_commit(&t->trial);
+        (*count)++;
+        status = add_replacement(t, core, cores, &best, error);
+    }
+    tm_repair_points_free(&kept);
+    return status;
 }
 
 tm_status tm_repair_sharp_corners(tm_repair_state *state, const tm_surface *surface,

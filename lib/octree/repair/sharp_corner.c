@@ -64,9 +64,18 @@ static bool close_fan(const fan *f, uint32_t polygon[FAN_MOST])
     return next == polygon[0];
 }
 
+/* The tetrahedra between the triangles at the tip and the middle. */
+static bool add_fan(tm_sharp_corner *to, const fan *f, uint32_t corner, uint32_t middle)
+{
+    bool made = true;
+    for (unsigned i = 0; i < f->count && made; i++)
+        made = add_part(to, 3, (uint32_t[]){corner, f->x[i], f->y[i]}, middle);
+    return made;
+}
+
 bool tm_sharp_corner_divide(tm_sharp_corner *parts, const tm_mixed_mesh *mesh,
                             const uint32_t *element, size_t count, uint32_t corner,
-                            uint32_t middle)
+                            uint32_t middle, bool whole)
 {
     fan f = {.count = 0};
     parts->parts = 0;
@@ -92,6 +101,8 @@ bool tm_sharp_corner_divide(tm_sharp_corner *parts, const tm_mixed_mesh *mesh,
         return false;
     for (unsigned i = 0; i < f.count; i++)
         on_sharp_corner[i] = polygon[f.count - 1 - i]; /* seen from the tip's element */
+    if (!whole)
+        return add_fan(parts, &f, corner, middle);
     return add_part(parts, f.count, polygon, middle) &&
            add_part(parts, f.count, on_sharp_corner, corner);
 }

@@ -18,9 +18,11 @@ typedef struct tm_sharp_corner {
  * there become the base of a tetrahedron or a pyramid on the tip, and what else is of the
  * `count` elements, which are all at the middle, is divided from the middle: where
  * an element had the dihedral angle of a third of the tip, this one has all of it.
- * Quadrilaterals of the boundary at the tip are cut. False where that cannot be. */
+ * Quadrilaterals of the boundary at the tip are cut. Where the tip is not `whole`, there
+ * is a tetrahedron to the middle from each of its triangles instead: one element on a tip
+ * that is nearly flat would be as flat. False where that cannot be. */
 bool tm_sharp_corner_divide(tm_sharp_corner *parts, const tm_mixed_mesh *mesh,
                             const uint32_t *element, size_t count, uint32_t corner,
-                            uint32_t middle);
+                            uint32_t middle, bool whole);
 
 #endif
