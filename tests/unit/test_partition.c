@@ -4,6 +4,7 @@
 #include "../../lib/poly/facets.h"
 #include "../../lib/geom/kernel.h"
 #include "../../lib/poly/partition.h"
+#include "../../lib/poly/shelling.h"
 #include "../../lib/poly/simple.h"
 #include "../../lib/tet/operation/ball.h"
 #include "tet_fixture.h"
@@ -140,6 +141,39 @@ static void test_simple(void **state)
         tm_stream_free(&stream);
     }
     assert_true(balls > 20 && others > 20);
+}
+
+/* A piece does not remember one that had its number before: across each face it grows. */
+static void test_number_used_again(void **state)
+{
+    (void)state;
+    tm_stream stream;
+    tm_tet_mesh mesh;
+    tm_shelling s;
+    tm_error error;
+    const tm_poly_options o = {.repair = true};
+    size_t grown = 0;
+    make_mesh(&mesh, &stream, 3, 0.8, false);
+    uint32_t *label = calloc(mesh.slots, sizeof *label);
+    assert_int_equal(tm_shelling_start(&s, &mesh, &o, &error), TM_OK);
+    for (uint32_t t = 0; t < mesh.slots; t++) {
+        const uint32_t across = mesh.neighbour[t][0], u = across / 4;
+        if (across & TM_FACE_BIT)
+            continue;
+        assert_true(tm_shelling_begin(&s, 0, u));
+        s.piece[u] = TM_NONE;
+        label[t] = label[u] = 1;
+        assert_true(tm_shelling_begin(&s, 0, t) && tm_shelling_grow(&s, label, 1));
+        assert_int_equal(s.size, 2);
+        s.piece[t] = s.piece[u] = TM_NONE;
+        label[t] = label[u] = 0;
+        grown++;
+    }
+    assert_true(grown > 20);
+    free(label);
+    tm_shelling_free(&s);
+    tm_tet_mesh_free(&mesh);
+    tm_stream_free(&stream);
 }
 
 /* The mesh is the same in another order. */
@@ -294,6 +328,7 @@ int main(void)
     random_start();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_simple),
+        cmocka_unit_test(test_number_used_again),
         cmocka_unit_test(test_sort),
         cmocka_unit_test(test_partitions),
     };
