@@ -3,7 +3,8 @@
 # What threads gain: seconds by the clock of whole processes with -j 1 and with -j THREADS
 # (2), in turn, and that both give the same bytes. Needs free cores: medians of RUNS (3).
 # POINTS (200000) random points make the tetrahedra, CELLS (102) those that are only read;
-# LEVEL (6) is that of the octree.
+# LEVEL (6) is that of the octree in a cube, KNOT (8) that in knot.off, where TM_DATA has
+# it.
 # shellcheck source-path=SCRIPTDIR source=common.inc
 . "$(dirname "$0")/common.inc"
 threads=${THREADS:-2}
@@ -51,3 +52,11 @@ compare "lepp-improve" tets.tm lepp-improve --no-history -j
 compare "polylla3d --star" tets.tm polylla3d --no-history --star -j
 compare "octree-repair" octree.tm octree-repair --no-history -t 0.2 -j
 compare "octree-mesh" cube.off octree-mesh --no-history -a "${LEVEL:-6}" -j
+
+knot=${TM_DATA:-}/knot.off
+[ -f "$knot" ] || exit 0
+ln -s "$knot" "$work/knot.off"
+compare "octree-mesh, knot" knot.off octree-mesh -q --no-history -s "${KNOT:-8}" -j
+octree-mesh -q --no-history -s "${KNOT:-8}" -o "$work/knot.tm" "$knot"
+compare "octree-repair, knot" knot.tm octree-repair -q --no-history -t 0.2 -j
+compare "jens-stats, knot" knot.tm jens-stats --threads

@@ -274,12 +274,17 @@ static void make_task(void *context, size_t i)
 {
     descent *all = context;
     task *t = &all->task[i];
-    descent d = *all;
-    d.cuts = false;
-    d.error = &t->error;
-    d.part = t->octant.part;
-    d.leaves = d.leaves ? &t->leaves : NULL;
-    d.given = t->given;
+    descent d = {.octree = all->octree,
+                 .rule = all->rule,
+                 .rules = all->rules,
+                 .source_of = all->source_of,
+                 .sources = all->sources,
+                 .is_corner = all->is_corner,
+                 .shift = all->shift,
+                 .part = t->octant.part,
+                 .leaves = all->leaves ? &t->leaves : NULL,
+                 .given = t->given,
+                 .error = &t->error};
     t->status =
         tm_leaf_list_check(__atomic_load_n(&all->found, __ATOMIC_RELAXED), d.error);
     d.source = t->status == TM_OK ? tm_new(d.sources, sizeof *d.source) : NULL;

@@ -145,6 +145,7 @@ typedef struct {
     uint32_t *order; /* [nodes of the mesh]: its index in node[], or TM_NONE */
     bool *moves;     /* [nodes of the mesh], while they are looked for */
     size_t nodes;
+    size_t core; /* of these: of the octree; behind them are middles of leaves */
     uint32_t *node;
     size_t *start;   /* [nodes + 1] */
     uint32_t *count; /* [nodes]: of neighbours, from neighbour[start[n]] */
@@ -193,6 +194,8 @@ static tm_status find_moving(const fitter *projection, zone *z, tm_error *error)
     for (size_t n = 0; n < mesh->nodes; n++) {
         const bool is_outer = n >= a->outer && n < outer_end;
         z->order[n] = z->moves[n] && !is_outer ? (uint32_t)z->nodes++ : TM_NONE;
+        if (n < a->outer)
+            z->core = z->nodes;
     }
     z->node = tm_new(z->nodes, sizeof *z->node);
     z->start = calloc(z->nodes + 1, sizeof *z->start);
@@ -338,23 +341,32 @@ static void average_run(void *context, size_t first, size_t past)
     }
 }
 
+static void average_middles(void *context, size_t first, size_t past)
+{
+    const zone *z = context;
+    average_run(context, z->core + first, z->core + past);
+}
+
 static void look_at_neighbours(const void *context, size_t n, uint64_t *seen)
 {
     const zone *z = context;
     for (uint32_t i = 0; i < z->count[n]; i++) {
         const uint32_t order = z->order[z->neighbour[z->start[n] + i]];
-        if (order != TM_NONE)
+        if (order < z->core)
             tm_sweep_sees(seen, order);
     }
 }
 
+/* Middles have no others as neighbours. */
 static tm_status average(zone *z, unsigned threads, tm_error *error)
 {
     tm_sweep sweep;
     const tm_status status =
-        tm_sweep_plan(&sweep, z->nodes, threads, look_at_neighbours, z, error);
-    for (int i = 0; status == TM_OK && i < CORE_SWEEPS; i++)
+        tm_sweep_plan(&sweep, z->core, threads, look_at_neighbours, z, error);
+    for (int i = 0; status == TM_OK && i < CORE_SWEEPS; i++) {
         tm_sweep_make(&sweep, average_run, z);
+        tm_parallel_runs(threads, z->nodes - z->core, TM_CHUNK, average_middles, z);
+    }
     tm_sweep_free(&sweep);
     return status;
 }

@@ -12,7 +12,7 @@
 #include <stdint.h>
 
 /* Nodes of a run; fewer are swept in their order. */
-enum { TM_SWEEP_RUN = 8192 };
+enum { TM_SWEEP_RUN = 16384 };
 
 typedef struct tm_sweep {
     size_t count, runs; /* nodes, and their runs */
