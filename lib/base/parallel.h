@@ -19,6 +19,23 @@ TM_EXTERN_C_BEGIN
 void tm_parallel(unsigned threads, size_t chunks,
                  void (*work)(void *context, size_t chunk), void *context);
 
+/* The same of things 0 … count-1 in chunks of `size`, the last one of what is left: calls
+ * work(context, first, past) for each chunk; first / size is its number. */
+void tm_parallel_runs(unsigned threads, size_t count, size_t size,
+                      void (*work)(void *context, size_t first, size_t past),
+                      void *context);
+
+/* How many chunks these are, and where the one that begins with `first` ends. */
+static inline size_t tm_parallel_chunks(size_t count, size_t size)
+{
+    return count / size + (count % size != 0);
+}
+
+static inline size_t tm_chunk_end(size_t first, size_t size, size_t count)
+{
+    return count - first < size ? count : first + size;
+}
+
 /* How many processors this process may use; at least 1. */
 unsigned tm_cores(void);
 
@@ -27,30 +44,6 @@ static inline unsigned tm_threads_for(unsigned threads, size_t items, size_t lea
 {
     const size_t most = items / least;
     return most < 1 ? 1 : most < threads ? (unsigned)most : threads;
-}
-
-/* How many chunks of `size` items there are, and where one that begins with item `from`
- * ends. */
-static inline size_t tm_chunks(size_t items, size_t size)
-{
-    return items / size + (items % size != 0);
-}
-
-static inline size_t tm_chunk_end(size_t from, size_t size, size_t items)
-{
-    return items - from < size ? items : from + size;
-}
-
-/* The same of things 0 … count-1 in chunks of `size`, the last one of what is left: calls
- * work(context, first, past) for each chunk; first / size is its number. */
-void tm_parallel_runs(unsigned threads, size_t count, size_t size,
-                      void (*work)(void *context, size_t first, size_t past),
-                      void *context);
-
-/* How many chunks these are. */
-static inline size_t tm_parallel_chunks(size_t count, size_t size)
-{
-    return count / size + (count % size != 0);
 }
 
 /* Marks something that other threads may mark too, or look at, at the same time: what

@@ -48,7 +48,7 @@ static uint16_t far_bits(const uint32_t *n, const tm_element_shape *shape)
 
 /* Each thread looks at all elements: more of them would only look. Fewer elements are not
  * worth a thread. */
-enum { MOST_PARTS = 8, LEAST_ELEMENTS = 1024, CHUNK = 1 << 14 };
+enum { MOST_PARTS = 8, LEAST_ELEMENTS = 1024 };
 
 typedef struct listing {
     const tm_mesh_view *mesh;
@@ -59,11 +59,10 @@ typedef struct listing {
     uint32_t *item;
 } listing;
 
-static void find_bits(void *context, size_t chunk)
+static void find_bits(void *context, size_t first, size_t past)
 {
     const listing *l = context;
-    const size_t all = l->mesh->elements, end = (chunk + 1) * CHUNK;
-    for (size_t e = chunk * CHUNK; e < (end < all ? end : all); e++) {
+    for (size_t e = first; e < past; e++) {
         size_t k;
         const uint32_t *n = tm_mesh_view_nodes(l->mesh, e, &k);
         l->bits[e] = l->sign[e] == TM_NODE_TWICE ? 0 : far_bits(n, &tm_element_shapes[k]);
@@ -133,7 +132,7 @@ bool tm_list_far_edges(tm_at_nodes *far_of, const tm_mesh_view *mesh, const int8
     if (enough) {
         l.next = far_of->start + 1;
         if (mesh->start)
-            tm_parallel(threads, (mesh->elements + CHUNK - 1) / CHUNK, find_bits, &l);
+            tm_parallel_runs(threads, mesh->elements, TM_CHUNK, find_bits, &l);
         tm_parallel(threads, l.parts, count_far, &l);
         for (size_t v = 0; v < mesh->nodes; v++)
             l.next[v + 1] += l.next[v];

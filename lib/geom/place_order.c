@@ -81,7 +81,7 @@ bool tm_place_rank(const double (*xyz)[3], size_t count, unsigned threads, uint3
     const bool done = s.start && s.placed;
     if (done) {
         fill_buckets(&s, xyz, count);
-        tm_parallel(threads, tm_chunks(s.buckets, CHUNK), sort_buckets, &s);
+        tm_parallel(threads, tm_parallel_chunks(s.buckets, CHUNK), sort_buckets, &s);
     }
     free(s.start);
     free(s.placed);

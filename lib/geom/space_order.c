@@ -80,7 +80,7 @@ static void place_points(void *context, size_t chunk)
 
 static void sort_by_digit(digit_pass *s, unsigned threads)
 {
-    const size_t chunks = tm_chunks(s->count, CHUNK);
+    const size_t chunks = tm_parallel_chunks(s->count, CHUNK);
     size_t next = 0;
     tm_parallel(threads, chunks, count_digits, s);
     for (size_t d = 0; d < CELLS; d++)
@@ -97,7 +97,7 @@ bool tm_space_sort(tm_curve_point *point, size_t count, unsigned threads)
     enum { DIGIT = 10, DIGITS = 3 };
     tm_curve_point *other = tm_new(count, sizeof *other);
     digit_pass s = {.count = count};
-    s.begin = tm_new(tm_chunks(count, CHUNK), sizeof *s.begin);
+    s.begin = tm_new(tm_parallel_chunks(count, CHUNK), sizeof *s.begin);
     const bool done = other && s.begin;
     for (int d = 0; d < DIGITS && done; d++) {
         s.point = d % 2 ? other : point;

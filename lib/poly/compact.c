@@ -286,7 +286,8 @@ tm_status tm_poly_compact(const tm_tet_mesh *mesh, const tm_poly_options *option
     items->area = tm_new(4 * mesh->slots, sizeof *items->area);
     const bool memory = items->centre && items->beside && items->area;
     if (memory)
-        tm_parallel(options->threads, tm_chunks(mesh->slots, CHUNK), measure_chunk, &m);
+        tm_parallel(options->threads, tm_parallel_chunks(mesh->slots, CHUNK),
+                    measure_chunk, &m);
     tm_status status = memory ? tm_compact_label(items, options->cells, options->size,
                                                  options->progress, label, regions, error)
                               : tm_fail_memory(error);

@@ -81,7 +81,7 @@ static void write_facets(void *context, size_t chunk)
 
 static tm_status make_facets(maker *m, size_t *lost, unsigned threads, tm_error *error)
 {
-    const size_t chunks = tm_chunks(m->mesh->slots, CHUNK);
+    const size_t chunks = tm_parallel_chunks(m->mesh->slots, CHUNK);
     size_t count = 0;
     m->of = calloc(chunks + 1, sizeof *m->of);
     if (!m->of)

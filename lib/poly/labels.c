@@ -142,14 +142,15 @@ static bool find_longest_edges(forest *s, const tm_poly_options *options)
 {
     s->longest = tm_new(s->mesh->slots, sizeof *s->longest);
     if (s->longest)
-        tm_parallel(options->threads, tm_chunks(s->mesh->slots, CHUNK), find_longest, s);
+        tm_parallel(options->threads, tm_parallel_chunks(s->mesh->slots, CHUNK),
+                    find_longest, s);
     return s->longest;
 }
 
 static tm_status label_terminal(const tm_tet_mesh *mesh, const tm_poly_options *options,
                                 uint32_t *label, size_t *regions, tm_error *error)
 {
-    const size_t chunks = tm_chunks(mesh->slots, CHUNK);
+    const size_t chunks = tm_parallel_chunks(mesh->slots, CHUNK);
     forest s = {.mesh = mesh, .up = label};
     const bool done = find_longest_edges(&s, options);
     if (done) {
@@ -173,7 +174,8 @@ static tm_status label_longest_edge(const tm_tet_mesh *mesh,
     const bool done =
         find_longest_edges(&s, options) && tm_edge_map_reserve(&first, mesh->slots);
     if (done)
-        tm_parallel(options->threads, tm_chunks(mesh->slots, CHUNK), find_fans, &s);
+        tm_parallel(options->threads, tm_parallel_chunks(mesh->slots, CHUNK), find_fans,
+                    &s);
     *regions = 0;
     for (uint32_t t = 0; t < mesh->slots && done; t++) {
         if (label[t] != t) {

@@ -193,7 +193,7 @@ static tm_status order_by_cell(tm_partition *partition, const tm_shelling *shell
                                const tm_tet_mesh *mesh, const tm_poly_options *options,
                                tm_poly_report *report, tm_error *error)
 {
-    const size_t chunks = options->star ? tm_chunks(partition->cells, CHUNK) : 0;
+    const size_t chunks = options->star ? tm_parallel_chunks(partition->cells, CHUNK) : 0;
     star_work w = {.all = *shelling, .count = calloc(chunks + 1, sizeof *w.count)};
     w.all.piece = partition->cell;
     bool done = w.count && tm_item_lists_make(&w.list, partition->cell, mesh->slots,
@@ -260,8 +260,10 @@ static tm_status find_regions(const tm_tet_mesh *mesh, const tm_poly_options *op
     const bool done = rank && r.ranked.xyz && r.ranked.tet &&
                       tm_tet_mesh_rank_nodes(mesh, rank, options->threads);
     if (done) {
-        tm_parallel(options->threads, tm_chunks(mesh->nodes, CHUNK), renumber_nodes, &r);
-        tm_parallel(options->threads, tm_chunks(mesh->slots, CHUNK), renumber_tets, &r);
+        tm_parallel(options->threads, tm_parallel_chunks(mesh->nodes, CHUNK),
+                    renumber_nodes, &r);
+        tm_parallel(options->threads, tm_parallel_chunks(mesh->slots, CHUNK),
+                    renumber_tets, &r);
     }
     tm_status status = done ? tm_poly_modes[options->mode].label(&r.ranked, options,
                                                                  label, regions, error)

@@ -115,7 +115,7 @@ static void take_chunk(void *context, size_t chunk)
 tm_status tm_take_apart(tm_shelling *s, const uint32_t *label, tm_poly_report *report,
                         tm_error *error)
 {
-    const size_t chunks = tm_chunks(report->regions, CHUNK);
+    const size_t chunks = tm_parallel_chunks(report->regions, CHUNK);
     const bool is_ordered = s->options->star == TM_STAR_CENTROID;
     work w = {.all = s,
               .label = label,

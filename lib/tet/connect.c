@@ -42,7 +42,7 @@ static void orient_chunk(void *context, size_t c)
 {
     tm_tet_mesh *mesh = ((orienting *)context)->mesh;
     struct oriented found = {.twice = SIZE_MAX};
-    const size_t past = (c + 1) * CHUNK < mesh->slots ? (c + 1) * CHUNK : mesh->slots;
+    const size_t past = tm_chunk_end(c * CHUNK, CHUNK, mesh->slots);
     for (size_t t = c * CHUNK; t < past && found.twice == SIZE_MAX; t++) {
         if (tm_has_node_twice(mesh->tet[t], TM_TET_NODES)) {
             found.twice = t;
@@ -62,7 +62,7 @@ static void orient_chunk(void *context, size_t c)
 static tm_status orient(tm_tet_mesh *mesh, unsigned base, unsigned threads,
                         tm_error *error)
 {
-    const size_t chunks = (mesh->slots + CHUNK - 1) / CHUNK;
+    const size_t chunks = tm_parallel_chunks(mesh->slots, CHUNK);
     orienting all = {mesh, tm_new(chunks, sizeof *all.chunk)};
     if (!all.chunk)
         return tm_fail_memory(error);

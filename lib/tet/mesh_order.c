@@ -132,7 +132,7 @@ static void number_halves(void *context, size_t chunk)
 static bool find_order(sorting *s)
 {
     const tm_tet_mesh *mesh = s->mesh;
-    const size_t chunks = tm_chunks(mesh->slots, CHUNK);
+    const size_t chunks = tm_parallel_chunks(mesh->slots, CHUNK);
     s->space = tm_space_around((const double(*)[3])mesh->xyz, mesh->nodes);
     s->placed = tm_new(mesh->slots, sizeof *s->placed);
     s->failed = calloc(chunks + 1, sizeof *s->failed);
@@ -181,7 +181,7 @@ static void copy_neighbours(void *context, size_t chunk)
 static bool reorder(sorting *s)
 {
     tm_tet_mesh *mesh = s->mesh;
-    const size_t chunks = tm_chunks(mesh->slots, CHUNK);
+    const size_t chunks = tm_parallel_chunks(mesh->slots, CHUNK);
     s->tet = tm_new(mesh->slots, sizeof *s->tet);
     s->region =
         mesh->regions > 0 ? tm_new(mesh->slots * mesh->regions, sizeof *s->region) : NULL;
