@@ -30,7 +30,7 @@ typedef struct tm_mesh_view {
     const uint32_t (*side)[2];  /* the element on either side; TM_NONE: the boundary */
     const size_t *facet_start;  /* [facets + 1]: the nodes of f are */
     const uint32_t *facet_node; /* facet_node[facet_start[f] … facet_start[f + 1]) */
-    unsigned threads; /* for work on it: no result depends on it; 0: one */
+    unsigned threads;           /* for work on it: no result depends on it; 0: one */
 } tm_mesh_view;
 
 /* The blocks .node, .ele, .face and .edge of a stream; those that are not there are

@@ -396,7 +396,7 @@ static tm_status order_nodes(numbering *n, tm_error *error)
                        TM_NONE);
     octree->grid = tm_new(octree->nodes, sizeof *octree->grid);
     n->number = tm_new(n->between.nodes, sizeof *n->number);
-    n->failed = calloc(n->parts, sizeof *n->failed);
+    n->failed = calloc(n->parts + 1, sizeof *n->failed);
     bool done = octree->grid && n->number && n->failed;
     if (done)
         tm_parallel(octree->threads, n->parts, number_part, n);
