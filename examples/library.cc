@@ -78,7 +78,7 @@ void improve(stream &mesh)
     tm_improve_options options = {};
     options.angle = 30;
     options.ops = TM_IMPROVE_ALL_OPS;
-    tm_status status = tm_tet_mesh_from_stream(&tets, mesh.get(), &error);
+    tm_status status = tm_tet_mesh_from_stream(&tets, mesh.get(), 1, &error);
     if (status == TM_OK)
         status = tm_improve(&tets, &options, &report, &error);
     if (status == TM_OK)

@@ -106,6 +106,7 @@
 #include "tet/lepp/lepp.h"
 
 /* octree: octrees, and the elements made of them */
+#include "octree/forest/mpi_start.h"
 #include "octree/forest/octree.h"
 #include "octree/forest/octree_build.h"
 #include "octree/forest/octree_estimate.h"
@@ -117,6 +118,7 @@
 #include "octree/interior/interior_boundary.h"
 #include "octree/interior/interior_leaves.h"
 #include "octree/interior/octant_mask.h"
+#include "octree/layer/mesh_choice.h"
 #include "octree/layer/octree_mesh.h"
 #include "octree/layer/octree_mesh_stream.h"
 #include "octree/repair/repair.h"

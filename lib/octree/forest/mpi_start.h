@@ -3,9 +3,12 @@
 #ifndef TM_FOREST_MPI_START_H
 #define TM_FOREST_MPI_START_H
 
+#include "../../base/extern_c.h"
 #include "../../base/error.h"
 
 #include <stdbool.h>
+
+TM_EXTERN_C_BEGIN
 
 /* Whether a launcher (mpirun, srun) has started the program: Open MPI's, PMIx's or PMI's
  * variables are there. */
@@ -23,5 +26,7 @@ bool tm_mpi_launched(void);
  *     OMPI_MCA_orte_create_session_dirs=0 OMPI_MCA_shmem=mmap OMPI_MCA_memory=^patcher
  *     OMPI_MCA_osc=^ucx HWLOC_COMPONENTS=no_os,stop */
 tm_status tm_mpi_start(tm_error *error);
+
+TM_EXTERN_C_END
 
 #endif
