@@ -29,6 +29,21 @@ static inline bool tm_append(uint32_t **list, size_t *count, size_t *room, uint3
     return true;
 }
 
+/* The place of the first item of an ascending list that is not below `item`, or `count`.
+ * O(log count). */
+static inline size_t tm_first_not_below(const uint32_t *list, size_t count, uint32_t item)
+{
+    size_t begin = 0, end = count;
+    while (begin < end) {
+        const size_t middle = begin + (end - begin) / 2;
+        if (list[middle] < item)
+            begin = middle + 1;
+        else
+            end = middle;
+    }
+    return begin;
+}
+
 /* Compares two uint32_t, for qsort() and bsearch(). */
 int tm_compare_numbers(const void *a, const void *b);
 

@@ -243,28 +243,16 @@ static void add_layer(filler *a, size_t l)
     }
 }
 
-/* The first face of a boundary that is of a leaf, or of one behind it. */
-static size_t first_face(const tm_interior_boundary *boundary, size_t leaf)
-{
-    size_t begin = 0, end = boundary->faces;
-    while (begin < end) {
-        const size_t middle = begin + (end - begin) / 2;
-        if (boundary->leaf[middle] < leaf)
-            begin = middle + 1;
-        else
-            end = middle;
-    }
-    return begin;
-}
-
 /* The elements of a chunk, leaf by leaf. */
 static void fill_chunk(void *context, size_t first, size_t past)
 {
     const assembler *a = context;
     filler *f = &a->chunk[first / TM_CHUNK];
     size_t *face = a->face + first / TM_CHUNK * a->sides;
-    for (size_t p = 0; p < a->sides; p++)
-        face[p] = first_face(a->side[p].boundary, first);
+    for (size_t p = 0; p < a->sides; p++) {
+        const tm_interior_boundary *boundary = a->side[p].boundary;
+        face[p] = tm_first_not_below(boundary->leaf, boundary->faces, (uint32_t)first);
+    }
     for (size_t l = first; l < past; l++) {
         if (!f->counting)
             a->assembly->first[l] = (uint32_t)f->elements;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "repair_forced.h"
 
+#include "../../base/array.h"
 #include "../../base/parallel.h"
 #include "../../element/jens.h"
 #include "../../element/shape.h"
@@ -106,25 +107,12 @@ typedef struct {
     bool *forced;
 } finder;
 
-/* The first face of the boundary of element e, or of one behind it. */
-static size_t first_face(const finder *f, size_t e)
-{
-    size_t begin = 0, end = f->faces;
-    while (begin < end) {
-        const size_t middle = begin + (end - begin) / 2;
-        if (f->face[middle] >> TM_FACE_SHIFT < e)
-            begin = middle + 1;
-        else
-            end = middle;
-    }
-    return begin;
-}
-
 static void find_chunk(void *context, size_t first, size_t past)
 {
     const finder *f = context;
     const tm_mixed_mesh *mesh = &f->state->mesh;
-    size_t next = first_face(f, first);
+    size_t next =
+        tm_first_not_below(f->face, f->faces, (uint32_t)(first << TM_FACE_SHIFT));
     for (size_t e = first; e < past; e++) {
         candidate c = {f->state, &tm_element_shapes[mesh->start[e + 1] - mesh->start[e]],
                        mesh->item + mesh->start[e], 0};
