@@ -58,8 +58,8 @@ typedef struct runs {
 static void work_on_run(void *context, size_t chunk)
 {
     const runs *r = context;
-    const size_t first = chunk * r->size;
-    r->work(r->context, first, tm_chunk_end(first, r->size, r->count));
+    const size_t first = chunk * r->size, left = r->count - first;
+    r->work(r->context, first, first + (left < r->size ? left : r->size));
 }
 
 void tm_parallel_runs(unsigned threads, size_t count, size_t size,

@@ -25,25 +25,23 @@ void tm_parallel_runs(unsigned threads, size_t count, size_t size,
                       void (*work)(void *context, size_t first, size_t past),
                       void *context);
 
-/* How many chunks these are, and where the one that begins with `first` ends. */
+/* How many chunks these are. */
 static inline size_t tm_parallel_chunks(size_t count, size_t size)
 {
     return count / size + (count % size != 0);
 }
 
-static inline size_t tm_chunk_end(size_t first, size_t size, size_t count)
-{
-    return count - first < size ? count : first + size;
-}
-
 /* How many processors this process may use; at least 1. */
 unsigned tm_cores(void);
 
-/* So many of `threads` >= 1 that each gets at least `least` of the items; 1 or more. */
-static inline unsigned tm_threads_for(unsigned threads, size_t items, size_t least)
+/* So many of `threads` >= 1, `most` at most, that each gets 1024 items or more, as fewer
+ * are not worth a thread; at least 1. */
+static inline unsigned tm_threads_for(unsigned threads, unsigned most, size_t items)
 {
-    const size_t most = items / least;
-    return most < 1 ? 1 : most < threads ? (unsigned)most : threads;
+    enum { LEAST = 1024 };
+    const unsigned some = threads < most ? threads : most;
+    const size_t worth = items / LEAST;
+    return worth < 1 ? 1 : worth < some ? (unsigned)worth : some;
 }
 
 /* Marks something that other threads may mark too, or look at, at the same time: what

@@ -46,9 +46,8 @@ static uint16_t far_bits(const uint32_t *n, const tm_element_shape *shape)
     return (uint16_t)far;
 }
 
-/* Each thread looks at all elements: more of them would only look. Fewer elements are not
- * worth a thread. */
-enum { MOST_PARTS = 8, LEAST_ELEMENTS = 1024 };
+/* Each thread looks at all elements: more of them would only look. */
+enum { MOST_PARTS = 8 };
 
 typedef struct listing {
     const tm_mesh_view *mesh;
@@ -124,8 +123,7 @@ bool tm_list_far_edges(tm_at_nodes *far_of, const tm_mesh_view *mesh, const int8
                        unsigned threads)
 {
     listing l = {.mesh = mesh, .sign = sign};
-    l.parts = tm_threads_for(threads < MOST_PARTS ? threads : MOST_PARTS, mesh->elements,
-                             LEAST_ELEMENTS);
+    l.parts = tm_threads_for(threads, MOST_PARTS, mesh->elements);
     l.bits = tm_new(mesh->start ? mesh->elements : 0, sizeof *l.bits);
     far_of->start = calloc(mesh->nodes + 2, sizeof *far_of->start);
     bool enough = l.bits && far_of->start;

@@ -93,9 +93,6 @@ static tm_status examine_elements(tm_examination *found, const tm_mesh_view *mes
     return TM_OK;
 }
 
-/* Fewer elements are not worth a thread. */
-enum { LEAST_ELEMENTS = 1024 };
-
 /* What is looked at once the boundary is known, each on a thread. */
 typedef struct rest {
     tm_examination *found;
@@ -126,7 +123,7 @@ static void examine_part(void *context, size_t i)
 static tm_status examine_rest(rest *r, unsigned threads, tm_error *error)
 {
     const size_t parts = sizeof r->part / sizeof *r->part;
-    threads = tm_threads_for(threads, r->mesh->elements, LEAST_ELEMENTS);
+    threads = tm_threads_for(threads, threads, r->mesh->elements);
     tm_parallel(threads, parts, examine_part, r);
     for (size_t i = 0; i < parts; i++)
         if (r->part[i].status != TM_OK)

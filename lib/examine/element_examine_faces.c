@@ -260,8 +260,8 @@ static bool take_faces(walker *w, uint32_t v)
     return enough;
 }
 
-/* Each walker has arrays over all nodes. Fewer elements are not worth one. */
-enum { MOST_WALKERS = 16, LEAST_ELEMENTS = 1024 };
+/* Each walker has arrays over all nodes. */
+enum { MOST_WALKERS = 16 };
 
 /* The walk ------------------------------------------------------------------------- */
 
@@ -385,8 +385,7 @@ tm_status tm_element_examine_faces(tm_examination *found, const tm_mesh_view *me
 {
     walk w = {.mesh = mesh, .sign = sign};
     tm_status status = tm_face_table_make(&w.table, mesh, threads, error);
-    threads = tm_threads_for(threads < MOST_WALKERS ? threads : MOST_WALKERS,
-                             mesh->elements, LEAST_ELEMENTS);
+    threads = tm_threads_for(threads, MOST_WALKERS, mesh->elements);
     if (status == TM_OK &&
         (!tm_list_far_edges(&w.far, mesh, sign, threads) ||
          !tm_list_edge_rows(&w.listed, mesh) || !allocate(&w, threads)))

@@ -63,10 +63,9 @@ static void fill_buckets(bucket_sort *s, const double (*xyz)[3], size_t count)
     }
 }
 
-static void sort_buckets(void *context, size_t chunk)
+static void sort_buckets(void *context, size_t from, size_t to)
 {
     const bucket_sort *s = context;
-    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, s->buckets);
     for (size_t b = from; b < to; b++)
         tm_place_sort(s->placed + s->start[b], s->start[b + 1] - s->start[b]);
     for (size_t k = s->start[from]; k < s->start[to]; k++)
@@ -81,7 +80,7 @@ bool tm_place_rank(const double (*xyz)[3], size_t count, unsigned threads, uint3
     const bool done = s.start && s.placed;
     if (done) {
         fill_buckets(&s, xyz, count);
-        tm_parallel(threads, tm_parallel_chunks(s.buckets, CHUNK), sort_buckets, &s);
+        tm_parallel_runs(threads, s.buckets, CHUNK, sort_buckets, &s);
     }
     free(s.start);
     free(s.placed);

@@ -61,35 +61,33 @@ static size_t digit_of(const digit_pass *s, size_t i)
     return s->point[i].position >> s->from & (CELLS - 1);
 }
 
-static void count_digits(void *context, size_t chunk)
+static void count_digits(void *context, size_t from, size_t to)
 {
     const digit_pass *s = context;
-    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, s->count);
-    memset(s->begin[chunk], 0, sizeof s->begin[chunk]);
+    memset(s->begin[from / CHUNK], 0, sizeof s->begin[from / CHUNK]);
     for (size_t i = from; i < to; i++)
-        s->begin[chunk][digit_of(s, i)]++;
+        s->begin[from / CHUNK][digit_of(s, i)]++;
 }
 
-static void place_points(void *context, size_t chunk)
+static void place_points(void *context, size_t from, size_t to)
 {
     const digit_pass *s = context;
-    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, s->count);
     for (size_t i = from; i < to; i++)
-        s->to[s->begin[chunk][digit_of(s, i)]++] = s->point[i];
+        s->to[s->begin[from / CHUNK][digit_of(s, i)]++] = s->point[i];
 }
 
 static void sort_by_digit(digit_pass *s, unsigned threads)
 {
     const size_t chunks = tm_parallel_chunks(s->count, CHUNK);
     size_t next = 0;
-    tm_parallel(threads, chunks, count_digits, s);
+    tm_parallel_runs(threads, s->count, CHUNK, count_digits, s);
     for (size_t d = 0; d < CELLS; d++)
         for (size_t c = 0; c < chunks; c++) {
             const size_t digits = s->begin[c][d];
             s->begin[c][d] = next;
             next += digits;
         }
-    tm_parallel(threads, chunks, place_points, s);
+    tm_parallel_runs(threads, s->count, CHUNK, place_points, s);
 }
 
 bool tm_space_sort(tm_curve_point *point, size_t count, unsigned threads)

@@ -94,9 +94,8 @@ static inline size_t list_element(const tm_mesh_view *mesh, size_t e, const uint
     return tm_element_shapes[k].faces;
 }
 
-/* Each thread looks at all elements: more of them would only look. Fewer elements are not
- * worth a thread. */
-enum { MOST_PARTS = 8, LEAST_ELEMENTS = 1024 };
+/* Each thread looks at all elements: more of them would only look. */
+enum { MOST_PARTS = 8 };
 
 /* A thread's part of the lists: those of some nodes. */
 typedef struct part {
@@ -212,8 +211,7 @@ tm_status tm_face_table_make(tm_face_table *table, const tm_mesh_view *mesh,
         return tm_fail(error, TM_ERROR_SYSTEM,
                        "%zu elements have more faces than 31 bits can number",
                        mesh->elements);
-    threads = tm_threads_for(threads < MOST_PARTS ? threads : MOST_PARTS, mesh->elements,
-                             LEAST_ELEMENTS);
+    threads = tm_threads_for(threads, MOST_PARTS, mesh->elements);
     part *parts = cut_nodes(mesh->nodes, threads);
     const bool done = parts && make_lists(table, parts, threads);
     free(parts);

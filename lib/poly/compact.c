@@ -268,10 +268,9 @@ static void measure_tet(const measuring *m, uint32_t t)
     }
 }
 
-static void measure_chunk(void *context, size_t chunk)
+static void measure_chunk(void *context, size_t from, size_t to)
 {
     const measuring *m = context;
-    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, m->mesh->slots);
     for (size_t t = from; t < to; t++)
         measure_tet(m, (uint32_t)t);
 }
@@ -286,8 +285,7 @@ tm_status tm_poly_compact(const tm_tet_mesh *mesh, const tm_poly_options *option
     items->area = tm_new(4 * mesh->slots, sizeof *items->area);
     const bool memory = items->centre && items->beside && items->area;
     if (memory)
-        tm_parallel(options->threads, tm_parallel_chunks(mesh->slots, CHUNK),
-                    measure_chunk, &m);
+        tm_parallel_runs(options->threads, mesh->slots, CHUNK, measure_chunk, &m);
     tm_status status = memory ? tm_compact_label(items, options->cells, options->size,
                                                  options->progress, label, regions, error)
                               : tm_fail_memory(error);

@@ -41,16 +41,15 @@ static int32_t marker_of(const tm_tet_mesh *mesh, uint32_t t, uint32_t i)
     return n & TM_FACE_BIT ? mesh->face[n & ~TM_FACE_BIT].marker : 0;
 }
 
-static void count_facets(void *context, size_t chunk)
+static void count_facets(void *context, size_t from, size_t to)
 {
     const maker *m = context;
-    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, m->mesh->slots);
     size_t count = 0, lost = 0;
     uint32_t other;
     for (size_t k = from; k < to; k++)
         for (uint32_t i = 0; i < 4; i++)
             count += is_facet(m, m->partition->order[k], i, &other, &lost);
-    m->of[chunk] = (chunk_facets){.count = count, .lost = lost};
+    m->of[from / CHUNK] = (chunk_facets){.count = count, .lost = lost};
 }
 
 static void write_facet(const maker *m, size_t f, uint32_t t, uint32_t i, uint32_t other)
@@ -67,11 +66,10 @@ static void write_facet(const maker *m, size_t f, uint32_t t, uint32_t i, uint32
     facet->start[f + 1] = CORNERS * (f + 1);
 }
 
-static void write_facets(void *context, size_t chunk)
+static void write_facets(void *context, size_t from, size_t to)
 {
     const maker *m = context;
-    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, m->mesh->slots);
-    size_t f = m->of[chunk].first, ignored = 0;
+    size_t f = m->of[from / CHUNK].first, ignored = 0;
     uint32_t other;
     for (size_t k = from; k < to; k++)
         for (uint32_t i = 0; i < 4; i++)
@@ -86,7 +84,7 @@ static tm_status make_facets(maker *m, size_t *lost, unsigned threads, tm_error 
     m->of = calloc(chunks + 1, sizeof *m->of);
     if (!m->of)
         return tm_fail_memory(error);
-    tm_parallel(threads, chunks, count_facets, m);
+    tm_parallel_runs(threads, m->mesh->slots, CHUNK, count_facets, m);
     for (size_t c = 0; c < chunks; c++) {
         m->of[c].first = count;
         count += m->of[c].count;
@@ -94,7 +92,7 @@ static tm_status make_facets(maker *m, size_t *lost, unsigned threads, tm_error 
     }
     tm_status status = tm_block_allocate(m->facet, count, CORNERS * count, error);
     if (status == TM_OK)
-        tm_parallel(threads, chunks, write_facets, m);
+        tm_parallel_runs(threads, m->mesh->slots, CHUNK, write_facets, m);
     free(m->of);
     return status;
 }

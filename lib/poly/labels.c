@@ -92,28 +92,25 @@ static uint32_t outlet_of(const forest *s, const uint32_t end[2])
     return end[tm_edge_is_longer(&rank[1], &rank[0])];
 }
 
-static void find_longest(void *context, size_t chunk)
+static void find_longest(void *context, size_t from, size_t to)
 {
     const forest *s = context;
-    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, s->mesh->slots);
     tm_edge_rank rank;
     for (uint32_t t = (uint32_t)from; t < to; t++)
         s->longest[t] = (uint8_t)tm_longest_edge(s->mesh, t, &rank);
 }
 
-static void find_fans(void *context, size_t chunk)
+static void find_fans(void *context, size_t from, size_t to)
 {
     const forest *s = context;
-    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, s->mesh->slots);
     uint32_t end[2];
     for (uint32_t t = (uint32_t)from; t < to; t++)
         s->up[t] = find_fan(s, t, end);
 }
 
-static void find_outlets(void *context, size_t chunk)
+static void find_outlets(void *context, size_t from, size_t to)
 {
     const forest *s = context;
-    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, s->mesh->slots);
     for (uint32_t t = (uint32_t)from; t < to; t++) {
         uint32_t end[2] = {TM_NONE, TM_NONE}, up = find_fan(s, t, end);
         if (up == t)
@@ -122,18 +119,16 @@ static void find_outlets(void *context, size_t chunk)
     }
 }
 
-static void shorten_ways(void *context, size_t chunk)
+static void shorten_ways(void *context, size_t from, size_t to)
 {
     const forest *s = context;
-    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, s->mesh->slots);
     for (uint32_t t = (uint32_t)from; t < to; t++)
         tm_set_root_shared(s->up, t);
 }
 
-static void find_roots(void *context, size_t chunk)
+static void find_roots(void *context, size_t from, size_t to)
 {
     const forest *s = context;
-    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, s->mesh->slots);
     for (uint32_t t = (uint32_t)from; t < to; t++)
         tm_set_put_root_shared(s->up, t);
 }
@@ -142,21 +137,19 @@ static bool find_longest_edges(forest *s, const tm_poly_options *options)
 {
     s->longest = tm_new(s->mesh->slots, sizeof *s->longest);
     if (s->longest)
-        tm_parallel(options->threads, tm_parallel_chunks(s->mesh->slots, CHUNK),
-                    find_longest, s);
+        tm_parallel_runs(options->threads, s->mesh->slots, CHUNK, find_longest, s);
     return s->longest;
 }
 
 static tm_status label_terminal(const tm_tet_mesh *mesh, const tm_poly_options *options,
                                 uint32_t *label, size_t *regions, tm_error *error)
 {
-    const size_t chunks = tm_parallel_chunks(mesh->slots, CHUNK);
     forest s = {.mesh = mesh, .up = label};
     const bool done = find_longest_edges(&s, options);
     if (done) {
-        tm_parallel(options->threads, chunks, find_outlets, &s);
-        tm_parallel(options->threads, chunks, shorten_ways, &s);
-        tm_parallel(options->threads, chunks, find_roots, &s);
+        tm_parallel_runs(options->threads, mesh->slots, CHUNK, find_outlets, &s);
+        tm_parallel_runs(options->threads, mesh->slots, CHUNK, shorten_ways, &s);
+        tm_parallel_runs(options->threads, mesh->slots, CHUNK, find_roots, &s);
     }
     free(s.longest);
     *regions = mesh->slots;
@@ -174,8 +167,7 @@ static tm_status label_longest_edge(const tm_tet_mesh *mesh,
     const bool done =
         find_longest_edges(&s, options) && tm_edge_map_reserve(&first, mesh->slots);
     if (done)
-        tm_parallel(options->threads, tm_parallel_chunks(mesh->slots, CHUNK), find_fans,
-                    &s);
+        tm_parallel_runs(options->threads, mesh->slots, CHUNK, find_fans, &s);
     *regions = 0;
     for (uint32_t t = 0; t < mesh->slots && done; t++) {
         if (label[t] != t) {

@@ -165,12 +165,11 @@ typedef struct {
 } star_work;
 
 /* Where no radius is given, only a flat tetrahedron can be no star. */
-static void count_chunk(void *context, size_t chunk)
+static void count_chunk(void *context, size_t from, size_t to)
 {
     const star_work *w = context;
     const uint32_t *start = w->list.start;
-    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, w->list.sets);
-    star_count *count = &w->count[chunk];
+    star_count *count = &w->count[from / CHUNK];
     tm_shelling s;
     tm_shelling_fork(&s, &w->all);
     count->memory = true;
@@ -199,7 +198,8 @@ static tm_status order_by_cell(tm_partition *partition, const tm_shelling *shell
     bool done = w.count && tm_item_lists_make(&w.list, partition->cell, mesh->slots,
                                               partition->cells, NULL);
     if (done)
-        tm_parallel(options->threads, chunks, count_chunk, &w);
+        tm_parallel_runs(options->threads, options->star ? partition->cells : 0, CHUNK,
+                         count_chunk, &w);
     for (size_t c = 0; c < chunks && done; c++) {
         report->single += w.count[c].single;
         report->not_star += w.count[c].not_star;
@@ -231,19 +231,17 @@ typedef struct {
     tm_tet_mesh ranked;
 } renumbering;
 
-static void renumber_tets(void *context, size_t chunk)
+static void renumber_tets(void *context, size_t from, size_t to)
 {
     const renumbering *r = context;
-    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, r->mesh->slots);
     for (size_t t = from; t < to; t++)
         for (int i = 0; i < 4; i++)
             r->ranked.tet[t][i] = r->rank[r->mesh->tet[t][i]];
 }
 
-static void renumber_nodes(void *context, size_t chunk)
+static void renumber_nodes(void *context, size_t from, size_t to)
 {
     const renumbering *r = context;
-    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, r->mesh->nodes);
     for (size_t v = from; v < to; v++)
         memcpy(r->ranked.xyz[r->rank[v]], r->mesh->xyz[v], sizeof *r->ranked.xyz);
 }
@@ -260,10 +258,8 @@ static tm_status find_regions(const tm_tet_mesh *mesh, const tm_poly_options *op
     const bool done = rank && r.ranked.xyz && r.ranked.tet &&
                       tm_tet_mesh_rank_nodes(mesh, rank, options->threads);
     if (done) {
-        tm_parallel(options->threads, tm_parallel_chunks(mesh->nodes, CHUNK),
-                    renumber_nodes, &r);
-        tm_parallel(options->threads, tm_parallel_chunks(mesh->slots, CHUNK),
-                    renumber_tets, &r);
+        tm_parallel_runs(options->threads, mesh->nodes, CHUNK, renumber_nodes, &r);
+        tm_parallel_runs(options->threads, mesh->slots, CHUNK, renumber_tets, &r);
     }
     tm_status status = done ? tm_poly_modes[options->mode].label(&r.ranked, options,
                                                                  label, regions, error)

@@ -94,14 +94,12 @@ static void tell(work *w, size_t done)
     tm_progress_tell(w->all->options->progress, &w->at);
 }
 
-static void take_chunk(void *context, size_t chunk)
+static void take_chunk(void *context, size_t from, size_t to)
 {
     work *w = context;
-    chunk_result *result = &w->result[chunk];
+    chunk_result *result = &w->result[from / CHUNK];
     tm_shelling s;
     const uint32_t *start = w->list.start;
-    const size_t from = CHUNK * chunk;
-    const size_t to = tm_chunk_end(from, CHUNK, w->list.sets);
     tell(w, from);
     tm_shelling_fork(&s, w->all);
     result->done = true;
@@ -125,7 +123,8 @@ tm_status tm_take_apart(tm_shelling *s, const uint32_t *label, tm_poly_report *r
     bool done = w.result &&
                 tm_item_lists_make(&w.list, label, s->mesh->slots, report->regions, NULL);
     if (done)
-        tm_parallel(is_ordered ? 1 : s->options->threads, chunks, take_chunk, &w);
+        tm_parallel_runs(is_ordered ? 1 : s->options->threads, report->regions, CHUNK,
+                         take_chunk, &w);
     for (size_t c = 0; c < chunks && done; c++) {
         report->taken_apart += w.result[c].taken_apart;
         done = w.result[c].done;

@@ -38,12 +38,11 @@ typedef struct orienting {
     } * chunk;
 } orienting;
 
-static void orient_chunk(void *context, size_t c)
+static void orient_chunk(void *context, size_t first, size_t past)
 {
     tm_tet_mesh *mesh = ((orienting *)context)->mesh;
     struct oriented found = {.twice = SIZE_MAX};
-    const size_t past = tm_chunk_end(c * CHUNK, CHUNK, mesh->slots);
-    for (size_t t = c * CHUNK; t < past && found.twice == SIZE_MAX; t++) {
+    for (size_t t = first; t < past && found.twice == SIZE_MAX; t++) {
         if (tm_has_node_twice(mesh->tet[t], TM_TET_NODES)) {
             found.twice = t;
             break;
@@ -55,7 +54,7 @@ static void orient_chunk(void *context, size_t c)
             found.turned++;
         }
     }
-    ((orienting *)context)->chunk[c] = found;
+    ((orienting *)context)->chunk[first / CHUNK] = found;
 }
 
 /* Makes all tetrahedra positive but the flat ones. */
@@ -66,7 +65,7 @@ static tm_status orient(tm_tet_mesh *mesh, unsigned base, unsigned threads,
     orienting all = {mesh, tm_new(chunks, sizeof *all.chunk)};
     if (!all.chunk)
         return tm_fail_memory(error);
-    tm_parallel(threads, chunks, orient_chunk, &all);
+    tm_parallel_runs(threads, mesh->slots, CHUNK, orient_chunk, &all);
     size_t twice = SIZE_MAX;
     for (size_t c = chunks; c-- > 0;) {
         mesh->flat += all.chunk[c].flat;
@@ -201,9 +200,6 @@ static void join_pairs(tm_tet_mesh *mesh, tm_face_table *table, bool *folded)
     table->faces = left;
 }
 
-/* Fewer tetrahedra are not worth a thread. */
-enum { LEAST_TETS = 1024 };
-
 /* What one thread finds at the faces of a run of nodes. */
 typedef struct run {
     odd_face *odd;
@@ -301,8 +297,8 @@ static tm_status connect_faces(tm_tet_mesh *mesh, const uint32_t (*listed)[3],
     connection all = {.mesh = mesh};
     tm_status status = tm_face_table_make(&all.table, &view, threads, error);
     if (status == TM_OK)
-        status = connect_runs(&all, tm_threads_for(threads, mesh->slots, LEAST_TETS),
-                              base, folded, error);
+        status = connect_runs(&all, tm_threads_for(threads, threads, mesh->slots), base,
+                              folded, error);
     tm_face_table_free(&all.table);
     return status;
 }

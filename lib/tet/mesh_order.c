@@ -85,29 +85,28 @@ static bool sort_run(const sorting *s, tm_curve_point *placed, size_t count)
 }
 
 /* Sorts the runs that begin in a chunk. */
-static void sort_runs(void *context, size_t chunk)
+static void sort_runs(void *context, size_t first, size_t past)
 {
     const sorting *s = context;
     tm_curve_point *placed = s->placed;
     const size_t slots = s->mesh->slots;
-    size_t from = CHUNK * chunk, end = tm_chunk_end(from, CHUNK, slots);
+    size_t from = first;
     bool done = true;
-    while (chunk > 0 && from < end && placed[from].position == placed[from - 1].position)
+    while (from > 0 && from < past && placed[from].position == placed[from - 1].position)
         from++;
-    for (size_t to; from < end && done; from = to) {
+    for (size_t to; from < past && done; from = to) {
         for (to = from + 1; to < slots; to++)
             if (placed[to].position != placed[from].position)
                 break;
         done = to == from + 1 || sort_run(s, placed + from, to - from);
     }
-    s->failed[chunk] = !done;
+    s->failed[first / CHUNK] = !done;
 }
 
 /* Sorts the corners of tetrahedra, and places them by those that come first. */
-static void place_tets(void *context, size_t chunk)
+static void place_tets(void *context, size_t from, size_t to)
 {
     const sorting *s = context;
-    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, s->mesh->slots);
     for (size_t t = from; t < to; t++) {
         const uint32_t *n = s->mesh->tet[t];
         uint32_t rank[4] = {s->rank[n[0]], s->rank[n[1]], s->rank[n[2]], s->rank[n[3]]};
@@ -117,10 +116,9 @@ static void place_tets(void *context, size_t chunk)
     }
 }
 
-static void number_halves(void *context, size_t chunk)
+static void number_halves(void *context, size_t from, size_t to)
 {
     const sorting *s = context;
-    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, s->mesh->slots);
     for (size_t k = from; k < to; k++) {
         uint32_t t = s->order[k] = s->placed[k].item;
         for (uint32_t i = 0; i < 4; i++)
@@ -138,24 +136,23 @@ static bool find_order(sorting *s)
     s->failed = calloc(chunks + 1, sizeof *s->failed);
     bool done = s->placed && s->failed;
     if (done)
-        tm_parallel(s->threads, chunks, place_tets, s);
+        tm_parallel_runs(s->threads, mesh->slots, CHUNK, place_tets, s);
     done = done && tm_space_sort(s->placed, mesh->slots, s->threads);
     if (done)
-        tm_parallel(s->threads, chunks, sort_runs, s);
+        tm_parallel_runs(s->threads, mesh->slots, CHUNK, sort_runs, s);
     for (size_t c = 0; c < chunks && done; c++)
         done = !s->failed[c];
     if (done)
-        tm_parallel(s->threads, chunks, number_halves, s);
+        tm_parallel_runs(s->threads, mesh->slots, CHUNK, number_halves, s);
     free(s->placed);
     free(s->failed);
     return done;
 }
 
-static void copy_tets(void *context, size_t chunk)
+static void copy_tets(void *context, size_t from, size_t to)
 {
     const sorting *s = context;
     const tm_tet_mesh *mesh = s->mesh;
-    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, mesh->slots);
     const size_t width = mesh->regions;
     for (size_t k = from; k < to; k++)
         for (int i = 0; i < 4; i++)
@@ -166,11 +163,10 @@ static void copy_tets(void *context, size_t chunk)
 }
 
 /* The old list of tetrahedra becomes that of the neighbours. */
-static void copy_neighbours(void *context, size_t chunk)
+static void copy_neighbours(void *context, size_t from, size_t to)
 {
     const sorting *s = context;
     const tm_tet_mesh *mesh = s->mesh;
-    const size_t from = CHUNK * chunk, to = tm_chunk_end(from, CHUNK, mesh->slots);
     for (size_t k = from; k < to; k++)
         for (int i = 0; i < 4; i++) {
             uint32_t t = s->order[k], h = mesh->neighbour[t][s->corner[t][i]];
@@ -181,7 +177,6 @@ static void copy_neighbours(void *context, size_t chunk)
 static bool reorder(sorting *s)
 {
     tm_tet_mesh *mesh = s->mesh;
-    const size_t chunks = tm_parallel_chunks(mesh->slots, CHUNK);
     s->tet = tm_new(mesh->slots, sizeof *s->tet);
     s->region =
         mesh->regions > 0 ? tm_new(mesh->slots * mesh->regions, sizeof *s->region) : NULL;
@@ -190,8 +185,8 @@ static bool reorder(sorting *s)
         free(s->region);
         return false;
     }
-    tm_parallel(s->threads, chunks, copy_tets, s);
-    tm_parallel(s->threads, chunks, copy_neighbours, s);
+    tm_parallel_runs(s->threads, mesh->slots, CHUNK, copy_tets, s);
+    tm_parallel_runs(s->threads, mesh->slots, CHUNK, copy_neighbours, s);
     free(mesh->neighbour);
     free(mesh->region);
     mesh->neighbour = mesh->tet;
