@@ -23,6 +23,7 @@ SOVERSION := $(basename $(VERSION))
 
 PREFIX = /usr/local
 BINDIR = $(PREFIX)/bin
+LIBEXECDIR = $(PREFIX)/libexec/termesh/mpi
 MANDIR = $(PREFIX)/share/man
 LIBDIR = $(PREFIX)/lib
 INCLUDEDIR = $(PREFIX)/include
@@ -49,7 +50,7 @@ has_p4est := $(shell $(CC) $(CPPFLAGS) $(MPI_CFLAGS) -E -x c -include p4est.h /d
 ifdef has_p4est
 LDLIBS += -Wl,--as-needed -lp4est -lsc $(MPI_LDLIBS) -Wl,--no-as-needed
 else
-left_out := octree-mesh octree-repair \
+left_out := octree-mesh octree-repair lib/ranks/mpi/start.c \
 	$(wildcard $(addsuffix /*.c,$(addprefix lib/octree/,interior feature layer repair))) \
 	$(shell grep -lE '^.include.*(p[48]est|brick\.h|octree_estimate|mpi_start)' lib/octree/forest/*.c) \
 	$(basename $(notdir $(shell grep -lE 'octree_build|octree/(interior|feature|layer|repair)|(octree|repair)_fixture' \
@@ -105,9 +106,16 @@ filters := $(filter-out $(left_out),$(basename $(notdir $(filter_sources))))
 bin := $(filters:%=$(BUILD)/bin/%)
 scripts := $(BUILD)/bin/mesh-convert
 completions := $(filters:%=$(BUILD)/completion/bash/%)
+# Under a launcher these go on as programs of the same name that are linked with MPI: its
+# functions of lib/ranks come before those of the library.
+rank_filters := $(filter-out $(left_out),$(if $(has_p4est),$(basename $(notdir \
+	$(shell grep -lE '^ *\.ranks = true' $(filter_sources))))))
+rank_bin := $(rank_filters:%=$(BUILD)/libexec/termesh/mpi/%)
+ranks_object := $(BUILD)/lib/ranks/mpi/ranks.o
 library := $(BUILD)/libtermesh.a
 shared := $(BUILD)/libtermesh.so.$(VERSION)
-library_objects := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(left_out),$(call in_library,.c)))
+library_objects := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(left_out) lib/ranks/mpi/ranks.c,\
+	$(call in_library,.c)))
 common := $(BUILD)/libcommon.a
 common_objects := $(patsubst %.c,$(BUILD)/%.o,$(filter-out cmd/common/gmsh/%,\
 	$(wildcard cmd/common/*.c cmd/common/*/*.c)))
@@ -133,7 +141,7 @@ sources := $(wildcard lib/*.h lib/*/*.[ch] lib/*/*/*.[ch] lib/*/*/*/*.[ch] \
 .PHONY: all tests check benchers bench fuzz lint warnings format install uninstall clean
 .SECONDARY:
 
-all: $(bin) $(scripts) $(completions) $(library) $(shared)
+all: $(bin) $(rank_bin) $(scripts) $(completions) $(library) $(shared)
 ifndef has_p4est
 	@echo "There is no p4est, or no mpicc: octree-mesh and octree-repair are left out." >&2
 endif
@@ -195,6 +203,13 @@ $(filter %-import,$(bin)): $(BUILD)/bin/%: $(BUILD)/cmd/import/%.o $(common) $(l
 $(filter %-export,$(bin)): $(BUILD)/bin/%: $(BUILD)/cmd/export/%.o $(common) $(library)
 	$(link)
 $(filter-out %-import %-export,$(bin)): $(BUILD)/bin/%: $(BUILD)/cmd/%.o $(common) $(library)
+	$(link)
+
+$(filter %-export,$(rank_bin)): $(BUILD)/libexec/termesh/mpi/%: $(BUILD)/cmd/export/%.o \
+		$(ranks_object) $(common) $(library)
+	$(link)
+$(filter-out %-export,$(rank_bin)): $(BUILD)/libexec/termesh/mpi/%: $(BUILD)/cmd/%.o \
+		$(ranks_object) $(common) $(library)
 	$(link)
 
 $(scripts): $(BUILD)/bin/%: cmd/%.sh
@@ -279,6 +294,10 @@ format:
 install: all
 	install -d $(DESTDIR)$(BINDIR) $(DESTDIR)$(LIBDIR)/pkgconfig
 	install -m 755 $(bin) $(scripts) $(DESTDIR)$(BINDIR)
+ifneq ($(rank_bin),)
+	install -d $(DESTDIR)$(LIBEXECDIR)
+	install -m 755 $(rank_bin) $(DESTDIR)$(LIBEXECDIR)
+endif
 	install -d $(DESTDIR)$(BASHCOMPLETIONDIR) $(DESTDIR)$(ZSHCOMPLETIONDIR)
 	install -m 644 $(completions) $(DESTDIR)$(BASHCOMPLETIONDIR)
 	install -m 644 $(filters:%=$(BUILD)/completion/zsh/_%) $(DESTDIR)$(ZSHCOMPLETIONDIR)

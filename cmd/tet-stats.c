@@ -172,6 +172,7 @@ int main(int argc, char **argv)
         .options = long_options,
         .letters = "t:" FILTER_LETTERS,
         .json_is_output = true,
+        .ranks = true,
     };
     options o = {.threshold = 30, .against = against_start()};
     mesh first, second;

@@ -14,6 +14,9 @@
 #include "base/stop.h"
 #include "base/version.h"
 
+/* ranks: processes that work on one mesh */
+#include "ranks/ranks.h"
+
 /* number: numbers from and to text */
 #include "number/number.h"
 

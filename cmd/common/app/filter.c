@@ -44,6 +44,7 @@ void filter_start(filter *f, int argc, char **argv)
     f->history = true;
     f->threads = tm_cores();
     opterr = 0;
+    filter_launch(f, argv);
     if (argc == 2 && strcmp(argv[1], "--completion") == 0)
         filter_print_completion(f);
 }

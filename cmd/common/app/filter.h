@@ -83,6 +83,7 @@ typedef struct filter {
     bool q_is_own;                /* -q is the filter's; quiet is --quiet only */
     bool j_is_own;                /* -j is the filter's; threads are --threads only */
     bool binary;                  /* its output is, before filter_operands() */
+    bool ranks;                   /* it can work on several: see filter_together() */
     /* set from the command line */
     int argc;
     char **argv;
@@ -105,6 +106,25 @@ typedef struct filter {
 } filter;
 
 void filter_start(filter *f, int argc, char **argv);
+
+/* Under a launcher filter_start() goes on as the program that is linked with MPI where
+ * f->ranks says so; of other filters rank 0 works and the others end. */
+void filter_launch(const filter *f, char **argv);
+
+/* After the command line of a filter with f->ranks: whether all ranks work together now,
+ * which they do where there are several and what is asked for can be done so. Else rank 0
+ * goes on, as without a launcher, and the others end. */
+bool filter_together(const filter *f, bool can);
+
+/* A step that all ranks make has ended so on this one: goes on where it has not failed on
+ * any; else one of them says why, all end, and the launcher has its status. */
+void filter_agree(const filter *f, tm_status status, tm_error *error);
+
+/* Whether this rank is the one that says something. */
+bool filter_speaks(void);
+
+/* exit(status), of all ranks; what they have not agreed upon ends the others, too. */
+_Noreturn void filter_end(int status);
 
 /* The next option that is the filter's own, or -1 after the last. */
 int filter_option(filter *f);
@@ -144,7 +164,10 @@ _Noreturn void filter_usage_error(const filter *f, const char *format, ...)
 /* "name: file:line: block: what", then exit with error->status. */
 _Noreturn void filter_fail(const filter *f, const tm_error *error);
 
-/* The same where memory is out. */
+/* The line alone. */
+void filter_say_failure(const filter *f, const tm_error *error);
+
+/* filter_fail() where memory is out. */
 _Noreturn void filter_fail_memory(const filter *f);
 
 /* What the library is to be given where it takes a tm_progress. */

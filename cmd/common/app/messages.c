@@ -3,6 +3,7 @@
  * terminal would obey is shown as \x1b. */
 #include "filter.h"
 
+#include "../../../lib/ranks/ranks.h"
 #include "../../../lib/text/utf8.h"
 #include "../../../lib/stream/sniff.h"
 
@@ -46,6 +47,8 @@ static void print_message(const filter *f, const char *format, va_list arguments
 void filter_print(const filter *f, const char *format, ...)
 {
     va_list arguments;
+    if (!filter_speaks())
+        return;
     progress_hold(f->progress);
     va_start(arguments, format);
     vfprintf(stderr, format, arguments);
@@ -85,16 +88,18 @@ void filter_verbose(const filter *f, const char *format, ...)
 void filter_usage_error(const filter *f, const char *format, ...)
 {
     va_list arguments;
+    if (!filter_speaks())
+        filter_end(EXIT_USAGE);
     progress_end(f->progress);
     va_start(arguments, format);
     print_message(f, format, arguments);
     va_end(arguments);
     filter_usage(f, stderr);
     fprintf(stderr, "Try '%s --help'.\n", f->name);
-    exit(EXIT_USAGE);
+    filter_end(EXIT_USAGE);
 }
 
-void filter_fail(const filter *f, const tm_error *error)
+void filter_say_failure(const filter *f, const tm_error *error)
 {
     char line[32] = "";
     progress_end(f->progress);
@@ -103,8 +108,14 @@ void filter_fail(const filter *f, const tm_error *error)
     filter_message(f, "%s%s%s%s%s%s", error->file, error->file[0] ? line : "",
                    error->file[0] ? ": " : "", error->block, error->block[0] ? ": " : "",
                    error->what);
+}
+
+void filter_fail(const filter *f, const tm_error *error)
+{
+    if (filter_speaks() || tm_ranks_count() > 1)
+        filter_say_failure(f, error);
     output_files_abandon(f->files);
-    exit((int)error->status);
+    filter_end((int)error->status);
 }
 
 void filter_fail_memory(const filter *f)

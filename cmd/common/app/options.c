@@ -197,6 +197,8 @@ static void begin_work(filter *f)
 {
     static progress p; /* that of the program: signals erase it */
     f->progress = &p;
+    if (!filter_speaks())
+        f->verbosity = -1;
     progress_start(&p, f->name, f->verbosity == -1, f->verbosity == 1);
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "mpi_environment.h"
 
-#include "../../../lib/octree/forest/mpi_start.h"
+#include "../../../lib/ranks/ranks.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -41,7 +41,7 @@ void mpi_environment_set(const filter *f)
         {"OMPI_MCA_osc", "^ucx"},
         {"HWLOC_COMPONENTS", "no_os,stop"}};
     bool done = true;
-    if (!tm_mpi_launched()) {
+    if (!tm_launched()) {
         done = forget_parameters();
         for (size_t i = 0; done && i < sizeof choice / sizeof *choice; i++)
             done = setenv(choice[i][0], choice[i][1], 1) == 0;

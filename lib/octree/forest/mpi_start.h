@@ -6,21 +6,12 @@
 #include "../../base/extern_c.h"
 #include "../../base/error.h"
 
-#include <stdbool.h>
-
 TM_EXTERN_C_BEGIN
 
-/* Whether a launcher (mpirun, srun) has started the program: Open MPI's, PMIx's or PMI's
- * variables are there. */
-bool tm_mpi_launched(void);
-
-/* Starts MPI and p4est, once. After a launcher they end with the program; else MPI is
- * left as it is then, as it would need memory to end. Nothing is printed. TM_ERROR_SYSTEM
- * where MPI says that it does not start, or where there is not the memory that Open MPI
- * takes: lacking that, it would end the program. Each process works for itself:
- * MPI_COMM_SELF. With these variables in the environment, which are the program's to set
- * where no launcher has started it, Open MPI takes 0.01 s and not 0.3 s and needs no
- * folder for temporary files:
+/* Starts MPI (ranks/mpi/start.h) and p4est, once. Nothing is printed. Errors are those of
+ * tm_mpi_init(). Each process works for itself: MPI_COMM_SELF. With these variables in
+ * the environment, which are the program's to set where no launcher has started it, Open
+ * MPI takes 0.01 s and not 0.3 s and needs no folder for temporary files:
  *
  *     OMPI_MCA_pml=ob1 OMPI_MCA_btl=self OMPI_MCA_ess_singleton_isolated=1
  *     OMPI_MCA_orte_create_session_dirs=0 OMPI_MCA_shmem=mmap OMPI_MCA_memory=^patcher

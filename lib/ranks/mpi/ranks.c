@@ -1,0 +1,283 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The ranks of MPI_COMM_WORLD. Messages are cut, as MPI counts with an int. */
+#include "../ranks.h"
+
+#include "../../base/array.h"
+#include "start.h"
+
+#include <mpi.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PIECE = 1 << 30, TAG = 7 };
+
+static struct {
+    int rank, count;
+    tm_ranks_traffic sent;
+} world = {0, 1, {0, 0}};
+
+bool tm_ranks_are_mpi(void)
+{
+    return true;
+}
+
+tm_status tm_ranks_start(tm_error *error)
+{
+    const tm_status status = tm_mpi_init(error);
+    if (status != TM_OK)
+        return status;
+    MPI_Comm_rank(MPI_COMM_WORLD, &world.rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &world.count);
+    return TM_OK;
+}
+
+unsigned tm_rank(void)
+{
+    return (unsigned)world.rank;
+}
+
+unsigned tm_ranks_count(void)
+{
+    return (unsigned)world.count;
+}
+
+void tm_ranks_end(int status)
+{
+    if (world.count == 1)
+        exit(status);
+    MPI_Abort(MPI_COMM_WORLD, status);
+    abort(); /* MPI_Abort() does not return */
+}
+
+tm_status tm_ranks_agree(tm_status status, tm_error *error)
+{
+    int first = status == TM_OK ? world.count : world.rank;
+    MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+    if (first == world.count)
+        return TM_OK;
+    int of_all = (int)status;
+    tm_error cause = {.status = status};
+    if (error && first == world.rank)
+        cause = *error;
+    MPI_Bcast(&of_all, 1, MPI_INT, first, MPI_COMM_WORLD);
+    MPI_Bcast(&cause, (int)sizeof cause, MPI_BYTE, first, MPI_COMM_WORLD);
+    if (error)
+        *error = cause;
+    return (tm_status)of_all;
+}
+
+static void reduce(void *value, size_t count, MPI_Datatype type, MPI_Op op)
+{
+    MPI_Allreduce(MPI_IN_PLACE, value, (int)count, type, op, MPI_COMM_WORLD);
+}
+
+void tm_ranks_sum(size_t *value, size_t count)
+{
+    reduce(value, count, MPI_UNSIGNED_LONG, MPI_SUM);
+}
+
+void tm_ranks_least(double *value, size_t count)
+{
+    reduce(value, count, MPI_DOUBLE, MPI_MIN);
+}
+
+void tm_ranks_largest(double *value, size_t count)
+{
+    reduce(value, count, MPI_DOUBLE, MPI_MAX);
+}
+
+bool tm_ranks_any(bool value)
+{
+    int any = value;
+    reduce(&any, 1, MPI_INT, MPI_MAX);
+    return any != 0;
+}
+
+size_t tm_ranks_before(size_t value, size_t *all)
+{
+    size_t sum = value;
+    MPI_Scan(&value, &sum, 1, MPI_UNSIGNED_LONG, MPI_SUM, MPI_COMM_WORLD);
+    if (all) {
+        *all = sum;
+        MPI_Bcast(all, 1, MPI_UNSIGNED_LONG, world.count - 1, MPI_COMM_WORLD);
+    }
+    return sum - value;
+}
+
+void tm_ranks_broadcast(void *bytes, size_t size)
+{
+    for (size_t at = 0; at < size; at += PIECE)
+        MPI_Bcast((char *)bytes + at, (int)(size - at < PIECE ? size - at : PIECE),
+                  MPI_BYTE, 0, MPI_COMM_WORLD);
+}
+
+/* Messages under way. */
+typedef struct {
+    MPI_Request *request;
+    size_t count;
+} messages;
+
+static size_t pieces_of(size_t bytes)
+{
+    return bytes / PIECE + (bytes % PIECE != 0);
+}
+
+static void begin(messages *m, char *bytes, size_t size, int other, bool send)
+{
+    for (size_t at = 0; at < size; at += PIECE) {
+        const int piece = (int)(size - at < PIECE ? size - at : PIECE);
+        MPI_Request *request = &m->request[m->count++];
+        if (send)
+            MPI_Isend(bytes + at, piece, MPI_BYTE, other, TAG, MPI_COMM_WORLD, request);
+        else
+            MPI_Irecv(bytes + at, piece, MPI_BYTE, other, TAG, MPI_COMM_WORLD, request);
+        world.sent.messages += send;
+        world.sent.bytes += send ? (size_t)piece : 0;
+    }
+}
+
+static void wait_for(const messages *m)
+{
+    for (size_t i = 0; i < m->count; i++)
+        MPI_Wait(&m->request[i], MPI_STATUS_IGNORE);
+}
+
+/* The same where got_count and the room for what comes are there. */
+static void send_and_receive(const char *send, const size_t *send_count, char *got,
+                             const size_t *got_count, size_t size, messages *m)
+{
+    const unsigned own = tm_rank();
+    const char *to = send;
+    char *from = got;
+    for (unsigned r = 0; r < tm_ranks_count(); r++) {
+        if (r != own)
+            begin(m, from, got_count[r] * size, (int)r, false);
+        from += got_count[r] * size;
+    }
+    from = got;
+    for (unsigned r = 0; r < own; r++)
+        from += got_count[r] * size;
+    for (unsigned r = 0; r < tm_ranks_count(); r++) {
+        const size_t bytes = send_count[r] * size;
+        if (r != own)
+            begin(m, (char *)to, bytes, (int)r, true);
+        else if (bytes > 0)
+            memcpy(from, to, bytes);
+        to += bytes;
+    }
+    wait_for(m);
+}
+
+tm_status tm_ranks_exchange(const void *send, const size_t *send_count, size_t size,
+                            void **got, size_t *got_count, tm_error *error)
+{
+    const unsigned count = tm_ranks_count();
+    size_t *to = tm_new(2 * (size_t)count, sizeof *to);
+    messages m = {0};
+    *got = NULL;
+    if (tm_ranks_any(!to)) {
+        free(to);
+        return tm_fail_memory(error);
+    }
+    size_t *from = to + count, items = 0, pieces = 0;
+    memcpy(to, send_count, count * sizeof *to);
+    MPI_Alltoall(to, 1, MPI_UNSIGNED_LONG, from, 1, MPI_UNSIGNED_LONG, MPI_COMM_WORLD);
+    for (unsigned r = 0; r < count; r++) {
+        items += from[r];
+        pieces += pieces_of(to[r] * size) + pieces_of(from[r] * size);
+    }
+    *got = tm_new(items, size);
+    m.request = tm_new(pieces, sizeof *m.request);
+    const bool failed = tm_ranks_any(!*got || !m.request);
+    if (failed) {
+        free(*got);
+        *got = NULL;
+    } else {
+        send_and_receive(send, to, *got, from, size, &m);
+        memcpy(got_count, from, count * sizeof *from);
+    }
+    free(to);
+    free(m.request);
+    return failed ? tm_fail_memory(error) : TM_OK;
+}
+
+/* Sends the same items to all ranks, or to rank 0. */
+static tm_status collect(const void *mine, size_t count, size_t size, bool share,
+                         void **all, size_t *total, tm_error *error)
+{
+    const unsigned ranks = tm_ranks_count();
+    const size_t before = tm_ranks_before(count, total);
+    size_t *counts = tm_new(ranks, sizeof *counts), sum = 0;
+    messages m = {.request = tm_new((ranks + 1) * (pieces_of(count * size) + 1) + ranks,
+                                    sizeof *m.request)};
+    *all = NULL;
+    if (tm_ranks_any(!counts || !m.request)) {
+        free(counts);
+        free(m.request);
+        return tm_fail_memory(error);
+    }
+    MPI_Allgather(&count, 1, MPI_UNSIGNED_LONG, counts, 1, MPI_UNSIGNED_LONG,
+                  MPI_COMM_WORLD);
+    size_t pieces = 0;
+    for (unsigned r = 0; r < ranks; r++) {
+        sum += counts[r];
+        pieces += pieces_of(counts[r] * size) + pieces_of(count * size);
+    }
+    const bool receives = share || world.rank == 0;
+    MPI_Request *grown = realloc(m.request, (pieces + 1) * sizeof *grown);
+    m.request = grown ? grown : m.request;
+    char *to = receives ? tm_new(sum, size) : NULL;
+    const bool failed = tm_ranks_any(!grown || (receives && !to));
+    if (failed) {
+        free(to);
+        to = NULL;
+    } else {
+        char *from = to;
+        for (unsigned r = 0; receives && r < ranks; from += counts[r++] * size)
+            if ((int)r != world.rank)
+                begin(&m, from, counts[r] * size, (int)r, false);
+        for (unsigned r = 0; r < (share ? ranks : 1); r++)
+            if ((int)r != world.rank)
+                begin(&m, (char *)mine, count * size, (int)r, true);
+        if (receives && count > 0)
+            memcpy(to + before * size, mine, count * size);
+        wait_for(&m);
+    }
+    *all = to;
+    free(counts);
+    free(m.request);
+    return failed ? tm_fail_memory(error) : TM_OK;
+}
+
+tm_status tm_ranks_gather(const void *mine, size_t count, size_t size, void **all,
+                          size_t *total, tm_error *error)
+{
+    return collect(mine, count, size, false, all, total, error);
+}
+
+tm_status tm_ranks_share(const void *mine, size_t count, size_t size, void **all,
+                         size_t *total, tm_error *error)
+{
+    return collect(mine, count, size, true, all, total, error);
+}
+
+void tm_ranks_send(unsigned to, const void *bytes, size_t size)
+{
+    MPI_Send(bytes, (int)size, MPI_BYTE, (int)to, TAG, MPI_COMM_WORLD);
+    world.sent.messages++;
+    world.sent.bytes += size;
+}
+
+void tm_ranks_receive(unsigned from, void *bytes, size_t room, size_t *size)
+{
+    MPI_Status status;
+    int got = 0;
+    MPI_Recv(bytes, (int)room, MPI_BYTE, (int)from, TAG, MPI_COMM_WORLD, &status);
+    MPI_Get_count(&status, MPI_BYTE, &got);
+    *size = (size_t)got;
+}
+
+tm_ranks_traffic tm_ranks_sent(void)
+{
+    return world.sent;
+}

@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Several processes that work on one mesh, started by a launcher (mpirun, srun): ranks.
+ * What they say to each other goes through here. There are two sets of these functions:
+ * alone.c, of the library, is that of one rank, and needs no MPI; mpi/ranks.c, which a
+ * program is linked with before the library, is that of MPI_COMM_WORLD.
+ *
+ * All functions but tm_rank() and tm_ranks_count() are called by all ranks, in the same
+ * order. Those that return a tm_status return the same one on all of them: where one has
+ * no memory, all fail. Items are of any type, of `size` bytes. Of one rank each costs a
+ * copy at most. */
+#ifndef TM_RANKS_RANKS_H
+#define TM_RANKS_RANKS_H
+
+#include "../base/extern_c.h"
+#include "../base/error.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+TM_EXTERN_C_BEGIN
+
+/* Whether a launcher (mpirun, srun) has started the program, what number it has among the
+ * others, and how many they are, before anything is started: by the launcher's variables,
+ * Open MPI's, PMIx's or PMI's. 0 and 1 where there is none. */
+bool tm_launched(void);
+unsigned tm_launched_rank(void);
+unsigned tm_launched_count(void);
+
+/* Whether these are the functions of MPI. */
+bool tm_ranks_are_mpi(void);
+
+/* Begins to work together, once; at the program's end that ends. TM_ERROR_SYSTEM where
+ * MPI does not start. */
+tm_status tm_ranks_start(tm_error *error);
+
+/* Which rank this is, and how many there are; 0 and 1 before tm_ranks_start(). */
+unsigned tm_rank(void);
+unsigned tm_ranks_count(void);
+
+/* Ends all ranks at once with that exit status, whatever the others do. */
+_Noreturn void tm_ranks_end(int status);
+
+/* The error of the lowest rank that has one, on all of them: a step that may fail on some
+ * ranks ends with `status = tm_ranks_agree(status, error)`. TM_OK where none failed. */
+tm_status tm_ranks_agree(tm_status status, tm_error *error);
+
+/* Sums, minima and maxima over all ranks, in place. */
+void tm_ranks_sum(size_t *value, size_t count);
+void tm_ranks_least(double *value, size_t count);
+void tm_ranks_largest(double *value, size_t count);
+bool tm_ranks_any(bool value);
+
+/* The sum over the ranks before this one; *all (may be NULL) gets that of all. */
+size_t tm_ranks_before(size_t value, size_t *all);
+
+/* Rank 0's bytes, to all others. */
+void tm_ranks_broadcast(void *bytes, size_t size);
+
+/* Gives each rank its own: `send` has send_count[0] items for rank 0, then send_count[1]
+ * for rank 1, and so on. *got, to be freed, has what came, in the order of ranks,
+ * got_count[r] items of rank r. got_count has tm_ranks_count() numbers; it may be
+ * send_count. TM_ERROR_SYSTEM where memory is out: *got is NULL then. */
+tm_status tm_ranks_exchange(const void *send, const size_t *send_count, size_t size,
+                            void **got, size_t *got_count, tm_error *error);
+
+/* Of all ranks' items, in the order of ranks, *all, to be freed: tm_ranks_gather() on
+ * rank 0 (NULL elsewhere), tm_ranks_share() on all. *total (may be NULL) is their number,
+ * on all ranks. */
+tm_status tm_ranks_gather(const void *mine, size_t count, size_t size, void **all,
+                          size_t *total, tm_error *error);
+tm_status tm_ranks_share(const void *mine, size_t count, size_t size, void **all,
+                         size_t *total, tm_error *error);
+
+/* From one rank to another, which call both, and no other does. tm_ranks_receive() gets
+ * *size bytes, at most `room`. */
+void tm_ranks_send(unsigned to, const void *bytes, size_t size);
+void tm_ranks_receive(unsigned from, void *bytes, size_t room, size_t *size);
+
+/* What this rank has sent to others so far. Collective sums and the like, whose size does
+ * not grow with the mesh, are not counted. */
+typedef struct tm_ranks_traffic {
+    size_t bytes, messages;
+} tm_ranks_traffic;
+tm_ranks_traffic tm_ranks_sent(void);
+
+TM_EXTERN_C_END
+
+#endif
