@@ -231,6 +231,10 @@ void filter_read_slices(const filter *f, tm_slices *slices);
 void filter_write_slices(filter *f, tm_slices *slices, const char *summary, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* filter_write_text() of what all ranks have, in their order, which are together a text.
+ */
+void filter_write_texts(filter *f, const tm_text *text);
+
 /* Writes a text (a table, a foreign file) to the output, after the report as well. */
 void filter_write_text(filter *f, const tm_text *text);
 
