@@ -121,6 +121,10 @@ bool filter_together(const filter *f, bool can);
  * any; else one of them says why, all end, and the launcher has its status. */
 void filter_agree(const filter *f, tm_status status, tm_error *error);
 
+/* What ranks that work together have sent to each other, and how evenly they have worked,
+ * as filter_verbose() says it. */
+void filter_verbose_ranks(const filter *f);
+
 /* Whether this rank is the one that says something. */
 bool filter_speaks(void);
 
