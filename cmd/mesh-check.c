@@ -2,6 +2,7 @@
 /* mesh-check: what is wrong with a mesh, as exit status and as a list. */
 #include "common/input/against.h"
 #include "common/input/mesh_input.h"
+#include "common/input/mesh_share.h"
 #include "common/input/surface_input.h"
 
 #include "../lib/examine/element_examine.h"
@@ -196,26 +197,30 @@ static int report(filter *f, const tm_examination *found, const limits *l, unsig
     return tm_examination_is_good(found) && is_within(l) ? 0 : EXIT_GOAL;
 }
 
+/* Ranks other than the first have nothing to say of what that does alone. */
+static void report_nothing(filter *f)
+{
+    filter_json_begin(f);
+    filter_json_end(f);
+}
+
 /* All ranks; of a surface rank 0 gets the others' rows and works alone. */
 static int check_together(filter *f, limits *l)
 {
     tm_slices slices;
     tm_error error;
     int status = 0;
-    filter_read_slices(f, &slices);
-    status = (int)tm_slices_check_coordinates(&slices, &error);
-    if (status != TM_OK)
-        snprintf(error.file, sizeof error.file, "%s", filter_input_name(f));
-    filter_agree(f, (tm_status)status, &error);
+    mesh_share_read(f, &slices);
     if (has_elements(&slices.stream)) {
         tm_examination found;
         examine_slices(f, &slices, &found);
-        if (filter_speaks())
-            status = report(f, &found, l, slices.stream.base);
+        status = report(f, &found, l, slices.stream.base);
     } else {
         filter_agree(f, tm_slices_gather(&slices, &error), &error);
         if (filter_speaks())
             status = check_surface(f, &slices.stream, l);
+        else
+            report_nothing(f);
     }
     tm_slices_free(&slices);
     return filter_finish(f, status);

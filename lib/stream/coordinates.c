@@ -3,9 +3,7 @@
 
 #include <math.h>
 
-/* Of each row of `width` numbers the first three are a point; *largest gets what is
- * larger.
- */
+/* Of each row of `width` numbers the first three are a point. */
 static tm_status check_rows(const double *real, size_t count, size_t width,
                             const char *block, const char *what, size_t first,
                             double *largest, tm_error *error)
@@ -24,7 +22,7 @@ static tm_status check_rows(const double *real, size_t count, size_t width,
     return TM_OK;
 }
 
-tm_status tm_coordinates_check_largest(double largest, const char *block, tm_error *error)
+tm_status tm_largest_coordinate_check(double largest, const char *block, tm_error *error)
 {
     if (largest > 0 && largest < TM_COORDINATE_MIN)
         return tm_fail_at(error, TM_ERROR_INPUT, NULL, 0, block,
@@ -41,14 +39,12 @@ tm_status tm_coordinates_check(const double (*xyz)[3], size_t count, unsigned ba
     double largest = 0;
     const tm_status status =
         check_rows(&xyz[0][0], count, COORDINATES, NULL, "node", base, &largest, error);
-    return status == TM_OK ? tm_coordinates_check_largest(largest, NULL, error) : status;
+    return status == TM_OK ? tm_largest_coordinate_check(largest, NULL, error) : status;
 }
 
 tm_status tm_block_check_coordinates(const tm_block *block, size_t first, double *largest,
                                      tm_error *error)
 {
-    if (block->kind != TM_NODE && block->kind != TM_ROOT)
-        return TM_OK;
     return check_rows(block->real, block->count, tm_block_reals(block->kind), block->name,
                       block->kind == TM_NODE ? "node" : "root", first, largest, error);
 }
@@ -59,9 +55,11 @@ tm_status tm_stream_check_coordinates(const tm_stream *stream, tm_error *error)
     for (size_t b = 0; b < stream->blocks && status == TM_OK; b++) {
         const tm_block *block = &stream->block[b];
         double largest = 0;
+        if (block->kind != TM_NODE && block->kind != TM_ROOT)
+            continue;
         status = tm_block_check_coordinates(block, stream->base, &largest, error);
         if (status == TM_OK)
-            status = tm_coordinates_check_largest(largest, block->name, error);
+            status = tm_largest_coordinate_check(largest, block->name, error);
     }
     return status;
 }

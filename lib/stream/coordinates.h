@@ -21,16 +21,16 @@ TM_EXTERN_C_BEGIN
 tm_status tm_coordinates_check(const double (*xyz)[3], size_t count, unsigned base,
                                tm_error *error);
 
-/* The two parts of it, of a block, where that is .node or .root: its rows, the first of
- * which has that number, with *largest, which is not below what it was; and that. */
-tm_status tm_block_check_coordinates(const tm_block *block, size_t first, double *largest,
-                                     tm_error *error);
-tm_status tm_coordinates_check_largest(double largest, const char *block,
-                                       tm_error *error);
-
 /* The same of each .node block of a stream, of the main mesh and the parts, and of .root;
  * the error names the block. */
 tm_status tm_stream_check_coordinates(const tm_stream *stream, tm_error *error);
+
+/* Its parts, of one block .node or .root, whose first row has that number: the error of a
+ * coordinate that is not finite or too large; *largest grows to the largest there is. And
+ * the error where that is too small. */
+tm_status tm_block_check_coordinates(const tm_block *block, size_t first, double *largest,
+                                     tm_error *error);
+tm_status tm_largest_coordinate_check(double largest, const char *block, tm_error *error);
 
 TM_EXTERN_C_END
 
