@@ -87,7 +87,6 @@ tm_status tm_element_measure(tm_examination *found, const tm_mesh_view *mesh,
                               .volume = tm_new(chunks, sizeof *measures->volume)};
     measuring m = {mesh, measures->sign, tm_new(chunks, sizeof *m.chunk)};
     if (!measures->sign || !measures->volume || !m.chunk) {
-        tm_element_measures_free(measures);
         free(m.chunk);
         return tm_fail_memory(error);
     }
@@ -175,11 +174,11 @@ tm_status tm_element_examine(tm_examination *found, const tm_mesh_view *mesh,
     tm_element_measures measures;
     tm_walked walked = {.past = (uint32_t)mesh->nodes};
     tm_status status = tm_element_measure(found, mesh, &measures, threads, error);
-    if (status != TM_OK)
-        return status;
-    found->volume = tm_sum_all(measures.volume, measures.chunks);
-    status =
-        tm_element_examine_faces(found, mesh, measures.sign, &walked, threads, error);
+    if (status == TM_OK) {
+        found->volume = tm_sum_all(measures.volume, measures.chunks);
+        status =
+            tm_element_examine_faces(found, mesh, measures.sign, &walked, threads, error);
+    }
     if (status == TM_OK)
         count(found, mesh, measures.sign, &walked);
     tm_element_measures_free(&measures);

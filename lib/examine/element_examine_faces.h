@@ -19,8 +19,8 @@ typedef struct tm_element_measures {
     size_t chunks;
 } tm_element_measures;
 
-/* Finds in *found: elements of each kind, inverted and degenerate ones. *measures is not
- * to be freed after an error. */
+/* Finds in *found: elements of each kind, inverted and degenerate ones. *measures is to
+ * be freed also after an error. */
 tm_status tm_element_measure(tm_examination *found, const tm_mesh_view *mesh,
                              tm_element_measures *measures, unsigned threads,
                              tm_error *error);

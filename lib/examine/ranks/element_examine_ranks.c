@@ -251,9 +251,8 @@ tm_status tm_element_examine_ranks(tm_examination *found, const tm_element_slice
                    .threads = threads,
                    .error = error};
     tm_status status = measure(&x);
-    if (status != TM_OK)
-        return status;
-    status = examine_faces(&x);
+    if (status == TM_OK)
+        status = examine_faces(&x);
     tm_element_measures_free(&x.measures);
     if (status == TM_OK)
         status = tm_examine_nodes_ranks(found, &x.nodes, mesh->own.xyz, error);

@@ -64,9 +64,9 @@ static tm_status take_facets(facets_here *h, const uint32_t *word, size_t words,
     h->side = tm_new(count, sizeof *h->side);
     h->start = calloc(count + 1, sizeof *h->start);
     h->node = tm_new(nodes, sizeof *h->node);
-    tm_status status =
-        tm_examine_enough(h->number && h->side && h->start && h->node, x->error);
-    for (size_t f = 0, at = 0; f < count && status == TM_OK; f++) {
+    const bool enough = h->number && h->side && h->start && h->node;
+    tm_status status = tm_examine_enough(enough, x->error);
+    for (size_t f = 0, at = 0; f < count && enough; f++) {
         const size_t k = word[at + HEAD - 1];
         h->number[f] = word[at];
         memcpy(h->side[f], word + at + 1, sizeof *h->side);
@@ -330,7 +330,7 @@ static tm_status examine_facets(examining *x)
     tm_status status = tm_examine_enough(node && side, x->error);
     if (status == TM_OK)
         status = take_listing(x, &l);
-    if (status == TM_OK && corners > 0)
+    if (status == TM_OK && node && corners > 0)
         memcpy(node, mesh.facet_node, corners * sizeof *node);
     if (status == TM_OK)
         status = tm_part_nodes_make(&nodes, node, corners, &x->nodes, mesh.xyz, x->error);
