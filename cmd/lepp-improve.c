@@ -564,11 +564,13 @@ int main(int argc, char **argv)
                 .help = own_help,
                 .options = options,
                 .words = option_words,
-                .letters = "a:m:t:Q:s:" FILTER_LETTERS};
+                .letters = "a:m:t:Q:s:" FILTER_LETTERS,
+                .ranks = true};
     filter_start(&f, argc, argv);
     settings o = read_options(&f);
     filter_operands(&f);
     filter_other_file(&f, "--plot", o.plot);
+    filter_together(&f, false);
     tm_stream stream;
     filter_read(&f, &stream);
 
