@@ -37,13 +37,13 @@ void tm_tet_parts_free(tm_tet_parts *parts);
 
 /* Makes part p a mesh: tetrahedra in the order of the cut, each node with its attributes
  * and markers, faces and edges that it has. Different parts may be taken at a time.
- * Expected O(tetrahedra of the part + locked edges of the mesh). */
+ * Expected O(tetrahedra of the part). */
 tm_status tm_tet_part_take(const tm_tet_parts *parts, size_t p, const tm_tet_mesh *mesh,
                            tm_error *error);
 
 /* Makes *mesh what the parts have become, and empties them. Nodes keep their numbers, new
- * ones come behind; tetrahedra are in the order of the parts, without dead slots. The
- * mesh cannot be given back after an error, only freed. O(n). */
+ * ones come behind, part by part; tetrahedra are in the order of the parts, without dead
+ * slots. The mesh cannot be given back after an error, only freed. O(n). */
 tm_status tm_tet_parts_join(tm_tet_parts *parts, tm_tet_mesh *mesh, unsigned threads,
                             tm_error *error);
 
