@@ -35,6 +35,16 @@ tm_status tm_tet_parts_cut(tm_tet_parts *parts, const tm_tet_mesh *mesh, size_t 
                            unsigned round, tm_error *error);
 void tm_tet_parts_free(tm_tet_parts *parts);
 
+/* What that is made of, for a mesh of which a process has only a share. How many parts: */
+size_t tm_tet_parts_count(size_t tets, size_t size);
+
+/* A point as the round's curve sees it: turned about three axes, another way in each
+ * round, so that planes where parts end cross those of the round before. */
+void tm_tet_parts_turn(const double p[3], unsigned round, double q[3]);
+
+/* Fills has_edge and taken; false where memory is out. */
+bool tm_tet_parts_note_edges(tm_tet_parts *parts, const tm_tet_mesh *mesh);
+
 /* Makes part p a mesh: tetrahedra in the order of the cut, each node with its attributes
  * and markers, faces and edges that it has. Different parts may be taken at a time.
  * Expected O(tetrahedra of the part). */
