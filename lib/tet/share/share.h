@@ -49,6 +49,10 @@ void tm_tet_deal_free(tm_tet_deal *deal);
 tm_status tm_tet_share_deal(tm_tet_share *share, const tm_tet_deal *deal,
                             tm_tet_share *to, tm_error *error);
 
+/* Gives each rank the tetrahedra of its parts, of so many, in the round's order. */
+tm_status tm_tet_share_deal_along(tm_tet_share *share, size_t parts, unsigned round,
+                                  tm_error *error);
+
 /* Gives each rank its parts of the cut of a round (parts.h), and lists these; those of
  * one process. What is not its own is forgotten. */
 tm_status tm_tet_share_cut(tm_tet_share *share, tm_tet_parts *parts, size_t size,
