@@ -164,10 +164,12 @@ int main(int argc, char **argv)
         .options = long_options,
         .letters = FILTER_LETTERS,
         .json_is_output = true,
+        .ranks = true,
     };
     filter_start(&f, argc, argv);
     limits l = {.against = against_start(), .within = -1};
     read_options(&f, &l);
+    filter_together(&f, false);
 
     tm_stream stream;
     mesh_input_read_to_compute(&f, &stream);
