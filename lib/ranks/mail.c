@@ -62,7 +62,8 @@ tm_status tm_mail_answer(const tm_mail *mail, const void *answer, size_t size, v
     size_t *count = calloc(ranks, sizeof *count);
     char *own = tm_new(mail->items, size);
     void *sorted = NULL;
-    tm_status status = tm_ranks_agree(count && own ? TM_OK : tm_fail_memory(error), error);
+    tm_status status =
+        tm_ranks_agree(count && own ? TM_OK : tm_fail_memory(error), error);
     if (status == TM_OK)
         status = tm_ranks_exchange(answer, mail->got_count, size, &sorted, count, error);
     for (size_t k = 0; k < mail->items && status == TM_OK; k++)

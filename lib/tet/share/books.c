@@ -54,8 +54,8 @@ tm_status tm_tet_share_any(const tm_tet_share *share, bool *flag, size_t count,
     for (size_t v = 0; v < count && item; v++)
         item[v] = (flagged){share->number[v], flag[v]};
     tm_status status = address(&mail, share, count, error);
-    status = tm_ranks_agree(status == TM_OK && !item ? tm_fail_memory(error) : status,
-                            error);
+    status =
+        tm_ranks_agree(status == TM_OK && !item ? tm_fail_memory(error) : status, error);
     if (status == TM_OK)
         status = tm_mail_send(&mail, item, sizeof *item, &got, error);
     if (status == TM_OK) {

@@ -175,8 +175,8 @@ tm_status tm_tet_share_deal_along(tm_tet_share *share, size_t parts, unsigned ro
                                   tm_error *error)
 {
     tm_tet_deal deal = {0};
-    tm_status status = make_deal(&deal, share, parts, round) ? TM_OK
-                                                             : tm_fail_memory(error);
+    tm_status status =
+        make_deal(&deal, share, parts, round) ? TM_OK : tm_fail_memory(error);
     if (status == TM_OK)
         status = tm_tet_share_deal(share, &deal, share, error);
     free(share->own);
@@ -281,8 +281,8 @@ static void find_homes(tm_tet_share *share)
 {
     const size_t ranks = tm_ranks_count();
     for (size_t r = 0; r <= ranks; r++)
-        share->home[r] = share->all_nodes / ranks * r +
-                         share->all_nodes % ranks * r / ranks;
+        share->home[r] =
+            share->all_nodes / ranks * r + share->all_nodes % ranks * r / ranks;
 }
 
 tm_status tm_tet_share_join(tm_tet_share *share, tm_tet_parts *parts, unsigned threads,

@@ -32,8 +32,7 @@ void tm_tet_deal_free(tm_tet_deal *deal)
 static tm_status exchange(void **list, const size_t *count, size_t size, void **got,
                           size_t *got_count, size_t *all, tm_error *error)
 {
-    const tm_status status =
-        tm_ranks_exchange(*list, count, size, got, got_count, error);
+    const tm_status status = tm_ranks_exchange(*list, count, size, got, got_count, error);
     free(*list);
     *list = NULL;
     *all = 0;

@@ -99,8 +99,7 @@ static bool make_nodes(const giving *give, tm_block *block, const homing *got,
             row[v] = (uint32_t)rows++;
     const size_t before = tm_ranks_before(rows, NULL);
     tm_error error;
-    const bool done =
-        row && tm_block_allocate(block, rows, 0, &error) == TM_OK;
+    const bool done = row && tm_block_allocate(block, rows, 0, &error) == TM_OK;
     for (size_t k = 0; k < count && done; k++) {
         const size_t r = row[got[k].number - first];
         memcpy(block->real + 3 * r, got[k].xyz, sizeof got[k].xyz);
@@ -136,8 +135,8 @@ static tm_status send_nodes(giving *give, const node_list *list, tm_block *block
     if (status == TM_OK)
         status = tm_mail_send(&mail, list->node, sizeof *list->node, &got, error);
     if (status == TM_OK && block->attributes > 0)
-        status = tm_mail_send(&mail, list->attribute,
-                              block->attributes * sizeof(double), &attribute, error);
+        status = tm_mail_send(&mail, list->attribute, block->attributes * sizeof(double),
+                              &attribute, error);
     if (status == TM_OK) {
         answer = tm_new(mail.got, sizeof *answer);
         bool done = !tm_ranks_any(!answer);
@@ -160,8 +159,7 @@ static tm_status give_nodes(giving *give)
 {
     node_list list;
     tm_block *block = tm_stream_find(&give->slices->stream, ".node");
-    tm_status status =
-        list_nodes(&list, give) ? TM_OK : tm_fail_memory(give->error);
+    tm_status status = list_nodes(&list, give) ? TM_OK : tm_fail_memory(give->error);
     status = tm_ranks_agree(status, give->error);
     if (status == TM_OK)
         status = send_nodes(give, &list, block);

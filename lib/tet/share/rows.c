@@ -42,8 +42,8 @@ static tm_status send_home(const tm_tet_share *share, const tm_block *block,
 }
 
 /* From the home to all ranks that have the first node. */
-static tm_status send_on(const tm_tet_share *share, const tm_share_book *book,
-                         row **rows, size_t *count, tm_error *error)
+static tm_status send_on(const tm_tet_share *share, const tm_share_book *book, row **rows,
+                         size_t *count, tm_error *error)
 {
     const size_t first = share->home[tm_rank()];
     size_t all = 0, k = 0;
@@ -242,8 +242,7 @@ static tm_status take_edges(tm_tet_share *share, const tm_slices *slices,
         const uint32_t *n = rows[k].node;
         *can &= !tm_tet_mesh_edge(mesh, n[0], n[1]);
         tm_edge_map_put(&mesh->edge_of, n[0], n[1], (uint32_t)mesh->edges);
-        mesh->edge[mesh->edges++] =
-            (tm_marked_edge){{n[0], n[1]}, rows[k].marker, false};
+        mesh->edge[mesh->edges++] = (tm_marked_edge){{n[0], n[1]}, rows[k].marker, false};
     }
     free(rows);
     const tm_block *block = tm_stream_find(&slices->stream, ".edge");

@@ -20,7 +20,8 @@ typedef struct taking {
     tm_error *error;
 } taking;
 
-/* Whether all can go on: not where one has failed, or has met what it leaves to others. */
+/* Whether all can go on: not where one has failed, or has met what it leaves to others.
+ */
 static bool goes_on(const taking *take, tm_status *status)
 {
     *status = tm_ranks_agree(*status, take->error);
@@ -108,9 +109,8 @@ static tm_status fetch_nodes(taking *take)
     to->node_attribute = width > 0 ? tm_new(nodes * width, sizeof(double)) : NULL;
     to->node_marker = from->node_marker ? tm_new(nodes, sizeof *to->node_marker) : NULL;
     share->due = tm_new(nodes, sizeof *share->due);
-    if (status == TM_OK &&
-        (!to->xyz || (width > 0 && !to->node_attribute) ||
-         (from->node_marker && !to->node_marker) || !share->due))
+    if (status == TM_OK && (!to->xyz || (width > 0 && !to->node_attribute) ||
+                            (from->node_marker && !to->node_marker) || !share->due))
         status = tm_fail_memory(error);
     status = tm_ranks_agree(status, error);
     for (size_t v = 0; v < nodes && status == TM_OK; v++)
@@ -119,13 +119,13 @@ static tm_status fetch_nodes(taking *take)
         status = tm_slices_fetch(from->xyz, share->all_nodes, sizeof *to->xyz,
                                  share->number, nodes, to->xyz, error);
     if (status == TM_OK && width > 0)
-        status =
-            tm_slices_fetch(from->node_attribute, share->all_nodes, width * sizeof(double),
-                            share->number, nodes, to->node_attribute, error);
+        status = tm_slices_fetch(from->node_attribute, share->all_nodes,
+                                 width * sizeof(double), share->number, nodes,
+                                 to->node_attribute, error);
     if (status == TM_OK && from->node_marker)
-        status = tm_slices_fetch(from->node_marker, share->all_nodes,
-                                 sizeof *to->node_marker, share->number, nodes,
-                                 to->node_marker, error);
+        status =
+            tm_slices_fetch(from->node_marker, share->all_nodes, sizeof *to->node_marker,
+                            share->number, nodes, to->node_marker, error);
     return status;
 }
 
@@ -228,8 +228,8 @@ static tm_status take_all(taking *take, size_t parts, tm_share_book *book)
     if (status == TM_OK)
         status = widen(take, book);
     if (status == TM_OK)
-        status = tm_share_take_rows(share, take->slices, book, &faces, take->can,
-                                    take->error);
+        status =
+            tm_share_take_rows(share, take->slices, book, &faces, take->can, take->error);
     if (!goes_on(take, &status))
         return status;
     status = connect(take);

@@ -74,8 +74,8 @@ static bool unpack_nodes(unpacking *u, const tm_tet_mesh *like)
         qsort(order, came, sizeof *order, compare);
     for (size_t k = 0; k < came && order; k++)
         nodes += k == 0 || order[k] >> 32 != order[k - 1] >> 32;
-    const bool done = order && u->node && make_nodes(u->to, nodes) &&
-                      make_values(&u->to->mesh, like);
+    const bool done =
+        order && u->node && make_nodes(u->to, nodes) && make_values(&u->to->mesh, like);
     for (size_t k = 0; k < came && done; k++) {
         if (k == 0 || order[k] >> 32 != order[k - 1] >> 32)
             unpack_node(u, (uint32_t)order[k]);
@@ -195,9 +195,7 @@ static void add_face(const unpacking *u, const uint32_t (*node)[3], uint32_t h,
     *face = (tm_constrained_face){.marker = from->marker, .listed = from->listed};
     memcpy(face->node, node[k], sizeof face->node);
     face->side[from->side] = h;
-    face->side[!from->side] = g != h            ? g
-                              : from->has_other ? 4 * u->to->beyond
-                                                : TM_NONE;
+    face->side[!from->side] = g != h ? g : from->has_other ? 4 * u->to->beyond : TM_NONE;
     mesh->neighbour[h / 4][h % 4] = (uint32_t)mesh->faces | TM_FACE_BIT;
     if (g != h)
         mesh->neighbour[g / 4][g % 4] = (uint32_t)mesh->faces | TM_FACE_BIT;
@@ -212,8 +210,8 @@ static tm_status connect(unpacking *u)
                                .item = (const uint32_t *)mesh->tet};
     const size_t faces = u->p->all[FACES];
     uint32_t(*node)[3] = tm_new(faces, sizeof *node);
-    tm_status status = node ? tm_face_mates(&u->mate, &view, u->error)
-                            : tm_fail_memory(u->error);
+    tm_status status =
+        node ? tm_face_mates(&u->mate, &view, u->error) : tm_fail_memory(u->error);
     if (status == TM_OK)
         status = tm_tet_mesh_reserve(mesh, 0, 0, faces, 0, u->error);
     if (status == TM_OK) {
@@ -248,8 +246,7 @@ static tm_status unpack_edges(const unpacking *u)
             if (tm_tet_mesh_edge(mesh, a, b))
                 continue;
             tm_edge_map_put(&mesh->edge_of, a, b, (uint32_t)mesh->edges);
-            mesh->edge[mesh->edges++] =
-                (tm_marked_edge){{a, b}, from->marker, false};
+            mesh->edge[mesh->edges++] = (tm_marked_edge){{a, b}, from->marker, false};
         }
         node += u->p->count[NODES][r];
     }
@@ -266,9 +263,8 @@ tm_status tm_packet_unpack(const packet *p, const tm_tet_mesh *like, tm_tet_shar
                              .inner_edges = like->inner_edges,
                              .inner_marked_edges = like->inner_marked_edges,
                              .flat = like->flat};
-    const bool done = unpack_nodes(&u, like) &&
-                      make_tets(&u, like, connected) && sort_tets(&u) &&
-                      unpack_tets(&u);
+    const bool done = unpack_nodes(&u, like) && make_tets(&u, like, connected) &&
+                      sort_tets(&u) && unpack_tets(&u);
     tm_status status = done ? TM_OK : tm_fail_memory(error);
     if (status == TM_OK && connected)
         status = connect(&u);
