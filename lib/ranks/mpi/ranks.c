@@ -41,6 +41,13 @@ unsigned tm_ranks_count(void)
     return (unsigned)world.count;
 }
 
+void tm_ranks_leave(void)
+{
+    tm_mpi_finish();
+    world.count = 1;
+    world.rank = 0;
+}
+
 void tm_ranks_end(int status)
 {
     if (world.count == 1)
