@@ -4,6 +4,7 @@
 #include "../../base/array.h"
 #include "../../mesh/cell_faces.h"
 #include "../../ranks/ranks.h"
+#include "vtk_grid.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -162,18 +163,6 @@ static row_at *list_rows(const tm_block *block, size_t *count)
     return at;
 }
 
-static bool has_all(const uint32_t *node, size_t k, const uint32_t *wanted, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        size_t j = 0;
-        while (j < k && node[j] != wanted[i])
-            j++;
-        if (j == k)
-            return false;
-    }
-    return true;
-}
-
 /* The first row with all these nodes, or TM_NONE. */
 static uint32_t row_with(const tm_block *block, const row_at *at, size_t count,
                          const uint32_t *wanted, size_t nodes)
@@ -188,7 +177,7 @@ static uint32_t row_with(const tm_block *block, const row_at *at, size_t count,
     }
     for (; begin < count && at[begin].node == *wanted; begin++) {
         const uint32_t *node = tm_row_nodes(block, at[begin].row, &k);
-        if (has_all(node, k, wanted, nodes))
+        if (tm_vtk_has_all(node, k, wanted, nodes))
             return at[begin].row;
     }
     return TM_NONE;
