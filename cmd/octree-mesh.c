@@ -404,10 +404,12 @@ int main(int argc, char **argv)
                     "and tetrahedra where octants of different size meet.",
                 .help = own_help,
                 .options = options,
-                .letters = "a:s:b:r:l:u" FILTER_LETTERS};
+                .letters = "a:s:b:r:l:u" FILTER_LETTERS,
+                .ranks = true};
     filter_start(&f, argc, argv);
     settings o = read_options(&f);
     filter_operands(&f);
+    filter_together(&f, false);
     o.surface.threads = f.threads;
     tm_surface surface;
     tm_stream stream;
