@@ -424,7 +424,7 @@ static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *su
     tm_progress_stage(progress, "projecting the layer");
     if (status == TM_OK)
         status = tm_project_layer(&m->assembly, &m->boundary, &m->feature, surface, m->at,
-                                  error);
+                                  m->share, error);
     if (status == TM_OK)
         status = tm_untangle_layer(m, octree, surface, progress, error);
     if (status == TM_OK && surface->walls)
@@ -481,6 +481,11 @@ tm_status tm_octree_mesh_make_of(tm_octree_mesh *mesh, const tm_octree *octree,
     return status;
 }
 
+size_t tm_octree_mesh_elements(const tm_octree_mesh *mesh)
+{
+    return mesh->share ? mesh->share->elements.all : mesh->assembly.mesh.elements;
+}
+
 void tm_octree_mesh_free(tm_octree_mesh *mesh)
 {
     for (size_t p = 0; p < mesh->parts; p++)
@@ -492,5 +497,8 @@ void tm_octree_mesh_free(tm_octree_mesh *mesh)
     free(mesh->region);
     free(mesh->at);
     free(mesh->off_surface);
+    if (mesh->share)
+        tm_mesh_share_free(mesh->share);
+    free(mesh->share);
     *mesh = (tm_octree_mesh){0};
 }
