@@ -125,6 +125,7 @@ public_headers := lib/termesh.h $(shell sed -n 's|^.include "\(.*\)"|lib/\1|p' l
 unit_tests := $(addprefix $(BUILD)/tests/,$(filter-out $(left_out),\
 	$(basename $(notdir $(wildcard tests/unit/test_*.c)))))
 oracles := $(patsubst tests/oracle/%.cc,$(BUILD)/tests/%,$(wildcard tests/oracle/*.cc))
+rank_tests := $(if $(has_p4est),$(patsubst tests/ranks/%.c,$(BUILD)/ranks/%,$(wildcard tests/ranks/*.c)))
 fuzzer := $(BUILD)/fuzz/fuzz
 solver := $(BUILD)/solve/poisson
 benchers := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/*.c))
@@ -260,8 +261,13 @@ $(solver): $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/solve/*.c)) $(library)
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lcholmod $(LDLIBS)
 
+# Programs that mpirun starts.
+$(rank_tests): $(BUILD)/ranks/%: $(BUILD)/tests/ranks/%.o $(ranks_object) $(library)
+	@mkdir -p $(@D)
+	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) $(LDLIBS)
+
 # What the tests run.
-tests: all $(unit_tests) $(oracles) $(fuzzer) $(solver) $(shapes)
+tests: all $(rank_tests) $(unit_tests) $(oracles) $(fuzzer) $(solver) $(shapes)
 
 check: tests
 	sh tests/run.sh $(BUILD) $(ONLY)
