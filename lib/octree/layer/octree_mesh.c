@@ -4,6 +4,7 @@
 #include "../../base/array.h"
 #include "../../base/disjoint_sets.h"
 #include "../../base/parallel.h"
+#include "../../ranks/ranks.h"
 #include "../../surface/surface_tree.h"
 #include "../interior/region_leaves.h"
 #include "octree_mesh_parts.h"
@@ -403,6 +404,21 @@ static double find_worst(const tm_mixed_mesh *mesh)
     return worst;
 }
 
+tm_status tm_octree_mesh_make_elements(tm_octree_mesh *m, const tm_octree *octree,
+                                       const tm_surface *surface,
+                                       const tm_progress *progress, tm_error *error)
+{
+    tm_progress_stage(progress, "assembling elements");
+    tm_status status =
+        tm_assemble(&m->assembly, octree, m->part, m->parts, &m->boundary, error);
+    tm_progress_stage(progress, "projecting the layer");
+    if (status == TM_OK)
+        status = tm_project_layer(&m->assembly, &m->boundary, &m->feature, surface, m->at,
+                                  m->share, error);
+    return status == TM_OK ? tm_untangle_layer(m, octree, surface, progress, error)
+                           : status;
+}
+
 static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *surface,
                       const tm_progress *progress, tm_error *error)
 {
@@ -417,16 +433,10 @@ static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *su
     tm_progress_stage(progress, "matching features");
     if (status == TM_OK)
         status = tm_feature_find(&m->feature, &m->boundary, surface, m->at, error);
-    tm_progress_stage(progress, "assembling elements");
-    if (status == TM_OK)
-        status =
-            tm_assemble(&m->assembly, octree, m->part, m->parts, &m->boundary, error);
-    tm_progress_stage(progress, "projecting the layer");
-    if (status == TM_OK)
-        status = tm_project_layer(&m->assembly, &m->boundary, &m->feature, surface, m->at,
-                                  m->share, error);
-    if (status == TM_OK)
-        status = tm_untangle_layer(m, octree, surface, progress, error);
+    if (status == TM_OK && tm_ranks_count() > 1)
+        status = tm_octree_mesh_make_on_ranks(m, octree, surface, progress, error);
+    else if (status == TM_OK)
+        status = tm_octree_mesh_make_elements(m, octree, surface, progress, error);
     if (status == TM_OK && surface->walls)
         r->worst = find_worst(&m->assembly.mesh);
     if (status == TM_OK && surface->walls)

@@ -76,4 +76,16 @@ tm_status tm_untangle_layer(tm_octree_mesh *mesh, const tm_octree *octree,
                             const tm_surface *surface, const tm_progress *progress,
                             tm_error *error);
 
+/* octree_mesh.c */
+
+/* Makes the elements and moves their nodes, of a mesh with boundary and features. */
+tm_status tm_octree_mesh_make_elements(tm_octree_mesh *mesh, const tm_octree *octree,
+                                       const tm_surface *surface,
+                                       const tm_progress *progress, tm_error *error);
+
+/* octree_mesh_ranks.c: the same on all ranks, each for its share. */
+tm_status tm_octree_mesh_make_on_ranks(tm_octree_mesh *mesh, const tm_octree *octree,
+                                       const tm_surface *surface,
+                                       const tm_progress *progress, tm_error *error);
+
 #endif

@@ -63,10 +63,10 @@ static uint32_t local_node(const worker *w, uint32_t s)
     return here < b->nodes && b->grid_node[here] == n ? (uint32_t)here : TM_NONE;
 }
 
-static void cut_faces(const worker *w)
+static void cut_faces(worker *w)
 {
     const tm_interior_boundary *from = &w->whole->boundary;
-    tm_interior_boundary *to = &w->local.boundary;
+    const tm_interior_boundary *to = &w->local.boundary;
     for (size_t f = 0; f < to->faces; f++) {
         const uint32_t leaf = w->share.leaf_number[to->leaf[f]];
         size_t g = tm_first_not_below(from->leaf, from->faces, leaf);
@@ -102,8 +102,8 @@ static tm_status cut_features(worker *w, tm_error *error)
 
 static tm_status cut(worker *w, tm_error *error)
 {
-    tm_status status = tm_octree_share_cut(&w->share, w->octree, tm_rank(),
-                                           tm_ranks_count(), 1, error);
+    tm_status status =
+        tm_octree_share_cut(&w->share, w->octree, tm_rank(), tm_ranks_count(), 1, error);
     w->share.octree.threads = w->octree->threads;
     if (status == TM_OK)
         status = cut_interior(w, error);
@@ -156,7 +156,8 @@ static tm_status share_elements(worker *w, tm_error *error)
     const tm_mixed_mesh *mesh = &l->assembly.mesh;
     tm_assembly *to = &w->whole->assembly;
     const size_t first = s->elements.first, count = s->elements.past - first;
-    const size_t begin = mesh->start[first], items = mesh->start[s->elements.past] - begin;
+    const size_t begin = mesh->start[first],
+                 items = mesh->start[s->elements.past] - begin;
     uint32_t *item = tm_new(items, sizeof *item);
     uint32_t *size = tm_new(count, sizeof *size);
     uint32_t *from = tm_new(w->share.own_past - w->share.own_first, sizeof *from);
@@ -211,8 +212,7 @@ static tm_status share_boundary(worker *w, tm_error *error)
         l->assembly.layer[f] += (uint32_t)(s->elements.number - s->elements.first);
     tm_status status = share_own(s->outer, l->at, sizeof *l->at, &at, error);
     if (status == TM_OK)
-        status =
-            share_own(s->outer, l->off_surface, sizeof *l->off_surface, &off, error);
+        status = share_own(s->outer, l->off_surface, sizeof *l->off_surface, &off, error);
     if (status == TM_OK)
         status = share_own(s->faces, l->assembly.layer, sizeof *l->assembly.layer, &layer,
                            error);
