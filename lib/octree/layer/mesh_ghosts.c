@@ -2,6 +2,7 @@
 #include "mesh_ghosts.h"
 
 #include "../../base/array.h"
+#include "../../base/disjoint_sets.h"
 #include "../../ranks/ranks.h"
 
 #include <stdlib.h>
@@ -55,17 +56,17 @@ static void list_received(list *l, const tm_octree_share *s, unsigned r,
         append(l, of_leaf[k]);
 }
 
-static bool start(tm_ghosts *g, unsigned ranks)
+static bool start(tm_mesh_ghosts *g, unsigned ranks)
 {
-    *g = (tm_ghosts){.ranks = ranks,
-                     .sends = calloc(ranks + 1, sizeof *g->sends),
-                     .receives = calloc(ranks + 1, sizeof *g->receives)};
+    *g = (tm_mesh_ghosts){.ranks = ranks,
+                          .sends = calloc(ranks + 1, sizeof *g->sends),
+                          .receives = calloc(ranks + 1, sizeof *g->receives)};
     return g->sends && g->receives;
 }
 
-tm_status tm_ghosts_find(tm_ghosts *g, const tm_octree_share *share,
-                         const uint32_t *const *of_node, size_t lists,
-                         const uint32_t *of_leaf, tm_error *error)
+tm_status tm_mesh_ghosts_find(tm_mesh_ghosts *g, const tm_octree_share *share,
+                              const uint32_t *const *of_node, size_t lists,
+                              const uint32_t *of_leaf, tm_error *error)
 {
     bool done = start(g, share->ranks);
     list sent = {.item = &g->sent}, received = {.item = &g->received};
@@ -79,8 +80,8 @@ tm_status tm_ghosts_find(tm_ghosts *g, const tm_octree_share *share,
     return tm_ranks_agree(done ? TM_OK : tm_fail_memory(error), error);
 }
 
-tm_status tm_ghosts_some(tm_ghosts *some, const tm_ghosts *all, const bool *kept,
-                         tm_error *error)
+tm_status tm_mesh_ghosts_some(tm_mesh_ghosts *some, const tm_mesh_ghosts *all,
+                              const bool *kept, tm_error *error)
 {
     bool done = start(some, all->ranks);
     list sent = {.item = &some->sent}, received = {.item = &some->received};
@@ -96,13 +97,13 @@ tm_status tm_ghosts_some(tm_ghosts *some, const tm_ghosts *all, const bool *kept
     return tm_ranks_agree(done ? TM_OK : tm_fail_memory(error), error);
 }
 
-void tm_ghosts_free(tm_ghosts *g)
+void tm_mesh_ghosts_free(tm_mesh_ghosts *g)
 {
     free(g->sends);
     free(g->receives);
     free(g->sent);
     free(g->received);
-    *g = (tm_ghosts){0};
+    *g = (tm_mesh_ghosts){0};
 }
 
 /* Sends value[item[start[r]]] … to rank r; *got is what comes. */
@@ -125,7 +126,8 @@ static tm_status exchange(unsigned ranks, const size_t *start, const uint32_t *i
     return status;
 }
 
-tm_status tm_ghosts_fill(const tm_ghosts *g, void *value, size_t size, tm_error *error)
+tm_status tm_mesh_ghosts_fill(const tm_mesh_ghosts *g, void *value, size_t size,
+                              tm_error *error)
 {
     void *got;
     const tm_status status =
@@ -136,7 +138,7 @@ tm_status tm_ghosts_fill(const tm_ghosts *g, void *value, size_t size, tm_error 
     return status;
 }
 
-tm_status tm_ghosts_mark(const tm_ghosts *g, bool *mark, tm_error *error)
+tm_status tm_mesh_ghosts_mark(const tm_mesh_ghosts *g, bool *mark, tm_error *error)
 {
     void *got;
     const tm_status status = exchange(g->ranks, g->receives, g->received,
@@ -144,5 +146,44 @@ tm_status tm_ghosts_mark(const tm_ghosts *g, bool *mark, tm_error *error)
     for (size_t i = 0; status == TM_OK && i < g->sends[g->ranks]; i++)
         mark[g->sent[i]] |= ((const bool *)got)[i];
     free(got);
-    return status == TM_OK ? tm_ghosts_fill(g, mark, sizeof *mark, error) : status;
+    return status == TM_OK ? tm_mesh_ghosts_fill(g, mark, sizeof *mark, error) : status;
+}
+
+/* Makes the numbers of things the least of those that ranks have for them. */
+static tm_status find_least(const tm_mesh_ghosts *g, uint32_t *value, tm_error *error)
+{
+    void *got;
+    const tm_status status = exchange(g->ranks, g->receives, g->received,
+                                      (const char *)value, sizeof *value, &got, error);
+    for (size_t i = 0; status == TM_OK && i < g->sends[g->ranks]; i++) {
+        const uint32_t other = ((const uint32_t *)got)[i];
+        if (other < value[g->sent[i]])
+            value[g->sent[i]] = other;
+    }
+    free(got);
+    return status == TM_OK ? tm_mesh_ghosts_fill(g, value, sizeof *value, error) : status;
+}
+
+tm_status tm_mesh_ghosts_join(const tm_mesh_ghosts *g, const uint32_t *number,
+                              uint32_t *parent, size_t things, uint32_t *label,
+                              tm_error *error)
+{
+    uint32_t *least = tm_new(things, sizeof *least); /* at roots */
+    tm_status status = tm_ranks_agree(least ? TM_OK : tm_fail_memory(error), error);
+    for (uint32_t i = 0; status == TM_OK && i < things; i++)
+        least[i] = number[i]; /* a root is the first of its set */
+    for (bool more = true; more && status == TM_OK;) {
+        for (uint32_t i = 0; i < things; i++)
+            label[i] = least[tm_set_root(parent, i)];
+        status = find_least(g, label, error);
+        more = false;
+        for (uint32_t i = 0; status == TM_OK && i < things; i++) {
+            const uint32_t root = tm_set_root(parent, i);
+            more |= label[i] < least[root];
+            least[root] = label[i] < least[root] ? label[i] : least[root];
+        }
+        more = tm_ranks_any(more);
+    }
+    free(least);
+    return status;
 }

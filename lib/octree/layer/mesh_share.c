@@ -6,8 +6,8 @@
 
 #include <stdlib.h>
 
-/* Those of an ascending list of places whose places are [first, past). */
-static tm_own_range own_of(const uint32_t *place, size_t count, size_t first, size_t past)
+tm_own_range tm_own_range_of(const uint32_t *place, size_t count, size_t first,
+                             size_t past)
 {
     tm_own_range own = {.first = tm_first_not_below(place, count, (uint32_t)first),
                         .past = tm_first_not_below(place, count, (uint32_t)past)};
@@ -41,7 +41,7 @@ static tm_status find_ghosts(tm_mesh_share *s, const tm_assembly *a,
         middle[a->middle_leaf[m]] = (uint32_t)(a->core + boundary->nodes + m);
     const uint32_t *of_node[] = {a->core_node[0], outer};
     if (status == TM_OK)
-        status = tm_ghosts_find(&s->ghosts, s->of, of_node, 2, middle, error);
+        status = tm_mesh_ghosts_find(&s->ghosts, s->of, of_node, 2, middle, error);
     free(outer);
     free(middle);
     return status;
@@ -52,11 +52,13 @@ tm_status tm_mesh_share_find(tm_mesh_share *s, const tm_octree_share *of,
                              tm_error *error)
 {
     *s = (tm_mesh_share){.of = of, .number = tm_new(a->mesh.nodes, sizeof *s->number)};
-    s->core = own_of(a->grid_node, a->core, of->own_node_first, of->own_node_past);
-    s->outer = own_of(boundary->grid_node, boundary->nodes, of->own_node_first,
-                      of->own_node_past);
-    s->middles = own_of(a->middle_leaf, a->middles, of->own_first, of->own_past);
-    s->faces = own_of(boundary->leaf, boundary->faces, of->own_first, of->own_past);
+    s->core =
+        tm_own_range_of(a->grid_node, a->core, of->own_node_first, of->own_node_past);
+    s->outer = tm_own_range_of(boundary->grid_node, boundary->nodes, of->own_node_first,
+                               of->own_node_past);
+    s->middles = tm_own_range_of(a->middle_leaf, a->middles, of->own_first, of->own_past);
+    s->faces =
+        tm_own_range_of(boundary->leaf, boundary->faces, of->own_first, of->own_past);
     s->elements.first = a->first[of->own_first];
     s->elements.past = a->first[of->own_past];
     s->elements.number =
@@ -76,13 +78,13 @@ tm_status tm_mesh_share_find(tm_mesh_share *s, const tm_octree_share *of,
     number_own(s->number, s->outer, a->outer, s->core.all);
     number_own(s->number, s->middles, a->core + boundary->nodes,
                s->core.all + s->outer.all);
-    return tm_ghosts_fill(&s->ghosts, s->number, sizeof *s->number, error);
+    return tm_mesh_ghosts_fill(&s->ghosts, s->number, sizeof *s->number, error);
 }
 
 void tm_mesh_share_free(tm_mesh_share *s)
 {
     free(s->number);
-    tm_ghosts_free(&s->ghosts);
+    tm_mesh_ghosts_free(&s->ghosts);
     *s = (tm_mesh_share){0};
 }
 

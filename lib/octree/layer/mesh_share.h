@@ -13,6 +13,11 @@ typedef struct tm_own_range {
     size_t first, past, number, all;
 } tm_own_range;
 
+/* Of an ascending list of places those that are [first, past), behind those of the ranks
+ * before this one. All ranks call it. */
+tm_own_range tm_own_range_of(const uint32_t *place, size_t count, size_t first,
+                             size_t past);
+
 /* Nodes and elements are in the order of the whole mesh. A node is of the rank that has
  * its node of the octree, or its leaf, which has all elements around it. */
 typedef struct tm_mesh_share {
@@ -22,7 +27,7 @@ typedef struct tm_mesh_share {
     tm_own_range elements, faces;      /* faces of the interior boundary */
     size_t nodes;                      /* of the whole mesh */
     uint32_t *number;                  /* [nodes of the mesh]: in the whole mesh */
-    tm_ghosts ghosts;                  /* of its nodes */
+    tm_mesh_ghosts ghosts;             /* of its nodes */
 } tm_mesh_share;
 
 /* Finds it, of an assembly in one part. TM_ERROR_SYSTEM where memory is out, or the whole

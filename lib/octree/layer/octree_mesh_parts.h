@@ -76,16 +76,19 @@ tm_status tm_untangle_layer(tm_octree_mesh *mesh, const tm_octree *octree,
                             const tm_surface *surface, const tm_progress *progress,
                             tm_error *error);
 
-/* octree_mesh.c */
+/* octree_mesh.c: what octree_mesh_ranks.c does, too. */
 
-/* Makes the elements and moves their nodes, of a mesh with boundary and features. */
-tm_status tm_octree_mesh_make_elements(tm_octree_mesh *mesh, const tm_octree *octree,
-                                       const tm_surface *surface,
-                                       const tm_progress *progress, tm_error *error);
+/* That there is nothing to make. */
+tm_status tm_octree_mesh_fail_empty(tm_error *error);
 
-/* octree_mesh_ranks.c: the same on all ranks, each for its share. */
-tm_status tm_octree_mesh_make_on_ranks(tm_octree_mesh *mesh, const tm_octree *octree,
-                                       const tm_surface *surface,
-                                       const tm_progress *progress, tm_error *error);
+/* Fills of the report what regions and features are lost, of a mesh that is made. */
+tm_status tm_octree_mesh_complete_report(tm_octree_mesh *mesh, const tm_octree *octree,
+                                         const tm_surface *surface, tm_error *error);
+
+/* closest_on_ranks.c: fills at[] of own nodes of the boundary, and makes off_surface[].
+ * All ranks call it. */
+tm_status tm_octree_mesh_find_closest_on_ranks(tm_octree_mesh *mesh, tm_own_range own,
+                                               const tm_surface *surface,
+                                               tm_error *error);
 
 #endif

@@ -1,269 +1,273 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The mesh on several ranks: each has the octree with its interior boundary and features
- * whole, makes the elements of its share, and gets those of all. */
-#include "octree_mesh_parts.h"
+/* The mesh of a share of an octree: each rank has that of its leaves and of the ghosts
+ * around them. */
+#include "octree_mesh_ranks.h"
 
 #include "../../base/array.h"
+#include "../../base/disjoint_sets.h"
 #include "../../ranks/ranks.h"
+#include "../../surface/surface_tree.h"
+#include "octree_mesh_parts.h"
+#include "skin.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 typedef struct {
-    tm_octree_mesh *whole;
-    const tm_octree *octree;
-    tm_octree_share share;
-    tm_octree_mesh local;
-} worker;
+    tm_octree_mesh *mesh;
+    const tm_octree_share *share;
+    tm_surface *surface;
+    tm_boundary_share boundary;
+} maker;
 
-/* What is chosen of local leaves, and at local nodes. */
-static tm_status cut_interior(worker *w, tm_error *error)
+/* A piece of the boundary, or what a rank has of it. */
+typedef struct {
+    uint32_t label;
+    double volume; /* six times that which it encloses; negative: a hollow */
+} piece;
+
+static int compare_pieces(const void *a, const void *b)
 {
-    const tm_interior *from = w->whole->part;
-    const tm_octree_share *s = &w->share;
-    tm_interior *to = w->local.part = calloc(1, sizeof *to);
-    if (!to)
-        return tm_fail_memory(error);
-    w->local.parts = 1;
-    to->chosen = tm_new(s->octree.leaves, sizeof *to->chosen);
-    to->mask = tm_new(s->octree.nodes, sizeof *to->mask);
-    to->used = tm_new(s->octree.nodes, sizeof *to->used);
-    if (!to->chosen || !to->mask || !to->used)
-        return tm_fail_memory(error);
-    for (size_t l = 0; l < s->octree.leaves; l++) {
-        to->chosen[l] = from->chosen[s->leaf_number[l]];
-        to->count += to->chosen[l];
+    const piece *p = a, *q = b;
+    return (p->label > q->label) - (p->label < q->label);
+}
+
+/* Six times the volume between the origin and triangle abc of boundary nodes. */
+static double cone(const tm_interior_boundary *b, uint32_t i, uint32_t j, uint32_t k)
+{
+    const uint32_t *p = b->grid[i], *q = b->grid[j], *r = b->grid[k];
+    const double px = p[0], py = p[1], pz = p[2];
+    return px * ((double)q[1] * r[2] - (double)q[2] * r[1]) +
+           py * ((double)q[2] * r[0] - (double)q[0] * r[2]) +
+           pz * ((double)q[0] * r[1] - (double)q[1] * r[0]);
+}
+
+/* What this rank has of pieces: one for each of its faces, those of a label joined. */
+static size_t list_pieces(const maker *m, const uint32_t *label, piece *list)
+{
+    const tm_interior_boundary *b = &m->mesh->boundary;
+    size_t count = 0, joined = 0;
+    for (size_t f = m->boundary.faces.first; f < m->boundary.faces.past; f++) {
+        const uint32_t *face = b->face[f];
+        piece *p = &list[count++];
+        *p = (piece){label[face[0]], cone(b, face[0], face[1], face[2])};
+        if (tm_boundary_face_corners(b, f) == 4)
+            p->volume += cone(b, face[0], face[2], face[3]);
     }
-    for (size_t n = 0; n < s->octree.nodes; n++) {
-        to->mask[n] = from->mask[s->node_number[n]];
-        to->used[n] = from->used[s->node_number[n]];
-    }
-    return TM_OK;
+    if (count > 0)
+        qsort(list, count, sizeof *list, compare_pieces);
+    for (size_t i = 0; i < count; i++)
+        if (joined > 0 && list[joined - 1].label == list[i].label)
+            list[joined - 1].volume += list[i].volume;
+        else
+            list[joined++] = list[i];
+    return joined;
 }
 
-/* The whole boundary's number of a local node of it, and the other way. */
-static size_t whole_node(const worker *w, size_t s)
+/* Whether any piece is that of a hollow. */
+static tm_status find_hollows(const maker *m, const uint32_t *label, bool *hollow,
+                              tm_error *error)
 {
-    const tm_interior_boundary *b = &w->whole->boundary;
-    return tm_first_not_below(b->grid_node, b->nodes,
-                              w->share.node_number[w->local.boundary.grid_node[s]]);
-}
-
-static uint32_t local_node(const worker *w, uint32_t s)
-{
-    const tm_interior_boundary *b = &w->local.boundary;
-    if (s == TM_NONE)
-        return s;
-    const uint32_t number = w->whole->boundary.grid_node[s];
-    const size_t n =
-        tm_first_not_below(w->share.node_number, w->share.octree.nodes, number);
-    if (n == w->share.octree.nodes || w->share.node_number[n] != number)
-        return TM_NONE;
-    const size_t here = tm_first_not_below(b->grid_node, b->nodes, (uint32_t)n);
-    return here < b->nodes && b->grid_node[here] == n ? (uint32_t)here : TM_NONE;
-}
-
-static void cut_faces(worker *w)
-{
-    const tm_interior_boundary *from = &w->whole->boundary;
-    const tm_interior_boundary *to = &w->local.boundary;
-    for (size_t f = 0; f < to->faces; f++) {
-        const uint32_t leaf = w->share.leaf_number[to->leaf[f]];
-        size_t g = tm_first_not_below(from->leaf, from->faces, leaf);
-        while (from->piece[g] != to->piece[f])
-            g++;
-        to->cut[f] = from->cut[g];
-    }
-}
-
-static tm_status cut_features(worker *w, tm_error *error)
-{
-    const size_t nodes = w->local.boundary.nodes;
-    tm_feature *to = &w->local.feature;
-    const tm_feature *from = &w->whole->feature;
-    to->kind = tm_new(nodes, sizeof *to->kind);
-    to->of = tm_new(nodes, sizeof *to->of);
-    to->along = tm_new(nodes, sizeof *to->along);
-    w->local.at = tm_new(nodes, sizeof *w->local.at);
-    w->local.off_surface = calloc(nodes + 1, sizeof *w->local.off_surface);
-    if (!to->kind || !to->of || !to->along || !w->local.at || !w->local.off_surface)
-        return tm_fail_memory(error);
-    for (size_t s = 0; s < nodes; s++) {
-        const size_t t = whole_node(w, s);
-        to->kind[s] = from->kind[t];
-        to->of[s] = from->of[t];
-        w->local.at[s] = w->whole->at[t];
-        for (int i = 0; i < 2; i++)
-            to->along[s][i] = local_node(w, from->along[t][i]);
-    }
-    cut_faces(w);
-    return TM_OK;
-}
-
-static tm_status cut(worker *w, tm_error *error)
-{
-    tm_status status =
-        tm_octree_share_cut(&w->share, w->octree, tm_rank(), tm_ranks_count(), 1, error);
-    w->share.octree.threads = w->octree->threads;
+    piece *list = tm_new(m->boundary.faces.past - m->boundary.faces.first, sizeof *list);
+    void *got = NULL;
+    size_t total = 0;
+    tm_status status = tm_ranks_agree(list ? TM_OK : tm_fail_memory(error), error);
     if (status == TM_OK)
-        status = cut_interior(w, error);
-    if (status == TM_OK)
-        status = tm_interior_boundary_find(&w->local.boundary, &w->share.octree,
-                                           w->local.part, error);
-    return status == TM_OK ? cut_features(w, error) : status;
-}
-
-/* The items of all ranks' own ranges. */
-static tm_status share_own(tm_own_range own, const void *items, size_t size, void **all,
-                           tm_error *error)
-{
-    return tm_ranks_share((const char *)items + own.first * size, own.past - own.first,
-                          size, all, NULL, error);
-}
-
-static tm_status share_nodes(worker *w, tm_error *error)
-{
-    const tm_octree_mesh *l = &w->local;
-    const tm_mesh_share *s = l->share;
-    const double(*xyz)[3] = (const double(*)[3])l->assembly.mesh.xyz;
-    const size_t begin[] = {0, l->assembly.outer,
-                            l->assembly.mesh.nodes - l->assembly.middles};
-    const tm_own_range own[] = {s->core, s->outer, s->middles};
-    tm_assembly *to = &w->whole->assembly;
-    to->mesh.nodes = s->nodes;
-    to->outer = (uint32_t)s->core.all;
-    to->core = s->core.all;
-    to->middles = s->middles.all;
-    to->mesh.xyz = tm_new(s->nodes, sizeof *to->mesh.xyz);
-    tm_status status =
-        tm_ranks_agree(to->mesh.xyz ? TM_OK : tm_fail_memory(error), error);
-    size_t at = 0;
-    for (int i = 0; i < 3 && status == TM_OK; i++) {
-        void *all;
-        status = share_own(own[i], xyz + begin[i], sizeof *xyz, &all, error);
-        if (status == TM_OK && own[i].all > 0)
-            memcpy(to->mesh.xyz + at, all, own[i].all * sizeof *xyz);
-        at += own[i].all;
-        free(all);
+        status = tm_ranks_share(list, list_pieces(m, label, list), sizeof *list, &got,
+                                &total, error);
+    piece *all = got;
+    if (status == TM_OK && total > 0)
+        qsort(all, total, sizeof *all, compare_pieces);
+    double volume = 0;
+    *hollow = false;
+    for (size_t i = 0; status == TM_OK && i < total; i++) {
+        volume = (i > 0 && all[i].label == all[i - 1].label ? volume : 0) + all[i].volume;
+        if (i + 1 == total || all[i + 1].label != all[i].label)
+            *hollow |= volume < 0;
     }
+    free(list);
+    free(all);
     return status;
 }
 
-static tm_status share_elements(worker *w, tm_error *error)
+/* The pieces of the boundary, its Euler number, and whether one is of a hollow. */
+static tm_status measure_boundary(const maker *m, bool *hollow, tm_error *error)
 {
-    const tm_octree_mesh *l = &w->local;
-    const tm_mesh_share *s = l->share;
-    const tm_mixed_mesh *mesh = &l->assembly.mesh;
-    tm_assembly *to = &w->whole->assembly;
-    const size_t first = s->elements.first, count = s->elements.past - first;
-    const size_t begin = mesh->start[first],
-                 items = mesh->start[s->elements.past] - begin;
-    uint32_t *item = tm_new(items, sizeof *item);
-    uint32_t *size = tm_new(count, sizeof *size);
-    uint32_t *from = tm_new(w->share.own_past - w->share.own_first, sizeof *from);
-    void *all_items = NULL, *sizes = NULL, *all_first = NULL;
-    to->mesh.elements = s->elements.all;
-    to->mesh.threads = mesh->threads;
-    to->mesh.start = tm_new(s->elements.all + 1, sizeof *to->mesh.start);
-    to->first = tm_new(s->of->all_leaves + 1, sizeof *to->first);
-    tm_status status = item && size && from && to->mesh.start && to->first
-                           ? TM_OK
-                           : tm_fail_memory(error);
+    const tm_interior_boundary *b = &m->mesh->boundary;
+    const tm_boundary_share *s = &m->boundary;
+    tm_octree_mesh_report *r = &m->mesh->report;
+    uint32_t *parent = tm_new(b->nodes, sizeof *parent);
+    uint32_t *label = tm_new(b->nodes, sizeof *label);
+    size_t sums[2] = {0, 0}; /* half edges, pieces */
+    tm_status status =
+        tm_ranks_agree(parent && label ? TM_OK : tm_fail_memory(error), error);
+    for (size_t i = 0; status == TM_OK && i < b->nodes; i++)
+        parent[i] = (uint32_t)i;
+    for (size_t f = s->faces.first; status == TM_OK && f < s->faces.past; f++) {
+        const unsigned k = tm_boundary_face_corners(b, f);
+        sums[0] += k;
+        for (unsigned i = 1; i < k; i++)
+            tm_set_unite(parent, b->face[f][0], b->face[f][i]);
+    }
+    if (status == TM_OK)
+        status =
+            tm_mesh_ghosts_join(&s->ghosts, s->number, parent, b->nodes, label, error);
+    for (size_t i = s->nodes.first; status == TM_OK && i < s->nodes.past; i++)
+        sums[1] += label[i] == s->number[i];
+    tm_ranks_sum(sums, 2);
+    if (status == TM_OK)
+        status = find_hollows(m, label, hollow, error);
+    r->components = r->outer_components = sums[1];
+    r->euler = r->outer_euler =
+        (int64_t)(s->nodes.all + s->faces.all) - (int64_t)(sums[0] / 2);
+    free(parent);
+    free(label);
+    return status;
+}
+
+static tm_status find_boundary(maker *m, bool *alone, tm_error *error)
+{
+    tm_octree_mesh *mesh = m->mesh;
+    bool hollow = false;
+    tm_status status =
+        tm_interior_boundary_find(&mesh->boundary, &m->share->octree, mesh->part, error);
     status = tm_ranks_agree(status, error);
-    if (status == TM_OK) {
-        for (size_t i = 0; i < items; i++)
-            item[i] = s->number[mesh->item[begin + i]];
-        for (size_t e = 0; e < count; e++)
-            size[e] = (uint32_t)(mesh->start[first + e + 1] - mesh->start[first + e]);
-        for (size_t i = w->share.own_first; i < w->share.own_past; i++)
-            from[i - w->share.own_first] =
-                (uint32_t)(l->assembly.first[i] - first + s->elements.number);
-        status = tm_ranks_share(item, items, sizeof *item, &all_items, NULL, error);
-    }
     if (status == TM_OK)
-        status = tm_ranks_share(size, count, sizeof *size, &sizes, NULL, error);
+        status = tm_boundary_share_find(&m->boundary, m->share, &mesh->boundary, error);
     if (status == TM_OK)
-        status = tm_ranks_share(from, w->share.own_past - w->share.own_first,
-                                sizeof *from, &all_first, NULL, error);
-    if (status == TM_OK) {
-        to->mesh.item = all_items;
-        all_items = NULL;
-        to->mesh.start[0] = 0;
-        for (size_t e = 0; e < s->elements.all; e++)
-            to->mesh.start[e + 1] = to->mesh.start[e] + ((uint32_t *)sizes)[e];
-        memcpy(to->first, all_first, s->of->all_leaves * sizeof *to->first);
-        to->first[s->of->all_leaves] = (uint32_t)s->elements.all;
-    }
-    free(item);
-    free(size);
-    free(from);
-    free(all_items);
-    free(sizes);
-    free(all_first);
-    return status;
+        status = measure_boundary(m, &hollow, error);
+    *alone = status == TM_OK && (mesh->report.components > m->surface->components ||
+                                 (hollow && m->surface->regions));
+    return status == TM_OK && !*alone ? tm_octree_mesh_find_closest_on_ranks(
+                                            mesh, m->boundary.nodes, m->surface, error)
+                                      : status;
 }
 
-static tm_status share_boundary(worker *w, tm_error *error)
+/* The boundary node here that has that number, or TM_NONE. */
+static uint32_t node_here(const maker *m, uint32_t number)
 {
-    tm_octree_mesh *l = &w->local;
-    const tm_mesh_share *s = l->share;
-    void *at = NULL, *off = NULL, *layer = NULL;
-    for (size_t f = s->faces.first; f < s->faces.past; f++)
-        l->assembly.layer[f] += (uint32_t)(s->elements.number - s->elements.first);
-    tm_status status = share_own(s->outer, l->at, sizeof *l->at, &at, error);
-    if (status == TM_OK)
-        status = share_own(s->outer, l->off_surface, sizeof *l->off_surface, &off, error);
-    if (status == TM_OK)
-        status = share_own(s->faces, l->assembly.layer, sizeof *l->assembly.layer, &layer,
-                           error);
-    free(w->whole->at);
-    free(w->whole->off_surface);
-    w->whole->at = at;
-    w->whole->off_surface = off;
-    w->whole->assembly.layer = layer;
-    return status;
+    const size_t nodes = m->mesh->boundary.nodes;
+    const size_t s = tm_first_not_below(m->boundary.number, nodes, number);
+    return s < nodes && m->boundary.number[s] == number ? (uint32_t)s : TM_NONE;
 }
 
-static tm_status make(worker *w, const tm_surface *surface, const tm_progress *progress,
-                      tm_error *error)
+/* This rank's part of the features of the whole boundary, and how that is cut. */
+static void take_features(const maker *m, const tm_feature *of,
+                          const tm_interior_boundary *skin)
 {
-    tm_octree_mesh *l = &w->local;
-    tm_status status = tm_ranks_agree(cut(w, error), error);
-    if (status != TM_OK)
+    tm_feature *to = &m->mesh->feature;
+    tm_interior_boundary *b = &m->mesh->boundary;
+    for (size_t s = 0; s < b->nodes; s++) {
+        const uint32_t n = m->boundary.number[s];
+        to->kind[s] = of->kind[n];
+        to->of[s] = of->of[n];
+        for (int i = 0; i < 2; i++)
+            to->along[s][i] =
+                of->along[n][i] == TM_NONE ? TM_NONE : node_here(m, of->along[n][i]);
+    }
+    for (size_t f = 0; f < b->faces; f++)
+        b->cut[f] = skin->cut[m->boundary.face_number[f]];
+    to->corners_lost = of->corners_lost;
+    to->curves_lost = of->curves_lost;
+    to->lost = of->lost;
+}
+
+/* They are found on all ranks alike, each of which changes the surface's patches. */
+static tm_status find_features(maker *m, tm_error *error)
+{
+    tm_octree_mesh *mesh = m->mesh;
+    tm_interior_boundary skin = {0}, none = {.nodes = mesh->boundary.nodes};
+    tm_surface bare = {0};
+    tm_feature feature = {0};
+    void *at = NULL;
+    tm_status status = tm_feature_find(&mesh->feature, &none, &bare, NULL, error);
+    status = tm_ranks_agree(status, error);
+    if (status != TM_OK || m->surface->corners + m->surface->curves == 0)
         return status;
+    status = tm_skin_gather(&skin, &m->boundary, &mesh->boundary, true, error);
+    if (status == TM_OK)
+        status = tm_own_gather(m->boundary.nodes, mesh->at, sizeof *mesh->at, true, &at,
+                               error);
+    if (status == TM_OK)
+        status = tm_ranks_agree(tm_feature_find(&feature, &skin, m->surface, at, error),
+                                error);
+    if (status == TM_OK)
+        take_features(m, &feature, &skin);
+    tm_feature_free(&feature);
+    tm_interior_boundary_free(&skin);
+    free(at);
+    return status;
+}
+
+static tm_status make_elements(const maker *m, const tm_progress *progress,
+                               tm_error *error)
+{
+    tm_octree_mesh *mesh = m->mesh;
     tm_progress_stage(progress, "assembling elements");
-    status = tm_assemble(&l->assembly, &w->share.octree, l->part, 1, &l->boundary, error);
-    l->share = calloc(1, sizeof *l->share);
-    if (status == TM_OK && !l->share)
+    tm_status status = tm_assemble(&mesh->assembly, &m->share->octree, mesh->part, 1,
+                                   &mesh->boundary, error);
+    mesh->share = calloc(1, sizeof *mesh->share);
+    if (status == TM_OK && !mesh->share)
         status = tm_fail_memory(error);
     status = tm_ranks_agree(status, error);
     if (status == TM_OK)
-        status =
-            tm_mesh_share_find(l->share, &w->share, &l->assembly, &l->boundary, error);
+        status = tm_mesh_share_find(mesh->share, m->share, &mesh->assembly,
+                                    &mesh->boundary, error);
     tm_progress_stage(progress, "projecting the layer");
     if (status == TM_OK)
-        status = tm_project_layer(&l->assembly, &l->boundary, &l->feature, surface, l->at,
-                                  l->share, error);
+        status = tm_project_layer(&mesh->assembly, &mesh->boundary, &mesh->feature,
+                                  m->surface, mesh->at, mesh->share, error);
     if (status == TM_OK)
-        status = tm_untangle_layer(l, &w->share.octree, surface, progress, error);
-    if (status == TM_OK)
-        status = share_nodes(w, error);
-    if (status == TM_OK)
-        status = share_elements(w, error);
-    if (status == TM_OK)
-        status = share_boundary(w, error);
-    w->whole->report.off_surface = l->report.off_surface;
-    w->whole->report.invalid = l->report.invalid;
+        status = tm_untangle_layer(mesh, &m->share->octree, m->surface, progress, error);
     return status;
 }
 
-tm_status tm_octree_mesh_make_on_ranks(tm_octree_mesh *mesh, const tm_octree *octree,
-                                       const tm_surface *surface,
-                                       const tm_progress *progress, tm_error *error)
+static tm_status make(maker *m, const tm_progress *progress, bool *alone, tm_error *error)
 {
-    worker w = {.whole = mesh, .octree = octree};
-    const tm_status status = make(&w, surface, progress, error);
-    tm_octree_mesh_free(&w.local);
-    tm_octree_share_free(&w.share);
+    const tm_interior *part = m->mesh->part;
+    size_t chosen = 0;
+    for (size_t l = m->share->own_first; l < m->share->own_past; l++)
+        chosen += part->chosen[l];
+    tm_ranks_sum(&chosen, 1);
+    *alone = false;
+    if (chosen == 0)
+        return tm_octree_mesh_fail_empty(error);
+    tm_progress_stage(progress, "finding the interior boundary");
+    tm_status status = find_boundary(m, alone, error);
+    if (status != TM_OK || *alone)
+        return status;
+    tm_progress_stage(progress, "matching features");
+    status = find_features(m, error);
+    if (status == TM_OK)
+        status = make_elements(m, progress, error);
+    if (status == TM_OK)
+        status = tm_ranks_agree(
+            tm_octree_mesh_complete_report(m->mesh, &m->share->octree, m->surface, error),
+            error);
+    return status;
+}
+
+tm_status tm_octree_mesh_make_on_ranks(tm_octree_mesh *mesh, const tm_octree_share *share,
+                                       tm_interior *interior, tm_surface *surface,
+                                       const tm_progress *progress, bool *alone,
+                                       tm_error *error)
+{
+    maker m = {.mesh = mesh, .share = share, .surface = surface};
+    const size_t bytes = surface->triangles * sizeof *surface->patch;
+    uint32_t *patch = tm_new(surface->triangles, sizeof *patch);
+    *mesh = (tm_octree_mesh){.part = calloc(1, sizeof *mesh->part)};
+    tm_status status =
+        tm_ranks_agree(mesh->part && patch ? TM_OK : tm_fail_memory(error), error);
+    if (status == TM_OK) {
+        mesh->parts = 1;
+        *mesh->part = *interior;
+        *interior = (tm_interior){0};
+        memcpy(patch, surface->patch, bytes);
+        status = make(&m, progress, alone, error);
+        memcpy(surface->patch, patch, bytes);
+        tm_surface_tree_refresh(surface);
+    }
+    free(patch);
+    tm_boundary_share_free(&m.boundary);
     return status;
 }

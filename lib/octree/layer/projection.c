@@ -23,7 +23,7 @@ typedef struct {
     tm_surface_point *at;
     const tm_mesh_share *share; /* NULL: this is the whole mesh */
     size_t own, own_past;       /* this rank's boundary nodes */
-    tm_ghosts ghosts;           /* outer nodes */
+    tm_mesh_ghosts ghosts;      /* outer nodes */
     unsigned threads;
     bool curves_only; /* in this sweep */
 } fitter;
@@ -138,20 +138,20 @@ static tm_status give_outer(void *context, tm_error *error)
 {
     const fitter *projection = context;
     double(*xyz)[3] = projection->assembly->mesh.xyz;
-    return tm_ghosts_fill(&projection->ghosts, xyz, sizeof *xyz, error);
+    return tm_mesh_ghosts_fill(&projection->ghosts, xyz, sizeof *xyz, error);
 }
 
 /* The ghosts of a range of nodes, of those that have an order, where this is given. */
-static tm_status find_ghosts(tm_ghosts *ghosts, const tm_mesh_share *share, size_t nodes,
-                             size_t first, size_t past, const uint32_t *order,
-                             tm_error *error)
+static tm_status find_ghosts(tm_mesh_ghosts *ghosts, const tm_mesh_share *share,
+                             size_t nodes, size_t first, size_t past,
+                             const uint32_t *order, tm_error *error)
 {
     bool *kept = calloc(nodes + 1, sizeof *kept);
     tm_status status = tm_ranks_agree(kept ? TM_OK : tm_fail_memory(error), error);
     for (size_t n = first; status == TM_OK && n < past; n++)
         kept[n] = !order || order[n] != TM_NONE;
     if (status == TM_OK)
-        status = tm_ghosts_some(ghosts, &share->ghosts, kept, error);
+        status = tm_mesh_ghosts_some(ghosts, &share->ghosts, kept, error);
     free(kept);
     return status;
 }
@@ -182,7 +182,7 @@ static tm_status project_boundary(fitter *projection, tm_error *error)
     if (status == TM_OK)
         status = sweep_all(projection, &sweep, error);
     tm_sweep_free(&sweep);
-    tm_ghosts_free(&projection->ghosts);
+    tm_mesh_ghosts_free(&projection->ghosts);
     return status;
 }
 
@@ -202,7 +202,7 @@ typedef struct {
     size_t middle, middle_past; /* its middles */
     uint32_t *number; /* [nodes of the mesh]: as order, among those of the octree of all
                          ranks; NULL: that is order */
-    tm_ghosts ghosts[2];
+    tm_mesh_ghosts ghosts[2];
 } zone;
 
 static bool has_moving(const zone *z, const tm_mixed_mesh *mesh, size_t e)
@@ -243,8 +243,8 @@ static tm_status find_moving(const fitter *projection, zone *z, tm_error *error)
                 z->order[a->inner[p][s]] = 0;
     }
     tm_parallel_runs(projection->threads, mesh->elements, TM_CHUNK, mark_moving, z);
-    if (projection->share && tm_ghosts_fill(&projection->share->ghosts, z->moves,
-                                            sizeof *z->moves, error) != TM_OK)
+    if (projection->share && tm_mesh_ghosts_fill(&projection->share->ghosts, z->moves,
+                                                 sizeof *z->moves, error) != TM_OK)
         return TM_ERROR_SYSTEM;
     for (size_t n = 0; n < mesh->nodes; n++) {
         const bool is_outer = n >= a->outer && n < outer_end;
@@ -294,7 +294,7 @@ static tm_status find_own(const fitter *projection, zone *z, tm_error *error)
         status =
             find_ghosts(&z->ghosts[1], share, nodes, middles, nodes, z->order, error);
     return status == TM_OK
-               ? tm_ghosts_fill(&z->ghosts[0], z->number, sizeof *z->number, error)
+               ? tm_mesh_ghosts_fill(&z->ghosts[0], z->number, sizeof *z->number, error)
                : status;
 }
 
@@ -445,12 +445,12 @@ static void average_middles(void *context, size_t first, size_t past)
 static tm_status give_core(void *context, tm_error *error)
 {
     const zone *z = context;
-    return tm_ghosts_fill(&z->ghosts[0], z->mesh->xyz, sizeof *z->mesh->xyz, error);
+    return tm_mesh_ghosts_fill(&z->ghosts[0], z->mesh->xyz, sizeof *z->mesh->xyz, error);
 }
 
 static tm_status give_middles(const zone *z, tm_error *error)
 {
-    return tm_ghosts_fill(&z->ghosts[1], z->mesh->xyz, sizeof *z->mesh->xyz, error);
+    return tm_mesh_ghosts_fill(&z->ghosts[1], z->mesh->xyz, sizeof *z->mesh->xyz, error);
 }
 
 static void look_at_neighbours(const void *context, size_t n, uint64_t *seen)
@@ -516,7 +516,7 @@ tm_status tm_project_layer(tm_assembly *assembly, const tm_interior_boundary *bo
     free(z.neighbour);
     free(z.bias);
     free(z.number);
-    tm_ghosts_free(&z.ghosts[0]);
-    tm_ghosts_free(&z.ghosts[1]);
+    tm_mesh_ghosts_free(&z.ghosts[0]);
+    tm_mesh_ghosts_free(&z.ghosts[1]);
     return status;
 }

@@ -88,11 +88,11 @@ static tm_status mark_near(sender *s, bool *mark, tm_error *error)
 {
     const size_t nodes = s->assembly->mesh.nodes;
     mark_bad(s, s->near);
-    tm_status status = tm_ghosts_mark(&s->share->ghosts, s->near, error);
+    tm_status status = tm_mesh_ghosts_mark(&s->share->ghosts, s->near, error);
     for (int ring = 0; ring < RINGS && status == TM_OK; ring++) {
         memcpy(mark, s->near, nodes);
         mark_next(s, mark);
-        status = tm_ghosts_mark(&s->share->ghosts, mark, error);
+        status = tm_mesh_ghosts_mark(&s->share->ghosts, mark, error);
         memcpy(s->near, mark, nodes);
     }
     return status;

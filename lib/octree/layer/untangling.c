@@ -128,7 +128,7 @@ static tm_status take_back(retreat *r, bool *more, tm_error *error)
             r->invalid++;
     }
     if (r->share)
-        status = tm_ghosts_mark(&r->share->ghosts, r->to_change, error);
+        status = tm_mesh_ghosts_mark(&r->share->ghosts, r->to_change, error);
     for (size_t n = 0; n < mesh->nodes; n++) {
         r->changed[n] = r->to_change[n];
         if (r->to_change[n])
@@ -169,7 +169,7 @@ static tm_status hold_back(tm_octree_mesh *m, const tm_octree *octree, tm_error 
                                    base, error);
     status = tm_ranks_agree(status, error);
     if (status == TM_OK && m->share)
-        status = tm_ghosts_fill(&m->share->ghosts, base, sizeof *base, error);
+        status = tm_mesh_ghosts_fill(&m->share->ghosts, base, sizeof *base, error);
     if (status == TM_OK)
         status = retreat_all(m, &r, error);
     free(base);
