@@ -127,6 +127,7 @@ unit_tests := $(addprefix $(BUILD)/tests/,$(filter-out $(left_out),\
 # These can be run by a launcher, too.
 rank_tests := $(addprefix $(BUILD)/tests/,test_octree_share)
 oracles := $(patsubst tests/oracle/%.cc,$(BUILD)/tests/%,$(wildcard tests/oracle/*.cc))
+rank_tests := $(if $(has_p4est),$(patsubst tests/ranks/%.c,$(BUILD)/ranks/%,$(wildcard tests/ranks/*.c)))
 fuzzer := $(BUILD)/fuzz/fuzz
 solver := $(BUILD)/solve/poisson
 benchers := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/*.c))
@@ -266,8 +267,13 @@ $(solver): $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/solve/*.c)) $(library)
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lcholmod $(LDLIBS)
 
+# Programs that mpirun starts.
+$(rank_tests): $(BUILD)/ranks/%: $(BUILD)/tests/ranks/%.o $(ranks_object) $(library)
+	@mkdir -p $(@D)
+	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) $(LDLIBS)
+
 # What the tests run.
-tests: all $(unit_tests) $(oracles) $(fuzzer) $(solver) $(shapes)
+tests: all $(rank_tests) $(unit_tests) $(oracles) $(fuzzer) $(solver) $(shapes)
 
 check: tests
 	sh tests/run.sh $(BUILD) $(ONLY)

@@ -4,8 +4,11 @@
 
 #include "../base/array.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 bool tm_ranks_are_mpi(void)
 {
@@ -115,6 +118,51 @@ void tm_ranks_receive(unsigned from, void *bytes, size_t room, size_t *size)
     (void)bytes;
     (void)room;
     *size = 0;
+}
+
+struct tm_ranks_file {
+    int fd;
+};
+
+static tm_status fail_file(tm_error *error)
+{
+    return tm_fail(error, TM_ERROR_SYSTEM, "cannot write: %s", strerror(errno));
+}
+
+tm_status tm_ranks_file_open(tm_ranks_file **file, const char *name, tm_error *error)
+{
+    const int fd = open(name, O_WRONLY | O_CLOEXEC);
+    *file = fd >= 0 ? malloc(sizeof **file) : NULL;
+    if (*file)
+        (*file)->fd = fd;
+    if (fd < 0)
+        return fail_file(error);
+    if (!*file)
+        close(fd);
+    return *file ? TM_OK : tm_fail_memory(error);
+}
+
+tm_status tm_ranks_file_put(tm_ranks_file *file, size_t at, const char *bytes,
+                            size_t size, tm_error *error)
+{
+    while (size > 0) {
+        const ssize_t put = pwrite(file->fd, bytes, size, (off_t)at);
+        if (put < 0 && errno != EINTR)
+            return fail_file(error);
+        const size_t some = put > 0 ? (size_t)put : 0;
+        bytes += some;
+        size -= some;
+        at += some;
+    }
+    return TM_OK;
+}
+
+tm_status tm_ranks_file_close(tm_ranks_file **file, tm_error *error)
+{
+    const int closed = close((*file)->fd);
+    free(*file);
+    *file = NULL;
+    return closed == 0 ? TM_OK : fail_file(error);
 }
 
 tm_ranks_traffic tm_ranks_sent(void)

@@ -76,6 +76,16 @@ tm_status tm_ranks_share(const void *mine, size_t count, size_t size, void **all
 void tm_ranks_send(unsigned to, const void *bytes, size_t size);
 void tm_ranks_receive(unsigned from, void *bytes, size_t room, size_t *size);
 
+/* A file that is there, for all ranks to write to: where they do so is theirs. Errors are
+ * TM_ERROR_SYSTEM, of tm_ranks_file_put() on the rank that has them.
+ * tm_ranks_file_close() says whether all is written; *file is NULL then, and after
+ * tm_ranks_file_open() has failed. */
+typedef struct tm_ranks_file tm_ranks_file;
+tm_status tm_ranks_file_open(tm_ranks_file **file, const char *name, tm_error *error);
+tm_status tm_ranks_file_put(tm_ranks_file *file, size_t at, const char *bytes,
+                            size_t size, tm_error *error);
+tm_status tm_ranks_file_close(tm_ranks_file **file, tm_error *error);
+
 /* What this rank has sent to others so far. Collective sums and the like, whose size does
  * not grow with the mesh, are not counted. */
 typedef struct tm_ranks_traffic {

@@ -2,6 +2,7 @@
 #include "lines.h"
 
 #include <ctype.h>
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,22 +25,31 @@ static size_t size_left(int fd)
     return at >= 0 && at < status.st_size ? (size_t)(status.st_size - at) : 0;
 }
 
-tm_status tm_lines_open(tm_lines *lines, int fd, const char *name,
-                        const tm_progress *progress, tm_error *error)
+tm_status tm_lines_open_input(tm_lines *lines, const tm_input *input,
+                              const tm_progress *progress, tm_error *error)
 {
-    *lines = (tm_lines){.name = name,
+    *lines = (tm_lines){.input = *input,
+                        .name = input->name,
                         .capacity = WINDOW,
                         .line = 1,
                         .progress = progress,
                         .progress_at = {.what = "reading", .bytes = true}};
-    tm_input_open(&lines->input, fd, name);
-    lines->progress_at.of = progress ? size_left(fd) : 0;
-    tm_progress_tell(progress, &lines->progress_at);
     lines->buffer = malloc(WINDOW + SPARE);
     if (!lines->buffer)
         return tm_fail_memory(error);
     lines->at = lines->end = lines->filled = lines->buffer;
     return TM_OK;
+}
+
+tm_status tm_lines_open(tm_lines *lines, int fd, const char *name,
+                        const tm_progress *progress, tm_error *error)
+{
+    tm_input input;
+    tm_input_open(&input, fd, name);
+    const tm_status status = tm_lines_open_input(lines, &input, progress, error);
+    lines->progress_at.of = progress ? size_left(fd) : 0;
+    tm_progress_tell(progress, &lines->progress_at);
+    return status;
 }
 
 void tm_lines_close(tm_lines *lines)
@@ -66,6 +76,24 @@ static bool move(tm_lines *lines, size_t capacity)
     lines->end = lines->at + whole;
     lines->filled = lines->buffer + rest;
     return moved;
+}
+
+size_t tm_lines_place(const tm_lines *lines)
+{
+    const size_t ahead = (size_t)(lines->filled - lines->at);
+    return lines->input.taken - ahead + lines->ended_without_line_feed;
+}
+
+tm_status tm_lines_skip(tm_lines *lines, size_t place, size_t more, tm_error *error)
+{
+    if (lseek(lines->input.fd, (off_t)place, SEEK_SET) < 0)
+        return tm_fail_at(error, TM_ERROR_SYSTEM, lines->name, 0, NULL, "cannot seek: %s",
+                          strerror(errno));
+    lines->at = lines->end = lines->filled = lines->buffer;
+    lines->input.taken = place;
+    lines->at_end = lines->ended_without_line_feed = false;
+    lines->line += more;
+    return TM_OK;
 }
 
 bool tm_lines_room(tm_lines *lines, size_t bytes)

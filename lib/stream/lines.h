@@ -37,6 +37,18 @@ tm_status tm_lines_open(tm_lines *lines, int fd, const char *name,
                         const tm_progress *progress, tm_error *error);
 void tm_lines_close(tm_lines *lines);
 
+/* The same of what an input gives that is open. */
+tm_status tm_lines_open_input(tm_lines *lines, const tm_input *input,
+                              const tm_progress *progress, tm_error *error);
+
+/* The byte of the descriptor, read from its begin on, that the line at `at` begins with.
+ */
+size_t tm_lines_place(const tm_lines *lines);
+
+/* Goes on with the line of a regular file that begins with that byte, which is `more`
+ * lines on. */
+tm_status tm_lines_skip(tm_lines *lines, size_t place, size_t more, tm_error *error);
+
 /* Makes at < end, reading more if there is none; at == end then means the end of the
  * file. A line of over TM_LINE_MAX bytes is an error. */
 tm_status tm_lines_fill(tm_lines *lines, tm_error *error);

@@ -110,13 +110,13 @@ static inline void plain_tet(plain_row *r, uint32_t base, size_t limit, uint32_t
 static const char *read_tets(tm_row_context *c, const char *at, const char *end,
                              size_t most)
 {
-    size_t row = c->block->count, limit = c->limit;
+    size_t row = c->block->count, limit = c->limit, first = c->before + c->base;
     uint32_t base = c->base, *to = c->block->integer;
     while (row < most && at < end) {
         plain_row r = {at, at, gaps_of(at), 0};
         uint64_t number = plain_number(&r, ' ');
         plain_tet(&r, base, limit, to + 4 * row);
-        if (r.wrong | (number ^ (row + base)))
+        if (r.wrong | (number ^ (row + first)))
             break;
         at = r.begin;
         row++;
@@ -130,7 +130,7 @@ static const char *read_others(tm_row_context *c, const char *at, const char *en
                                size_t most)
 {
     tm_block *block = c->block;
-    size_t width = c->shape->integers, row = block->count;
+    size_t width = c->shape->integers, row = block->count, first = c->before + c->base;
     while (row < most && at < end) {
         plain_row r = {at, at, gaps_of(at), 0};
         uint64_t number = plain_number(&r, ' ');
@@ -138,7 +138,7 @@ static const char *read_others(tm_row_context *c, const char *at, const char *en
                     !block->markers);
         if (block->markers)
             block->marker[row] = (int32_t)plain_number(&r, '\n');
-        if (r.wrong | (number ^ (row + c->base)))
+        if (r.wrong | (number ^ (row + first)))
             break;
         at = r.begin;
         row++;

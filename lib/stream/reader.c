@@ -5,8 +5,7 @@
 
 #include "../number/number.h"
 #include "block.h"
-#include "lines.h"
-#include "names.h"
+#include "reader.h"
 #include "row.h"
 #include "row_chunks.h"
 #include "sniff.h"
@@ -21,16 +20,7 @@ enum { CHUNKS_OF_THREAD = 4, STEP_MAX = 1 << 24, WORTH_THREADS = 1 << 16 };
 
 static const char magic[] = "termesh 1\n";
 
-typedef struct {
-    tm_lines lines;
-    tm_stream *stream;
-    tm_block_names names;
-    bool base_known;
-    bool one_by_one; /* rows, to the end of the window */
-    unsigned threads;
-    size_t step; /* bytes that all of them read at a time */
-    tm_error *error;
-} reader;
+typedef tm_reader reader;
 
 #define FAIL(r, block, ...)                                                              \
     tm_fail_at((r)->error, TM_ERROR_INPUT, (r)->lines.name, (r)->lines.line, block,      \
@@ -193,7 +183,7 @@ static tm_status find_limit(reader *r, const tm_block *block, size_t *limit)
     memcpy(name, block->name, part);
     memcpy(name + part, ".node", sizeof ".node");
     const tm_block *nodes = tm_block_names_find(&r->names, name);
-    *limit = nodes ? nodes->count : 0;
+    *limit = nodes ? tm_block_names_rows(&r->names, nodes) : 0;
     bool refers = block->kind == TM_ELE || block->kind == TM_FACE ||
                   block->kind == TM_EDGE || block->kind == TM_MIX ||
                   block->kind == TM_FACET;
@@ -232,14 +222,26 @@ static tm_status read_base(reader *r, const tm_block *block)
     return TM_OK;
 }
 
-/* Makes the next row begin at lines.at. Nearly always it does. */
-static inline tm_status find_row(reader *r, const tm_block *block, size_t rows)
+/* Goes to the next row. Nearly always it is there. */
+static inline tm_status next_row(reader *r)
 {
     if (r->lines.at < r->lines.end && *r->lines.at >= '0' && *r->lines.at <= '9')
         return TM_OK;
-    tm_status status = next_content(r);
+    return next_content(r);
+}
+
+tm_status tm_reader_next_row(reader *r)
+{
+    return next_row(r);
+}
+
+tm_status tm_reader_find_row(reader *r, const tm_block *block, size_t row, size_t rows)
+{
+    tm_status status = next_row(r);
     if (status == TM_OK && (r->lines.at == r->lines.end || !tm_row_begins(r->lines.at)))
-        status = missing_row(r, block, block->count, rows);
+        status = missing_row(r, block, row, rows);
+    if (status == TM_OK && !r->base_known)
+        status = read_base(r, block);
     return status;
 }
 
@@ -309,33 +311,6 @@ static bool worth_threads(const reader *r, const tm_block *block)
            r->lines.end - r->lines.at >= WORTH_THREADS;
 }
 
-static tm_status read_rows(reader *r, tm_block *block, size_t rows, size_t limit)
-{
-    tm_row_context context = {.block = block,
-                              .shape = tm_block_shape_of(block->kind),
-                              .rows = rows,
-                              .limit = limit};
-    tm_status status = TM_OK;
-    if (!tm_block_resize(block, 0))
-        return tm_fail_memory(r->error);
-    if (block->start)
-        block->start[0] = 0;
-    r->one_by_one = false;
-    while (status == TM_OK && block->count < rows) {
-        if (r->lines.at == r->lines.end)
-            r->one_by_one = false;
-        status = find_row(r, block, rows);
-        if (status == TM_OK && !r->base_known)
-            status = read_base(r, block);
-        if (status != TM_OK)
-            return status;
-        context.base = r->stream->base;
-        status = worth_threads(r, block) ? read_chunks(r, &context)
-                                         : read_some_rows(r, &context);
-    }
-    return status;
-}
-
 /* Gives back the room of a block's arrays that its rows did not need. */
 static void trim(tm_block *block)
 {
@@ -344,6 +319,67 @@ static void trim(tm_block *block)
         uint32_t *item = realloc(block->item, items * sizeof *item);
         block->item = item ? item : block->item;
     }
+}
+
+/* A block without rows, and what is known of those that come. */
+static tm_status begin_rows(reader *r, tm_row_context *context)
+{
+    tm_block *block = context->block;
+    context->shape = tm_block_shape_of(block->kind);
+    if (!tm_block_resize(block, 0))
+        return tm_fail_memory(r->error);
+    if (block->start)
+        block->start[0] = 0;
+    r->one_by_one = false;
+    return TM_OK;
+}
+
+static tm_status read_next_rows(reader *r, tm_row_context *context)
+{
+    context->base = r->stream->base;
+    return worth_threads(r, context->block) ? read_chunks(r, context)
+                                            : read_some_rows(r, context);
+}
+
+tm_status tm_reader_read_some(reader *r, tm_block *block, size_t some, size_t rows,
+                              size_t limit)
+{
+    tm_row_context context = {.block = block, .rows = some, .limit = limit};
+    tm_status status = begin_rows(r, &context);
+    while (status == TM_OK && block->count < some) {
+        if (r->lines.at == r->lines.end)
+            r->one_by_one = false;
+        status = tm_reader_find_row(r, block, block->count, rows);
+        if (status == TM_OK)
+            status = read_next_rows(r, &context);
+    }
+    if (status == TM_OK)
+        trim(block);
+    return status;
+}
+
+tm_status tm_reader_read_part(reader *r, tm_block *block, size_t before, size_t most,
+                              size_t limit)
+{
+    tm_row_context context = {
+        .block = block, .before = before, .rows = most, .limit = limit};
+    tm_status status = begin_rows(r, &context);
+    while (status == TM_OK) {
+        if (r->lines.at == r->lines.end)
+            r->one_by_one = false;
+        status = next_row(r);
+        if (status != TM_OK || r->lines.at == r->lines.end)
+            break;
+        if (!tm_row_begins(r->lines.at))
+            return missing_row(r, block, before + block->count, before + most);
+        if (block->count == most)
+            return FAIL(r, block->name, "more rows than the %zu that its header says",
+                        before + most);
+        status = read_next_rows(r, &context);
+    }
+    if (status == TM_OK)
+        trim(block);
+    return status;
 }
 
 static tm_status read_unknown(reader *r, tm_block *block)
@@ -362,7 +398,14 @@ static tm_status read_unknown(reader *r, tm_block *block)
     }
 }
 
-static tm_status read_block(reader *r, const char *name)
+tm_status tm_reader_read_block(reader *r, tm_block *block, size_t rows, size_t limit)
+{
+    if (block->kind == TM_UNKNOWN)
+        return read_unknown(r, block);
+    return tm_reader_read_some(r, block, rows, rows, limit);
+}
+
+static tm_status begin_block(reader *r, const char *name)
 {
     if (tm_block_names_find(&r->names, name))
         return FAIL(r, name, "a second block of that name");
@@ -374,14 +417,9 @@ static tm_status read_block(reader *r, const char *name)
     if (status != TM_OK)
         return status;
     next_line(r);
-    if (block->kind == TM_UNKNOWN)
-        return read_unknown(r, block);
-    status = read_header(r, block, &rows);
-    if (status == TM_OK)
-        status = read_rows(r, block, rows, limit);
-    if (status == TM_OK)
-        trim(block);
-    return status;
+    if (block->kind != TM_UNKNOWN)
+        status = read_header(r, block, &rows);
+    return status == TM_OK ? r->read_block(r, block, rows, limit) : status;
 }
 
 /* After .end only blank lines and comments. */
@@ -410,39 +448,57 @@ static tm_status read_blocks(reader *r)
             const tm_block *last = blocks ? &r->stream->block[blocks - 1] : NULL;
             if (last && tm_row_begins(r->lines.at))
                 return FAIL(r, last->name, "more rows than the %zu that its header says",
-                            last->count);
+                            tm_block_names_rows(&r->names, last));
             return FAIL(r, NULL, "'%s' is not the name of a block",
                         tm_lines_quote(r->lines.at, text));
         }
         if (strcmp(name, ".end") == 0)
             return read_end(r);
-        status = read_block(r, name);
+        status = begin_block(r, name);
         if (status != TM_OK)
             return status;
     }
+}
+
+void tm_reader_init(reader *r, tm_stream *stream, unsigned threads, tm_error *error)
+{
+    const size_t step = CHUNKS_OF_THREAD * (size_t)threads * TM_CHUNK_BYTES;
+    *r = (reader){.stream = stream,
+                  .names = {.stream = stream},
+                  .threads = threads,
+                  .step = step < STEP_MAX ? step : STEP_MAX,
+                  .error = error,
+                  .read_block = tm_reader_read_block};
+}
+
+void tm_reader_free(reader *r)
+{
+    tm_block_names_free(&r->names);
+    tm_lines_close(&r->lines);
+}
+
+tm_status tm_reader_read(reader *r)
+{
+    tm_status status = read_magic(r);
+    if (status == TM_OK)
+        status = read_history(r);
+    if (status == TM_OK)
+        status = read_blocks(r);
+    if (status == TM_OK)
+        status = tm_stream_check_references(&r->names, r->lines.name, r->error);
+    return status;
 }
 
 tm_status tm_stream_read(tm_stream *stream, int fd, const char *name, unsigned threads,
                          tm_error *error)
 {
     tm_error unused;
-    const size_t step = CHUNKS_OF_THREAD * (size_t)threads * TM_CHUNK_BYTES;
-    reader r = {.stream = stream,
-                .names = {.stream = stream},
-                .threads = threads,
-                .step = step < STEP_MAX ? step : STEP_MAX,
-                .error = error ? error : &unused};
+    reader r;
+    tm_reader_init(&r, stream, threads, error ? error : &unused);
     tm_status status = tm_lines_open(&r.lines, fd, name, stream->progress, r.error);
     if (status == TM_OK)
-        status = read_magic(&r);
-    if (status == TM_OK)
-        status = read_history(&r);
-    if (status == TM_OK)
-        status = read_blocks(&r);
-    if (status == TM_OK)
-        status = tm_stream_check_references(&r.names, name, r.error);
-    tm_block_names_free(&r.names);
-    tm_lines_close(&r.lines);
+        status = tm_reader_read(&r);
+    tm_reader_free(&r);
     if (status != TM_OK)
         tm_stream_free(stream);
     return status;

@@ -21,15 +21,17 @@ static tm_status check_octants(const tm_block_names *names, const tm_block *bloc
                                const char *file, tm_error *error)
 {
     const tm_block *mix = sibling(names, block, ".mix");
-    size_t limit = mix ? mix->count : 0, width = tm_block_integers(block->kind);
+    size_t limit = mix ? tm_block_names_rows(names, mix) : 0;
+    const size_t width = tm_block_integers(block->kind);
     for (size_t o = 0; o < block->count; o++) {
         const uint32_t *octant = block->integer + o * width;
         uint32_t first = octant[width - 2], past = octant[width - 1];
         if (first > past || past > limit)
             return tm_fail_at(error, TM_ERROR_INPUT, file, 0, block->name,
                               "row %zu: elements %u…%u (of %zu in .mix)",
-                              o + names->stream->base, first + names->stream->base,
-                              past + names->stream->base, limit);
+                              tm_block_names_number(names, block, o),
+                              first + names->stream->base, past + names->stream->base,
+                              limit);
     }
     return TM_OK;
 }
@@ -42,14 +44,15 @@ static tm_status check_facets(const tm_block_names *names, const tm_block *block
     const char *what = cell ? "cell" : "element";
     if (!cell)
         cell = sibling(names, block, ".mix");
+    const size_t cells = cell ? tm_block_names_rows(names, cell) : 0;
     for (size_t f = 0; cell && f < block->count; f++)
         for (size_t side = 0; side < 2; side++) {
             uint32_t c = block->integer[2 * f + side];
-            if (c != TM_NONE && c >= cell->count)
+            if (c != TM_NONE && c >= cells)
                 return tm_fail_at(error, TM_ERROR_INPUT, file, 0, block->name,
                                   "row %zu: %s %u is out of range (there are %zu)",
-                                  f + names->stream->base, what, c + names->stream->base,
-                                  cell->count);
+                                  tm_block_names_number(names, block, f), what,
+                                  c + names->stream->base, cells);
         }
     return TM_OK;
 }
@@ -58,13 +61,13 @@ static tm_status check_cells(const tm_block_names *names, const tm_block *block,
                              const char *file, tm_error *error)
 {
     const tm_block *facet = sibling(names, block, ".facet");
-    size_t limit = facet ? facet->count : 0;
+    size_t limit = facet ? tm_block_names_rows(names, facet) : 0;
     for (size_t c = 0; c < block->count; c++)
         for (size_t i = block->start[c]; i < block->start[c + 1]; i++)
             if (block->item[i] >= limit)
                 return tm_fail_at(error, TM_ERROR_INPUT, file, 0, block->name,
                                   "row %zu: facet %u is out of range (there are %zu)",
-                                  c + names->stream->base,
+                                  tm_block_names_number(names, block, c),
                                   block->item[i] + names->stream->base, limit);
     return TM_OK;
 }

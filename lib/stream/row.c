@@ -36,6 +36,12 @@ bool tm_row_begins(const char *at)
     return isdigit((unsigned char)*at) || *at == '-' || *at == '+';
 }
 
+/* The number of the row that is read. */
+static inline size_t number_of_row(const tm_row_context *c)
+{
+    return c->block->count + c->before + c->base;
+}
+
 /* The field at `at`, for a message. */
 static const char *field(const char *at, char text[TM_QUOTE_CHARS])
 {
@@ -50,7 +56,7 @@ static const char *field(const char *at, char text[TM_QUOTE_CHARS])
 static const char *fail_field(tm_row_context *c, const char *at, const char *what)
 {
     char text[TM_QUOTE_CHARS];
-    size_t row = c->block->count + c->base;
+    size_t row = number_of_row(c);
     if (*at == '\n')
         return FAIL(c, "row %zu ends before its %s", row, what);
     if (*at == '\r')
@@ -123,7 +129,7 @@ static const char *reference(tm_row_context *c, const char *at, const char *end,
     }
     number -= c->base;
     if (number < 0 || number >= TM_NONE)
-        return FAIL(c, "row %zu: %lld is out of range", c->block->count + c->base,
+        return FAIL(c, "row %zu: %lld is out of range", number_of_row(c),
                     (long long)(number + c->base));
     *index = (uint32_t)number;
     return at;
@@ -140,8 +146,8 @@ static const char *reals(tm_row_context *c, const char *at, const char *end, dou
         if (!after || (*after != '\n' && !tm_is_blank(*after)))
             return fail_field(c, after && *after < ' ' ? after : at, "finite number");
         if (!isfinite(real[i]))
-            return FAIL(c, "row %zu: '%s' is too large for a double",
-                        c->block->count + c->base, field(at, text));
+            return FAIL(c, "row %zu: '%s' is too large for a double", number_of_row(c),
+                        field(at, text));
         at = after;
     }
     return at;
@@ -158,7 +164,7 @@ static const char *dimension(tm_row_context *c, const char *at, const char *end,
         return FAIL(c,
                     "row %zu: %lld is no dimension (0 nodes, 1 edges, 2 faces, 3 "
                     "regions)",
-                    c->block->count + c->base, (long long)number);
+                    number_of_row(c), (long long)number);
     *to = (uint32_t)number;
     return at;
 }
@@ -229,8 +235,8 @@ static const char *marker(tm_row_context *c, const char *at, const char *end)
     int64_t number;
     at = whole(c, at, end, &number, "marker");
     if (at && (number < INT32_MIN || number > INT32_MAX))
-        return FAIL(c, "row %zu: the marker %lld does not fit 32 bits",
-                    c->block->count + c->base, (long long)number);
+        return FAIL(c, "row %zu: the marker %lld does not fit 32 bits", number_of_row(c),
+                    (long long)number);
     if (at)
         c->block->marker[c->block->count] = (int32_t)number;
     return at;
@@ -239,7 +245,7 @@ static const char *marker(tm_row_context *c, const char *at, const char *end)
 static const char *row_number(tm_row_context *c, const char *at, const char *end)
 {
     int64_t number;
-    size_t right = c->block->count + c->base;
+    size_t right = number_of_row(c);
     at = whole(c, at, end, &number, "number");
     if (at && (uint64_t)number != right)
         return FAIL(c, "row %zu is numbered %lld (rows are numbered without a gap)",
@@ -275,7 +281,7 @@ const char *tm_row_read(tm_row_context *c, const char *at, const char *end)
         if (*at == '#' || *at == '\r')
             return fail_field(c, at, "");
         return FAIL(c, "row %zu: '%s' after the last number that its header says",
-                    row + c->base, field(at, text));
+                    number_of_row(c), field(at, text));
     }
     return at ? at + 1 : NULL;
 }

@@ -8,8 +8,9 @@
 
 typedef struct tm_row_context {
     tm_block *block; /* row block->count is read; it has room for it */
+    size_t before;   /* rows that the block's first one has before it elsewhere */
     const tm_block_shape *shape;
-    size_t rows;      /* that the header says */
+    size_t rows;      /* that may be read: mostly what the header says */
     size_t room;      /* rows that the block has room for */
     unsigned base;    /* of the stream's indices */
     size_t limit;     /* nodes that an index may name */

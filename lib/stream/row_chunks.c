@@ -45,9 +45,10 @@ static void cut(chunks *all, const char *at, const char *end)
 static size_t row_said(const chunk *c, const tm_row_context *context)
 {
     int64_t number;
-    if (!tm_read_int64(c->at, c->end, &number) || number < (int64_t)context->base)
+    const size_t first = context->before + context->base;
+    if (!tm_read_int64(c->at, c->end, &number) || number < (int64_t)first)
         return SIZE_MAX;
-    return (size_t)number - context->base;
+    return (size_t)number - first;
 }
 
 /* Gives each chunk the rows up to that which the next one begins with, the last one as

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The stream's writer. Rows are formatted by the chunk, by as many threads as there may
  * be, and written in order. */
-#include "stream.h"
+#include "writer.h"
 
 #include "../number/digits.h"
 #include "../text/file.h"
@@ -19,7 +19,8 @@ enum { CHUNK_ROWS = 4096 };
 typedef struct {
     const tm_block *block;
     uint32_t base;
-    size_t first; /* row with which the batch begins */
+    size_t before; /* rows that others have before the block's first */
+    size_t first;  /* row with which the batch begins */
     tm_text *text;
 } batch;
 
@@ -144,7 +145,7 @@ static void format_chunk(void *context, size_t chunk)
     if (!tm_text_room(text, room(b->block, from, to)))
         return;
     const tm_block_shape *shape = tm_block_shape_of(b->block->kind);
-    row_number number = row_number_from(from + b->base);
+    row_number number = row_number_from(from + b->before + b->base);
     char *end = text->byte;
     for (size_t row = from; row < to; row++) {
         end = put_row(put_row_number(end, &number), b->block, shape, row, b->base);
@@ -153,11 +154,52 @@ static void format_chunk(void *context, size_t chunk)
     text->size = (size_t)(end - text->byte);
 }
 
-static tm_status write_header(int fd, const tm_block *block, tm_error *error)
+tm_status tm_sink_put_fd(void *to, const char *bytes, size_t size, tm_error *error)
+{
+    return tm_write_all(*(const int *)to, bytes, size, error);
+}
+
+static tm_status put_bytes(const tm_sink *sink, const char *bytes, size_t size,
+                           tm_error *error)
+{
+    return sink->put(sink->to, bytes, size, error);
+}
+
+static tm_status put_text(const tm_sink *sink, const tm_text *text, tm_error *error)
+{
+    return text->failed ? tm_fail_memory(error)
+                        : put_bytes(sink, text->byte, text->size, error);
+}
+
+tm_status tm_put_begin(const tm_stream *stream, const tm_sink *sink, tm_error *error)
+{
+    static const char magic[] = "termesh 1\n";
+    const tm_status status = stream->history.failed
+                                 ? tm_fail_memory(error)
+                                 : put_bytes(sink, magic, sizeof magic - 1, error);
+    return status == TM_OK ? put_text(sink, &stream->history, error) : status;
+}
+
+tm_status tm_put_end(const tm_sink *sink, tm_error *error)
+{
+    static const char end[] = ".end\n";
+    return put_bytes(sink, end, sizeof end - 1, error);
+}
+
+tm_status tm_put_name(const tm_block *block, const tm_sink *sink, tm_error *error)
+{
+    const tm_status status = put_bytes(sink, block->name, strlen(block->name), error);
+    return status == TM_OK ? put_bytes(sink, "\n", 1, error) : status;
+}
+
+tm_status tm_put_header(const tm_block *block, size_t rows, const tm_sink *sink,
+                        tm_error *error)
 {
     const tm_block_shape *shape = tm_block_shape_of(block->kind);
     tm_text text = {0};
-    tm_text_format(&text, "%zu", block->count);
+    if (block->kind == TM_UNKNOWN)
+        return TM_OK;
+    tm_text_format(&text, "%zu", rows);
     for (size_t i = 0; i < shape->headers; i++) {
         if (shape->header[i] == TM_HEADER_ATTRIBUTES)
             tm_text_format(&text, " %zu", block->attributes);
@@ -169,100 +211,93 @@ static tm_status write_header(int fd, const tm_block *block, tm_error *error)
             tm_text_format(&text, " %d", shape->header[i]);
     }
     tm_text_string(&text, "\n");
-    const tm_status status = tm_write_text(fd, &text, error);
+    const tm_status status = put_text(sink, &text, error);
     tm_text_free(&text);
     return status;
 }
 
-/* What is told of how far it is; at->done counts rows. */
-typedef struct {
-    const tm_progress *progress;
-    tm_progress_at at;
-} teller;
-
-static tm_status write_rows(int fd, const tm_block *block, uint32_t base,
-                            unsigned threads, tm_text *text, teller *tell,
-                            tm_error *error)
+/* Batch after batch; text[threads] is room for its chunks. */
+static tm_status put_batches(batch *b, unsigned threads, const tm_sink *sink,
+                             tm_writing *writing, tm_error *error)
 {
-    batch b = {.block = block, .base = base, .text = text};
     tm_status status = TM_OK;
-    const size_t before = tell->at.done;
-    while (b.first < block->count && status == TM_OK) {
-        tell->at.done = before + b.first;
-        tm_progress_tell(tell->progress, &tell->at);
-        size_t left = (block->count - b.first + CHUNK_ROWS - 1) / CHUNK_ROWS;
+    const size_t before = writing->at.done, count = b->block->count;
+    while (b->first < count && status == TM_OK) {
+        writing->at.done = before + b->first;
+        tm_progress_tell(writing->progress, &writing->at);
+        size_t left = (count - b->first + CHUNK_ROWS - 1) / CHUNK_ROWS;
         size_t chunks = left < threads ? left : threads;
-        tm_parallel(threads, chunks, format_chunk, &b);
+        tm_parallel(threads, chunks, format_chunk, b);
         for (size_t c = 0; c < chunks && status == TM_OK; c++)
-            status = tm_write_text(fd, &text[c], error);
-        b.first += chunks * CHUNK_ROWS;
+            status = put_text(sink, &b->text[c], error);
+        b->first += chunks * CHUNK_ROWS;
     }
-    tell->at.done = before + block->count;
+    writing->at.done = before + count;
     return status;
 }
 
-static tm_status write_groups(int fd, const tm_block *block, uint32_t base,
-                              tm_error *error)
+static tm_status put_groups(const tm_block *block, unsigned base, const tm_sink *sink,
+                            tm_error *error)
 {
     tm_text text = {0};
     tm_group_write(&text, block, base);
-    const tm_status status = tm_write_text(fd, &text, error);
+    const tm_status status = put_text(sink, &text, error);
     tm_text_free(&text);
     return status;
 }
 
-static tm_status write_name(int fd, const tm_block *block, tm_error *error)
-{
-    tm_status status = tm_write_all(fd, block->name, strlen(block->name), error);
-    return status == TM_OK ? tm_write_all(fd, "\n", 1, error) : status;
-}
-
-static tm_status write_block(const tm_block *block, unsigned base, int fd,
-                             unsigned threads, teller *tell, tm_error *error)
+tm_status tm_put_rows(const tm_block *block, size_t before, unsigned base,
+                      unsigned threads, const tm_sink *sink, tm_writing *writing,
+                      tm_error *error)
 {
     if (block->kind == TM_UNKNOWN)
-        return tm_write_text(fd, &block->text, error);
-    tm_text *text = calloc(threads, sizeof *text);
-    if (!text)
+        return put_text(sink, &block->text, error);
+    if (block->kind == TM_GROUP)
+        return put_groups(block, base, sink, error);
+    batch b = {.block = block,
+               .base = base,
+               .before = before,
+               .text = calloc(threads, sizeof *b.text)};
+    if (!b.text)
         return tm_fail_memory(error);
-    tm_status status = write_header(fd, block, error);
-    if (status == TM_OK && block->kind == TM_GROUP)
-        status = write_groups(fd, block, base, error);
-    else if (status == TM_OK)
-        status = write_rows(fd, block, base, threads, text, tell, error);
+    const tm_status status = put_batches(&b, threads, sink, writing, error);
     for (unsigned t = 0; t < threads; t++)
-        free(text[t].byte);
-    free(text);
+        free(b.text[t].byte);
+    free(b.text);
     return status;
 }
 
 tm_status tm_block_write(const tm_block *block, unsigned base, int fd, unsigned threads,
                          tm_error *error)
 {
-    teller nobody = {0};
-    return write_block(block, base, fd, threads, &nobody, error);
+    tm_writing nobody = {0};
+    const tm_sink sink = {tm_sink_put_fd, &fd};
+    const tm_status status = tm_put_header(block, block->count, &sink, error);
+    return status == TM_OK ? tm_put_rows(block, 0, base, threads, &sink, &nobody, error)
+                           : status;
+}
+
+static tm_status put_block(const tm_block *block, unsigned base, unsigned threads,
+                           const tm_sink *sink, tm_writing *writing, tm_error *error)
+{
+    tm_status status = tm_put_name(block, sink, error);
+    if (status == TM_OK)
+        status = tm_put_header(block, block->count, sink, error);
+    return status == TM_OK ? tm_put_rows(block, 0, base, threads, sink, writing, error)
+                           : status;
 }
 
 tm_status tm_stream_write(const tm_stream *stream, int fd, unsigned threads,
                           tm_error *error)
 {
-    static const char magic[] = "termesh 1\n", end[] = ".end\n";
-    teller tell = {stream->progress, {.what = "writing"}};
+    const tm_sink sink = {tm_sink_put_fd, &fd};
+    tm_writing writing = {stream->progress, {.what = "writing"}};
     for (size_t b = 0; b < stream->blocks; b++)
-        tell.at.of += stream->block[b].count;
-    tm_progress_tell(tell.progress, &tell.at);
-    if (stream->history.failed)
-        return tm_fail_memory(error);
-    tm_status status = tm_write_all(fd, magic, sizeof magic - 1, error);
-    if (status == TM_OK)
-        status = tm_write_text(fd, &stream->history, error);
-    for (size_t b = 0; b < stream->blocks && status == TM_OK; b++) {
-        const tm_block *block = &stream->block[b];
-        status = write_name(fd, block, error);
-        if (status == TM_OK)
-            status = write_block(block, stream->base, fd, threads, &tell, error);
-    }
-    if (status == TM_OK)
-        status = tm_write_all(fd, end, sizeof end - 1, error);
-    return status;
+        writing.at.of += stream->block[b].count;
+    tm_progress_tell(writing.progress, &writing.at);
+    tm_status status = tm_put_begin(stream, &sink, error);
+    for (size_t b = 0; b < stream->blocks && status == TM_OK; b++)
+        status =
+            put_block(&stream->block[b], stream->base, threads, &sink, &writing, error);
+    return status == TM_OK ? tm_put_end(&sink, error) : status;
 }

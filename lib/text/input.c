@@ -2,6 +2,7 @@
 #include "input.h"
 
 #include <errno.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
@@ -19,7 +20,24 @@ typedef struct tm_gzip {
 
 void tm_input_open(tm_input *input, int fd, const char *name)
 {
-    *input = (tm_input){.fd = fd, .name = name};
+    *input = (tm_input){.fd = fd, .name = name, .most = SIZE_MAX};
+}
+
+void tm_input_open_part(tm_input *input, int fd, size_t most, const char *name)
+{
+    *input = (tm_input){.fd = fd, .name = name, .most = most, .begun = true};
+}
+
+void tm_input_open_pull(tm_input *input,
+                        ptrdiff_t (*pull)(void *from, char *bytes, size_t size),
+                        void *from, const char *name)
+{
+    *input = (tm_input){.fd = -1,
+                        .name = name,
+                        .most = SIZE_MAX,
+                        .begun = true,
+                        .pull = pull,
+                        .from = from};
 }
 
 void tm_input_close(tm_input *input)
@@ -50,7 +68,10 @@ ptrdiff_t tm_read_some(int fd, char *bytes, size_t size)
 static tm_status read_plain(tm_input *input, char *bytes, size_t size, size_t *got,
                             tm_error *error)
 {
-    const ptrdiff_t read = tm_read_some(input->fd, bytes, size);
+    const size_t left = input->most - input->taken;
+    const size_t most = size < left ? size : left;
+    const ptrdiff_t read = input->pull ? input->pull(input->from, bytes, most)
+                                       : tm_read_some(input->fd, bytes, most);
     *got = read > 0 ? (size_t)read : 0;
     input->taken += *got;
     if (read >= 0)

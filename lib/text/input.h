@@ -18,6 +18,9 @@ typedef struct tm_input {
     struct tm_gzip *gzip; /* NULL where the bytes are as they are */
     bool begun;
     size_t taken; /* bytes of the descriptor, so far */
+    size_t most;  /* so many are taken at most */
+    ptrdiff_t (*pull)(void *from, char *bytes, size_t size);
+    void *from;
 } tm_input;
 
 /* Reads at most size bytes, again after an interrupt. Returns how many, 0 at the end;
@@ -28,6 +31,13 @@ ptrdiff_t tm_read_some(int fd, char *bytes, size_t size);
  * for messages. */
 void tm_input_open(tm_input *input, int fd, const char *name);
 void tm_input_close(tm_input *input);
+
+/* The same of the next `most` bytes of the descriptor as they are; and of what a function
+ * gives, as tm_read_some() does. */
+void tm_input_open_part(tm_input *input, int fd, size_t most, const char *name);
+void tm_input_open_pull(tm_input *input,
+                        ptrdiff_t (*pull)(void *from, char *bytes, size_t size),
+                        void *from, const char *name);
 
 /* The length of a file's name, without .gz at its end. */
 size_t tm_unpacked_name(const char *name);

@@ -64,19 +64,30 @@ const char *filter_input_name(const filter *f)
     return f->input ? f->input : "<stdin>";
 }
 
-static int open_file(const filter *f, const char *file)
+static int try_file(const filter *f, const char *file, tm_error *error)
 {
-    int fd = open(file, O_RDONLY | O_CLOEXEC);
+    const int fd = open(file, O_RDONLY | O_CLOEXEC), cause = errno;
     if (fd < 0) {
-        tm_error error;
         char why[FILTER_APART];
-        const int cause = errno;
         filter_explain_apart(f, file, why);
-        tm_fail_at(&error, TM_ERROR_SYSTEM, file, 0, NULL, "cannot open: %s%s",
+        tm_fail_at(error, TM_ERROR_SYSTEM, file, 0, NULL, "cannot open: %s%s",
                    strerror(cause), why);
-        filter_fail(f, &error);
     }
     return fd;
+}
+
+static int open_file(const filter *f, const char *file)
+{
+    tm_error error;
+    const int fd = try_file(f, file, &error);
+    if (fd < 0)
+        filter_fail(f, &error);
+    return fd;
+}
+
+int filter_open_input(const filter *f, tm_error *error)
+{
+    return f->input ? try_file(f, f->input, error) : STDIN_FILENO;
 }
 
 static int open_input(const filter *f)
@@ -129,7 +140,7 @@ static void require_report(const filter *f)
 
 /* Standard output, or a temporary file beside -o FILE that filter_finish() renames, so
  * that FILE is whole or not there. */
-static int open_output(filter *f)
+int filter_open_output(filter *f)
 {
     int fd = STDOUT_FILENO;
     tm_error error;
@@ -161,6 +172,13 @@ static tm_status add_history(const filter *f, tm_stream *stream, const char *don
     return status;
 }
 
+void filter_add_history(const filter *f, tm_stream *stream, const char *done)
+{
+    tm_error error;
+    if (f->history && add_history(f, stream, done, &error) != TM_OK)
+        filter_fail(f, &error);
+}
+
 void filter_write(filter *f, tm_stream *stream, const char *summary, ...)
 {
     tm_error error;
@@ -169,9 +187,8 @@ void filter_write(filter *f, tm_stream *stream, const char *summary, ...)
     va_start(arguments, summary);
     vsnprintf(done, sizeof done, summary, arguments);
     va_end(arguments);
-    if (f->history && add_history(f, stream, done, &error) != TM_OK)
-        filter_fail(f, &error);
-    int fd = open_output(f);
+    filter_add_history(f, stream, done);
+    int fd = filter_open_output(f);
     stream->progress = filter_progress(f);
     if (tm_stream_write(stream, fd, f->threads, &error) != TM_OK)
         filter_fail(f, &error);
@@ -180,7 +197,9 @@ void filter_write(filter *f, tm_stream *stream, const char *summary, ...)
 void filter_write_text(filter *f, const tm_text *text)
 {
     tm_error error;
-    int fd = open_output(f);
+    if (!filter_speaks())
+        return;
+    int fd = filter_open_output(f);
     filter_stage(f, "writing");
     if (tm_write_text(fd, text, &error) == TM_OK)
         return;
@@ -218,7 +237,7 @@ void filter_json_end(filter *f)
     tm_error error;
     tm_json_close(&f->json_object, '}');
     tm_text_string(&f->report, "\n");
-    if (f->json && write_report(f, &error) != TM_OK)
+    if (f->json && filter_speaks() && write_report(f, &error) != TM_OK)
         filter_fail(f, &error);
     tm_text_free(&f->report);
     f->reported = true;
@@ -243,5 +262,5 @@ int filter_finish(filter *f, int status)
         filter_fail(f, &error);
     }
     tm_text_free(&f->command);
-    return status;
+    return filter_speaks() ? status : EXIT_SUCCESS;
 }

@@ -20,6 +20,7 @@
 #include "../../../lib/text/report.h"
 #include "../../../lib/text/text.h"
 #include "../../../lib/base/version.h"
+#include "../../../lib/stream/ranks/slices.h"
 #include "../../../lib/stream/stream.h"
 #include "output_files.h"
 #include "progress.h"
@@ -199,6 +200,15 @@ void filter_verbose(const filter *f, const char *format, ...)
 void filter_leave_out(const filter *f, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
+/* FILE, or standard input, open for reading; -1 with an error. */
+int filter_open_input(const filter *f, tm_error *error);
+
+/* Standard output, or -o FILE in the making. */
+int filter_open_output(filter *f);
+
+/* Adds the line to the history of a stream: "# name version options: done". */
+void filter_add_history(const filter *f, tm_stream *stream, const char *done);
+
 /* The input's name for messages: the file, or "<stdin>". */
 const char *filter_input_name(const filter *f);
 
@@ -214,6 +224,11 @@ void filter_read(const filter *f, tm_stream *stream);
  * writes the stream to the output. summary is a printf format. With --json the report has
  * been written before, so that nothing goes out where that fails. */
 void filter_write(filter *f, tm_stream *stream, const char *summary, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* The same of ranks that work together, each of which has a slice. */
+void filter_read_slices(const filter *f, tm_slices *slices);
+void filter_write_slices(filter *f, tm_slices *slices, const char *summary, ...)
     __attribute__((format(printf, 3, 4)));
 
 /* Writes a text (a table, a foreign file) to the output, after the report as well. */

@@ -109,9 +109,9 @@ static int make_named(output_file *file)
 }
 
 /* Makes a file in the folder of file->target; -1 with errno where that fails. */
-static int make_temporary(output_file *file, const struct stat *old)
+static int make_temporary(output_file *file, bool named, const struct stat *old)
 {
-    int fd = make_unnamed(file);
+    int fd = named ? -1 : make_unnamed(file);
     if (fd < 0)
         fd = make_named(file);
     if (fd < 0)
@@ -167,7 +167,7 @@ static bool folder_is_closed(void)
     return errno == EACCES || errno == EPERM || errno == EROFS;
 }
 
-static int open_file(output_file *file)
+static int open_file(output_file *file, bool named)
 {
     struct stat old;
     const bool exists = stat(file->name, &old) == 0;
@@ -179,7 +179,7 @@ static int open_file(output_file *file)
     const int there = descriptor_of(file->target);
     if (there >= 0)
         return fcntl(there, F_DUPFD_CLOEXEC, 0); /* it goes on where it is */
-    const int fd = make_temporary(file, exists ? &old : NULL);
+    const int fd = make_temporary(file, named, exists ? &old : NULL);
     if (fd < 0 && exists && folder_is_closed())
         return open(file->target, O_WRONLY | O_TRUNC | O_CLOEXEC);
     return fd;
@@ -217,7 +217,7 @@ tm_status output_files_open(output_files *files, const char *name, int *fd,
         return tm_fail_memory(error);
     if (files->count == 0)
         private_signals_hold();
-    file.fd = open_file(&file);
+    file.fd = open_file(&file, files->named);
     if (file.fd < 0) {
         tm_status status = fail_file(name, error);
         free_file(&file);
@@ -228,6 +228,16 @@ tm_status output_files_open(output_files *files, const char *name, int *fd,
     *fd = file.fd;
     files->file[files->count++] = file;
     return TM_OK;
+}
+
+void output_files_path(const output_files *files, char path[OUTPUT_PATH])
+{
+    const output_file *file = &files->file[files->count - 1];
+    const char *temporary = file->temporary ? file->temporary : "";
+    if (file->unnamed)
+        snprintf(path, OUTPUT_PATH, "/proc/%ld/fd/%d", (long)getpid(), file->fd);
+    else
+        snprintf(path, OUTPUT_PATH, "%s", temporary);
 }
 
 /* Forgets the files; a signal that waited takes its course. */

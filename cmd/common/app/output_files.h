@@ -29,6 +29,7 @@ typedef struct output_files {
     size_t count;
     output_file *file;
     char *folder; /* that was made for them, or NULL */
+    bool named;   /* none is to be without a name while it is written */
 } output_files;
 
 /* Makes the folder that the files will be in, unless it is there. One for a set, before
@@ -39,6 +40,11 @@ tm_status output_files_make_folder(output_files *files, const char *name,
 /* Begins a file; *fd is for writing. */
 tm_status output_files_open(output_files *files, const char *name, int *fd,
                             tm_error *error);
+
+/* Under which path others on this machine, or where it is named on others, can open the
+ * last file that was begun while it is written; "" where it is written directly. */
+enum { OUTPUT_PATH = 4096 };
+void output_files_path(const output_files *files, char path[OUTPUT_PATH]);
 
 /* A file of the set that is a text. */
 tm_status output_files_write(output_files *files, const char *name, const tm_text *text,

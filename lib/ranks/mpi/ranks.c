@@ -277,6 +277,62 @@ void tm_ranks_receive(unsigned from, void *bytes, size_t room, size_t *size)
     *size = (size_t)got;
 }
 
+struct tm_ranks_file {
+    MPI_File file;
+};
+
+static tm_status fail_file(int code, tm_error *error)
+{
+    char why[MPI_MAX_ERROR_STRING] = "";
+    int length;
+    MPI_Error_string(code, why, &length);
+    return tm_fail(error, TM_ERROR_SYSTEM, "cannot write: %s", why);
+}
+
+tm_status tm_ranks_file_open(tm_ranks_file **file, const char *name, tm_error *error)
+{
+    *file = malloc(sizeof **file);
+    if (tm_ranks_any(!*file)) {
+        free(*file);
+        *file = NULL;
+        return tm_fail_memory(error);
+    }
+    const int code = MPI_File_open(MPI_COMM_WORLD, name, MPI_MODE_WRONLY, MPI_INFO_NULL,
+                                   &(*file)->file);
+    const tm_status status =
+        tm_ranks_agree(code == MPI_SUCCESS ? TM_OK : fail_file(code, error), error);
+    if (status == TM_OK)
+        return TM_OK;
+    if (code == MPI_SUCCESS)
+        MPI_File_close(&(*file)->file);
+    free(*file);
+    *file = NULL;
+    return status;
+}
+
+tm_status tm_ranks_file_put(tm_ranks_file *file, size_t at, const char *bytes,
+                            size_t size, tm_error *error)
+{
+    for (size_t done = 0; done < size; done += PIECE) {
+        const size_t left = size - done;
+        const int piece = (int)(left < PIECE ? left : PIECE);
+        const int code =
+            MPI_File_write_at(file->file, (MPI_Offset)(at + done), bytes + done, piece,
+                              MPI_BYTE, MPI_STATUS_IGNORE);
+        if (code != MPI_SUCCESS)
+            return fail_file(code, error);
+    }
+    return TM_OK;
+}
+
+tm_status tm_ranks_file_close(tm_ranks_file **file, tm_error *error)
+{
+    const int code = MPI_File_close(&(*file)->file);
+    free(*file);
+    *file = NULL;
+    return tm_ranks_agree(code == MPI_SUCCESS ? TM_OK : fail_file(code, error), error);
+}
+
 tm_ranks_traffic tm_ranks_sent(void)
 {
     return world.sent;

@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "slices.h"
+
+#include "../../base/array.h"
+#include "../../ranks/ranks.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* How many of the ascending numbers each rank has. */
+static void count_owners(size_t total, const uint32_t *number, size_t count, size_t *of)
+{
+    const unsigned ranks = tm_ranks_count();
+    size_t at = 0;
+    for (unsigned r = 0; r < ranks; r++) {
+        const size_t past = tm_slice_first(total, ranks, r + 1), begin = at;
+        while (at < count && number[at] < past)
+            at++;
+        of[r] = at - begin;
+    }
+}
+
+tm_status tm_slices_fetch(const void *own, size_t total, size_t size,
+                          const uint32_t *number, size_t count, void *row,
+                          tm_error *error)
+{
+    const unsigned ranks = tm_ranks_count();
+    const size_t first = tm_slice_first(total, ranks, tm_rank());
+    size_t *asked = tm_new(2 * (size_t)ranks, sizeof *asked), items = 0;
+    void *wanted = NULL, *got = NULL;
+    char *answer = NULL;
+    if (tm_ranks_any(!asked)) {
+        free(asked);
+        return tm_fail_memory(error);
+    }
+    size_t *of = asked + ranks;
+    count_owners(total, number, count, of);
+    tm_status status =
+        tm_ranks_exchange(number, of, sizeof *number, &wanted, asked, error);
+    for (unsigned r = 0; r < ranks && status == TM_OK; r++)
+        items += asked[r];
+    if (status == TM_OK) {
+        answer = tm_new(items, size);
+        if (tm_ranks_any(!answer))
+            status = tm_fail_memory(error);
+    }
+    for (size_t i = 0; i < items && status == TM_OK; i++)
+        memcpy(answer + i * size,
+               (const char *)own + (((const uint32_t *)wanted)[i] - first) * size, size);
+    free(wanted);
+    if (status == TM_OK)
+        status = tm_ranks_exchange(answer, asked, size, &got, of, error);
+    if (status == TM_OK && count > 0)
+        memcpy(row, got, count * size);
+    free(answer);
+    free(got);
+    free(asked);
+    return status;
+}
+
+tm_status tm_slices_localize(uint32_t *item, size_t items, uint32_t **number,
+                             size_t *numbers, tm_error *error)
+{
+    uint32_t *sorted = tm_new(items, sizeof *sorted);
+    size_t count = 0;
+    *number = NULL;
+    *numbers = 0;
+    if (!sorted)
+        return tm_fail_memory(error);
+    for (size_t i = 0; i < items; i++)
+        if (item[i] != TM_NONE)
+            sorted[count++] = item[i];
+    qsort(sorted, count, sizeof *sorted, tm_compare_numbers);
+    size_t unique = 0;
+    for (size_t i = 0; i < count; i++)
+        if (i == 0 || sorted[i] != sorted[unique - 1])
+            sorted[unique++] = sorted[i];
+    for (size_t i = 0; i < items; i++)
+        if (item[i] != TM_NONE)
+            item[i] = (uint32_t)tm_first_not_below(sorted, unique, item[i]);
+    uint32_t *fitting = realloc(sorted, (unique + 1) * sizeof *fitting);
+    *number = fitting ? fitting : sorted;
+    *numbers = unique;
+    return TM_OK;
+}

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which rows a rank has of a block of which each rank has a slice. The slices are as the
+ * ranks and as even as multiples of TM_CHUNK rows can be, so that what is done by chunks
+ * of them is done by the same chunks for every number of ranks. Rank 0 has all of few. */
+#ifndef TM_STREAM_SLICE_H
+#define TM_STREAM_SLICE_H
+
+#include "../base/extern_c.h"
+#include "../base/parallel.h"
+
+TM_EXTERN_C_BEGIN
+
+/* This rank's rows of a block have so many before them on other ranks; all ranks have
+ * `total`. */
+typedef struct tm_slice {
+    size_t before, total;
+} tm_slice;
+
+/* The first row of a rank, which for rank `ranks` is `total`. total * ranks is below
+ * 2^64. */
+static inline size_t tm_slice_first(size_t total, unsigned ranks, unsigned rank)
+{
+    const size_t chunks = tm_parallel_chunks(total, TM_CHUNK);
+    const size_t first = (size_t)TM_CHUNK * ((chunks * rank + ranks - 1) / ranks);
+    return first < total ? first : total;
+}
+
+/* The rank that has a row, which is below total. */
+static inline unsigned tm_slice_owner(size_t total, unsigned ranks, size_t row)
+{
+    return (unsigned)(row / TM_CHUNK * ranks / tm_parallel_chunks(total, TM_CHUNK));
+}
+
+TM_EXTERN_C_END
+
+#endif
