@@ -448,7 +448,7 @@ static tm_status read_blocks(reader *r)
             const tm_block *last = blocks ? &r->stream->block[blocks - 1] : NULL;
             if (last && tm_row_begins(r->lines.at))
                 return FAIL(r, last->name, "more rows than the %zu that its header says",
-                            last->count);
+                            tm_block_names_rows(&r->names, last));
             return FAIL(r, NULL, "'%s' is not the name of a block",
                         tm_lines_quote(r->lines.at, text));
         }

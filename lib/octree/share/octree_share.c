@@ -38,20 +38,17 @@ static tm_status fill(const tm_octree_share *share, const tm_share_list *list,
     void *got = NULL;
     tm_status status = send && counts ? TM_OK : tm_fail_memory(error);
     status = tm_ranks_agree(status, error);
-    if (status == TM_OK) {
+    if (status == TM_OK && send && counts) { /* as all say */
         for (size_t i = 0; i < list->start[share->ranks]; i++)
             memcpy(send + i * size, value + list->item[i] * size, size);
         for (unsigned r = 0; r < share->ranks; r++)
             counts[r] = list->start[r + 1] - list->start[r];
         status = tm_ranks_exchange(send, counts, size, &got, counts, error);
     }
-    if (status == TM_OK) {
-        if (first > 0)
-            memcpy(value, got, first * size);
-        if (count > past)
-            memcpy(value + past * size, (char *)got + first * size,
-                   (count - past) * size);
-    }
+    if (got && first > 0)
+        memcpy(value, got, first * size);
+    if (got && count > past)
+        memcpy(value + past * size, (char *)got + first * size, (count - past) * size);
     free(send);
     free(counts);
     free(got);

@@ -46,6 +46,19 @@ tm_status tm_octree_share_cut(tm_octree_share *share, const tm_octree *whole,
                               unsigned rank, unsigned ranks, unsigned rings,
                               tm_error *error);
 
+/* This rank's part of the octree that tm_octree_build() makes of the same rules, of which
+ * none may be TM_RULE_LEAVES; none has more of it at any time. All ranks call it with the
+ * same surface. Errors as there. O(leaves + ghosts + triangles × roots). */
+tm_status tm_octree_share_build(tm_octree_share *share, const tm_surface *surface,
+                                const tm_octree_rule *rule, size_t rules, unsigned rings,
+                                tm_error *error);
+
+/* The same as tm_octree_refine() makes of it: splits each leaf with split[local leaf] !=
+ * 0, which is only looked at for own ones. All leaves and nodes get new numbers, and
+ * ranks. All ranks call it. Errors as there; *share is then as it was. */
+tm_status tm_octree_share_refine(tm_octree_share *share, const tm_surface *surface,
+                                 const uint8_t *split, unsigned rings, tm_error *error);
+
 /* Frees all; a share of zeros is an empty one. */
 void tm_octree_share_free(tm_octree_share *share);
 

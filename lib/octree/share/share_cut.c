@@ -2,7 +2,7 @@
 #include "octree_share.h"
 
 #include "../../base/array.h"
-#include "share_weight.h"
+#include "../forest/rank_cuts.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -18,15 +18,15 @@ void tm_share_leaves_of(const tm_octree *whole, unsigned ranks, size_t *first)
 {
     size_t all = 0, before = 0;
     for (size_t l = 0; l < whole->leaves; l++)
-        all += tm_share_weight(&whole->leaf[l]);
+        all += tm_leaf_weight(&whole->leaf[l]);
     for (unsigned r = 0; r <= ranks; r++)
         first[r] = r == 0 ? 0 : whole->leaves;
     unsigned rank = 0;
     for (size_t l = 0; l < whole->leaves; l++) {
-        const unsigned own = tm_share_rank_at(before, all, ranks);
+        const unsigned own = tm_rank_of_weight(before, all, ranks);
         while (rank < own)
             first[++rank] = l;
-        before += tm_share_weight(&whole->leaf[l]);
+        before += tm_leaf_weight(&whole->leaf[l]);
     }
 }
 

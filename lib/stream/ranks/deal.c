@@ -57,24 +57,30 @@ static tm_status send_rows(tm_reader *r, unsigned to, size_t rows, size_t *left)
     return status;
 }
 
-static tm_status deal(tm_reader *r, tm_block *block, size_t rows, size_t limit)
+/* Rank 0's own rows, then the others'. What is wrong behind the last row that it has sent
+ * is *late, with its error in *cause: others may find something before it. */
+static tm_status deal(tm_reader *r, tm_block *block, size_t rows, size_t limit,
+                      tm_status *late, tm_error *cause)
 {
     const unsigned ranks = tm_ranks_count();
     const size_t own = tm_slice_first(rows, ranks, 1);
-    tm_status status = tm_reader_read_some(r, block, own, rows, limit);
+    tm_error *error = r->error;
+    const tm_status status = tm_reader_read_some(r, block, own, rows, limit);
+    r->error = cause;
     for (unsigned to = 1; to < ranks; to++) {
         const size_t first = tm_slice_first(rows, ranks, to);
-        size_t left = 0, some = tm_slice_first(rows, ranks, to + 1) - first;
-        if (status != TM_OK) /* the others have nothing to read */
-            some = 0;
-        const tm_status sent = send_rows(r, to, some, &left);
-        if (status == TM_OK)
-            status = sent;
-        if (status == TM_OK && left > 0)
-            status = tm_reader_find_row(r, block, first + some - left, rows);
-        if (status == TM_OK && left > 0)
-            status = tm_fail(r->error, TM_ERROR_INTERNAL, "a row was overlooked");
+        const size_t past = tm_slice_first(rows, ranks, to + 1);
+        const bool goes_on = status == TM_OK && *late == TM_OK;
+        size_t left = 0;
+        const tm_status sent = send_rows(r, to, goes_on ? past - first : 0, &left);
+        if (*late == TM_OK)
+            *late = sent;
+        if (*late == TM_OK && left > 0)
+            *late = tm_reader_find_row(r, block, past - left, rows);
+        if (*late == TM_OK && left > 0)
+            *late = tm_fail(cause, TM_ERROR_INTERNAL, "a row was overlooked");
     }
+    r->error = error;
     return status;
 }
 
@@ -130,8 +136,13 @@ tm_status tm_deal_rows(tm_reader *r, tm_block *block, size_t rows, size_t limit,
         free(in);
         return tm_fail_memory(error);
     }
-    const tm_status status =
-        tm_rank() == 0 ? deal(r, block, rows, limit) : receive(r, block, in, rows, limit);
+    tm_status late = TM_OK;
+    tm_error cause;
+    tm_status status = tm_rank() == 0 ? deal(r, block, rows, limit, &late, &cause)
+                                      : receive(r, block, in, rows, limit);
     free(in);
-    return tm_ranks_agree(status, error);
+    status = tm_ranks_agree(status, error);
+    if (status == TM_OK && late != TM_OK)
+        tm_fail_as(error, &cause);
+    return status == TM_OK ? tm_ranks_agree(late, error) : status;
 }
