@@ -86,7 +86,7 @@ tm_status tm_share_join_sets(const tm_octree_share *share, uint32_t *parent,
     tm_status status = tm_ranks_agree(other ? TM_OK : tm_fail_memory(error), error);
     for (size_t n = 0; status == TM_OK && n < nodes; n++)
         other[n] = share->node_number[tm_set_root(parent, (uint32_t)n)];
-    if (status == TM_OK) {
+    if (status == TM_OK && other) { /* as all say */
         memcpy(parent, other, nodes * sizeof *other);
         status = tm_share_fill_nodes(share, other, sizeof *other, error);
     }
