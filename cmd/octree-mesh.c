@@ -10,6 +10,7 @@
 #include "../lib/octree/layer/mesh_choice.h"
 #include "../lib/element/jens.h"
 #include "../lib/poly/octant/join_octants.h"
+#include "../lib/ranks/ranks.h"
 #include "../lib/surface/measure/surface_curvature.h"
 
 #include <math.h>
@@ -310,6 +311,18 @@ static void note_losses(const filter *f, const tm_surface *s,
         filter_note(f, "%zu elements are inverted", r->invalid);
 }
 
+/* Whether several ranks can make the mesh: not where regions are within others, or meet
+ * in walls. */
+static bool can_share(const settings *o, const tm_surface *s)
+{
+    if (s->walls || s->region || o->polyhedra)
+        return false;
+    for (size_t r = 0; r < o->rules.rules.count; r++)
+        if (o->rules.rules.rule[r].kind == TM_RULE_LEAVES)
+            return false;
+    return true;
+}
+
 /* The octree, and its mesh. */
 static void make_mesh(filter *f, settings *o, tm_surface *surface, tm_octree *octree,
                       tm_octree_mesh *mesh)
@@ -404,7 +417,8 @@ int main(int argc, char **argv)
                     "and tetrahedra where octants of different size meet.",
                 .help = own_help,
                 .options = options,
-                .letters = "a:s:b:r:l:u" FILTER_LETTERS};
+                .letters = "a:s:b:r:l:u" FILTER_LETTERS,
+                .ranks = true};
     filter_start(&f, argc, argv);
     settings o = read_options(&f);
     filter_operands(&f);
@@ -414,7 +428,10 @@ int main(int argc, char **argv)
     tm_octree octree;
     tm_octree_mesh mesh;
     tm_error error;
+    if (!f.input)
+        filter_together(&f, false);
     surface_input_build(&f, &o.surface, &surface, &stream);
+    const bool together = filter_together(&f, can_share(&o, &surface));
     double *largest = follow_curvature(&f, &o, &surface);
     refuse_many(&f, &o, &surface);
     note_outside(&f, &o.rules, &surface);
@@ -432,11 +449,17 @@ int main(int argc, char **argv)
         filter_fail(&f, &error);
     if (o.polyhedra)
         join_octants(&f, &stream, &r);
+    if (together && tm_rank() > 0) {
+        tm_ranks_any(false);
+        return 0;
+    }
     if (f.json)
         write_json(&f, &r);
     filter_write(&f, &stream, "%zu octants, %zu nodes, %zu %s", r.octants, r.nodes,
                  o.polyhedra ? r.polyhedra : elements,
                  o.polyhedra ? "polyhedra" : "elements");
+    if (together)
+        tm_ranks_any(false);
     tm_octree_mesh_free(&mesh);
     tm_octree_free(&octree);
     tm_surface_free(&surface);

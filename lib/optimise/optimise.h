@@ -64,6 +64,8 @@ typedef struct tm_optimise_options {
                         usual, 0 half as slow where much remains */
     size_t most_measured; /* no more is begun once so many elements were measured in all;
                              0: no limit */
+    const uint32_t *number; /* [elements]: theirs in the mesh that this one is of, by which
+                               what is done at random is chosen; NULL: these here */
     const tm_progress *progress;
     const tm_stop *stop;
 } tm_optimise_options;

@@ -145,8 +145,9 @@ static tm_status mend_cluster(tm_optimise_work *w, uint32_t first, const pass *h
     if (status != TM_OK || cluster->moving == 0)
         return status;
     w->report->clusters++;
+    const uint32_t *number = w->options->number;
     if (how->kick > 0)
-        kick_nodes(cluster, how->kick, first ^ round << 32);
+        kick_nodes(cluster, how->kick, (number ? number[first] : first) ^ round << 32);
     tm_optimise_descend(w, how->untangle);
     if (tm_score_better(&cluster->best_score, &cluster->first))
         tm_optimise_accept(w);

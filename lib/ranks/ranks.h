@@ -26,6 +26,10 @@ bool tm_launched(void);
 unsigned tm_launched_rank(void);
 unsigned tm_launched_count(void);
 
+/* Forgets the launcher: from now on this is one process without others, which need not
+ * be there for MPI to start, as p4est wants it. */
+void tm_launched_forget(void);
+
 /* Whether these are the functions of MPI. */
 bool tm_ranks_are_mpi(void);
 
