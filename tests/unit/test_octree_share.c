@@ -264,12 +264,12 @@ static void check_interior(const tm_octree_share *share, const tm_octree *octree
     tm_error error;
     tm_interior here, whole, enclosed_here, enclosed;
     assert_ok(tm_interior_choose(&whole, octree, surface, &error), &error);
-    assert_ok(tm_interior_choose_shared(&here, share, surface, &error), &error);
+    assert_ok(tm_interior_choose_on_ranks(&here, share, surface, &error), &error);
     assert_same_interior(&here, &whole, share);
     assert_ok(tm_interior_find_enclosed(&enclosed, &whole, octree, surface, &error),
               &error);
     assert_ok(
-        tm_interior_find_enclosed_shared(&enclosed_here, &here, share, surface, &error),
+        tm_interior_find_enclosed_on_ranks(&enclosed_here, &here, share, surface, &error),
         &error);
     assert_same_interior(&enclosed_here, &enclosed, share);
     assert_same_interior(&here, &whole, share);

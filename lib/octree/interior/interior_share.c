@@ -200,8 +200,8 @@ static tm_status clean_round(tm_interior *interior, const tm_octree_share *s,
     return status;
 }
 
-tm_status tm_interior_find_used_shared(tm_interior *interior,
-                                       const tm_octree_share *share, tm_error *error)
+tm_status tm_interior_find_used_on_ranks(tm_interior *interior,
+                                         const tm_octree_share *share, tm_error *error)
 {
     interior->count = 0;
     for (size_t l = share->own_first; l < share->own_past; l++)
@@ -224,8 +224,8 @@ static tm_status fill_masks(const tm_interior *interior, const tm_octree_share *
     return tm_share_fill_nodes(share, interior->mask, sizeof *interior->mask, error);
 }
 
-tm_status tm_interior_choose_shared(tm_interior *interior, const tm_octree_share *share,
-                                    const tm_surface *surface, tm_error *error)
+tm_status tm_interior_choose_on_ranks(tm_interior *interior, const tm_octree_share *share,
+                                      const tm_surface *surface, tm_error *error)
 {
     size_t bad = 1;
     tm_status status = start(interior, &share->octree) ? TM_OK : tm_fail_memory(error);
@@ -240,7 +240,7 @@ tm_status tm_interior_choose_shared(tm_interior *interior, const tm_octree_share
         status = fill_masks(interior, share, error);
     for (int round = 0; status == TM_OK && bad > 0; round++)
         status = clean_round(interior, share, surface, round, &bad, error);
-    return status == TM_OK ? tm_interior_find_used_shared(interior, share, error)
+    return status == TM_OK ? tm_interior_find_used_on_ranks(interior, share, error)
                            : status;
 }
 
@@ -301,9 +301,9 @@ static tm_status choose_enclosed(tm_interior *enclosed, const tm_interior *inter
     return status;
 }
 
-tm_status tm_interior_find_enclosed_shared(tm_interior *enclosed, tm_interior *interior,
-                                           const tm_octree_share *share,
-                                           const tm_surface *surface, tm_error *error)
+tm_status tm_interior_find_enclosed_on_ranks(tm_interior *enclosed, tm_interior *interior,
+                                             const tm_octree_share *share,
+                                             const tm_surface *surface, tm_error *error)
 {
     const tm_octree *octree = &share->octree;
     tm_status status = start(enclosed, octree) ? TM_OK : tm_fail_memory(error);
@@ -319,7 +319,7 @@ tm_status tm_interior_find_enclosed_shared(tm_interior *enclosed, tm_interior *i
     for (size_t l = 0; l < octree->leaves; l++)
         enclosed->chosen[l] |= interior->chosen[l];
     if (status == TM_OK)
-        status = tm_interior_find_used_shared(enclosed, share, error);
+        status = tm_interior_find_used_on_ranks(enclosed, share, error);
     for (size_t l = 0; l < octree->leaves; l++)
         enclosed->chosen[l] &= !interior->chosen[l];
     memcpy(interior->used, enclosed->used, octree->nodes * sizeof *interior->used);

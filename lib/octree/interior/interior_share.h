@@ -12,16 +12,16 @@
  * without walls and with an inside (not by_winding). count, filled and removed are those
  * of all ranks. What all have at a time are the leaves at nodes with a mask that is not
  * good. */
-tm_status tm_interior_choose_shared(tm_interior *interior, const tm_octree_share *share,
-                                    const tm_surface *surface, tm_error *error);
+tm_status tm_interior_choose_on_ranks(tm_interior *interior, const tm_octree_share *share,
+                                      const tm_surface *surface, tm_error *error);
 
 /* used, and count of all ranks, from what is chosen. */
-tm_status tm_interior_find_used_shared(tm_interior *interior,
-                                       const tm_octree_share *share, tm_error *error);
+tm_status tm_interior_find_used_on_ranks(tm_interior *interior,
+                                         const tm_octree_share *share, tm_error *error);
 
 /* What tm_interior_find_enclosed() finds. */
-tm_status tm_interior_find_enclosed_shared(tm_interior *enclosed, tm_interior *interior,
-                                           const tm_octree_share *share,
-                                           const tm_surface *surface, tm_error *error);
+tm_status tm_interior_find_enclosed_on_ranks(tm_interior *enclosed, tm_interior *interior,
+                                             const tm_octree_share *share,
+                                             const tm_surface *surface, tm_error *error);
 
 #endif
