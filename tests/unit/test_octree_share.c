@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Shares of octrees: cut from a whole one against what touches what; and those that ranks
  * make together, as many as a launcher starts, against the cut. */
-#include "../../lib/octree/share/octree_share.h"
-
+#include "../../lib/base/disjoint_sets.h"
+#include "../../lib/octree/interior/interior_share.h"
 #include "../../lib/ranks/ranks.h"
 
 #include <setjmp.h>
@@ -243,6 +243,91 @@ static void test_together(void **state)
     }
 }
 
+static void assert_same_interior(const tm_interior *here, const tm_interior *whole,
+                                 const tm_octree_share *s)
+{
+    assert_int_equal(here->chosen != NULL, whole->chosen != NULL);
+    assert_int_equal(here->count, whole->count);
+    assert_int_equal(here->filled, whole->filled);
+    assert_int_equal(here->removed, whole->removed);
+    for (size_t l = 0; whole->chosen && l < s->octree.leaves; l++)
+        assert_int_equal(here->chosen[l], whole->chosen[s->leaf_number[l]]);
+    for (size_t n = 0; whole->chosen && n < s->octree.nodes; n++) {
+        assert_int_equal(here->mask[n], whole->mask[s->node_number[n]]);
+        assert_int_equal(here->used[n], whole->used[s->node_number[n]]);
+    }
+}
+
+static void check_interior(const tm_octree_share *share, const tm_octree *octree,
+                           const tm_surface *surface)
+{
+    tm_error error;
+    tm_interior here, whole, enclosed_here, enclosed;
+    assert_ok(tm_interior_choose(&whole, octree, surface, &error), &error);
+    assert_ok(tm_interior_choose_on_ranks(&here, share, surface, &error), &error);
+    assert_same_interior(&here, &whole, share);
+    assert_ok(tm_interior_find_enclosed(&enclosed, &whole, octree, surface, &error),
+              &error);
+    assert_ok(
+        tm_interior_find_enclosed_on_ranks(&enclosed_here, &here, share, surface, &error),
+        &error);
+    assert_same_interior(&enclosed_here, &enclosed, share);
+    assert_same_interior(&here, &whole, share);
+    tm_interior_free(&here);
+    tm_interior_free(&whole);
+    tm_interior_free(&enclosed_here);
+    tm_interior_free(&enclosed);
+}
+
+/* Opposite corners of some leaves are joined. */
+static void check_sets(const tm_octree_share *s, const tm_octree *whole)
+{
+    tm_error error;
+    uint32_t *all = malloc((whole->nodes + 1) * sizeof *all);
+    uint32_t *here = malloc((s->octree.nodes + 1) * sizeof *here);
+    for (size_t n = 0; n < whole->nodes; n++)
+        all[n] = (uint32_t)n;
+    for (size_t n = 0; n < s->octree.nodes; n++)
+        here[n] = (uint32_t)n;
+    for (size_t l = 0; l < whole->leaves; l++) {
+        const size_t at = l - s->first[s->rank] + s->own_first;
+        const bool own = l >= s->first[s->rank] && l < s->first[s->rank + 1];
+        if (random_below(3) > 0)
+            continue;
+        tm_set_unite(all, whole->node[l][0], whole->node[l][7]);
+        if (own)
+            tm_set_unite(here, s->octree.node[at][0], s->octree.node[at][7]);
+    }
+    assert_ok(tm_share_join_sets(s, here, &error), &error);
+    for (size_t n = 0; n < s->octree.nodes; n++)
+        assert_int_equal(here[n], tm_set_root(all, s->node_number[n]));
+    free(all);
+    free(here);
+}
+
+static void test_interior(void **state)
+{
+    (void)state;
+    for (int i = 0; i < SURFACES; i++) {
+        tm_error error;
+        tm_surface surface;
+        tm_octree whole;
+        tm_octree_share share;
+        tm_octree_rule rule[RULES];
+        const unsigned rings = 1 + random_below(2);
+        make_random_surface(&surface);
+        choose_rules(rule, &surface);
+        assert_ok(tm_octree_build(&whole, &surface, rule, RULES, &error), &error);
+        assert_ok(tm_octree_share_build(&share, &surface, rule, RULES, rings, &error),
+                  &error);
+        check_interior(&share, &whole, &surface);
+        check_sets(&share, &whole);
+        tm_octree_share_free(&share);
+        tm_octree_free(&whole);
+        tm_surface_free(&surface);
+    }
+}
+
 /* What one rank finds wrong all say. */
 static void test_refused(void **state)
 {
@@ -264,6 +349,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_cut),
         cmocka_unit_test(test_together),
+        cmocka_unit_test(test_interior),
         cmocka_unit_test(test_refused),
     };
     tm_error error;

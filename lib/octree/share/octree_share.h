@@ -75,6 +75,14 @@ tm_status tm_share_fill_leaves(const tm_octree_share *share, void *value, size_t
 tm_status tm_share_fill_nodes(const tm_octree_share *share, void *value, size_t size,
                               tm_error *error);
 
+/* Of sets of local nodes, with the smallest one as the root of each (disjoint_sets.h),
+ * that ranks have joined by what they have, makes sets of the whole octree: parent[n]
+ * becomes the number in the whole octree of the smallest node of its set. TM_ERROR_SYSTEM
+ * where memory is out. All ranks call it; what they tell all others are the sets that
+ * have nodes of several ranks. O(nodes). */
+tm_status tm_share_join_sets(const tm_octree_share *share, uint32_t *parent,
+                             tm_error *error);
+
 TM_EXTERN_C_END
 
 #endif

@@ -10,7 +10,7 @@
 
 /* The own leaves with the first ring of ghosts around them, and the nodes of these. */
 static tm_status place_leaves(tm_octree_share *s, const tm_leaf_list *own,
-                              const tm_ghosts *ghosts, tm_error *error)
+                              const tm_ghost_list *ghosts, tm_error *error)
 {
     tm_octree *o = &s->octree;
     while (s->own_first < ghosts->count &&
@@ -61,7 +61,7 @@ static tm_status make(tm_octree_share *s, tm_leaf_list *own, unsigned rings,
                       tm_error *error)
 {
     tm_rank_cuts cuts = {0};
-    tm_ghosts ghosts = {0};
+    tm_ghost_list ghosts = {0};
     tm_status status = tm_leaf_list_spread(own, error);
     if (status == TM_OK)
         status = find_first(s, own, &cuts, error);

@@ -13,7 +13,7 @@
 
 enum { CHILDREN = 8, AXES = 3, DIRECTIONS = 27 };
 
-bool tm_ghosts_add(tm_ghosts *list, const tm_leaf *leaf, uint32_t number)
+bool tm_ghost_list_add(tm_ghost_list *list, const tm_leaf *leaf, uint32_t number)
 {
     tm_ghost *grown =
         tm_grow(list->ghost, &list->room, list->count + 1, sizeof *list->ghost);
@@ -27,8 +27,8 @@ bool tm_ghosts_add(tm_ghosts *list, const tm_leaf *leaf, uint32_t number)
 typedef struct {
     const tm_octree *brick;
     const tm_rank_cuts *cuts;
-    size_t *seen;    /* [ranks]: one more than the last leaf that is theirs, too */
-    tm_ghosts *send; /* [ranks] */
+    size_t *seen;        /* [ranks]: one more than the last leaf that is theirs, too */
+    tm_ghost_list *send; /* [ranks] */
 } sender;
 
 /* Marks the ranks that have cells of an octant of 2^shift units which touch the leaf that
@@ -97,25 +97,25 @@ static bool list_leaf(const sender *s, const tm_leaf *leaf, size_t l, size_t bef
     }
     for (unsigned r = 0; r < s->cuts->ranks; r++)
         if (s->seen[r] == l + 1 && r != s->cuts->rank &&
-            !tm_ghosts_add(&s->send[r], leaf, (uint32_t)(before + l)))
+            !tm_ghost_list_add(&s->send[r], leaf, (uint32_t)(before + l)))
             return false;
     return true;
 }
 
 /* One list of those for each rank; these are freed. */
-static bool join(tm_ghosts *all, tm_ghosts *of, unsigned ranks, size_t *count)
+static bool join(tm_ghost_list *all, tm_ghost_list *of, unsigned ranks, size_t *count)
 {
     bool done = true;
     for (unsigned r = 0; r < ranks; r++) {
         count[r] = of[r].count;
         for (size_t i = 0; i < of[r].count && done; i++)
-            done = tm_ghosts_add(all, &of[r].ghost[i].leaf, of[r].ghost[i].number);
+            done = tm_ghost_list_add(all, &of[r].ghost[i].leaf, of[r].ghost[i].number);
         free(of[r].ghost);
     }
     return done;
 }
 
-tm_status tm_share_find_ghosts(tm_ghosts *ghosts, const tm_octree *brick,
+tm_status tm_share_find_ghosts(tm_ghost_list *ghosts, const tm_octree *brick,
                                const tm_leaf_list *own, const size_t *first,
                                const tm_rank_cuts *cuts, tm_error *error)
 {
@@ -123,14 +123,14 @@ tm_status tm_share_find_ghosts(tm_ghosts *ghosts, const tm_octree *brick,
     sender s = {brick, cuts, calloc(ranks, sizeof *s.seen),
                 calloc(ranks, sizeof *s.send)};
     size_t *count = calloc(ranks, sizeof *count);
-    tm_ghosts all = {0};
+    tm_ghost_list all = {0};
     bool done = s.seen && s.send && count;
     for (size_t l = 0; l < own->count && done; l++)
         if (!is_within(&s, &own->leaf[l]))
             done = list_leaf(&s, &own->leaf[l], l, first[cuts->rank]);
     if (s.send && count)
         done &= join(&all, s.send, ranks, count);
-    *ghosts = (tm_ghosts){0};
+    *ghosts = (tm_ghost_list){0};
     const tm_status status = tm_share_exchange(done, all.ghost, count, sizeof *all.ghost,
                                                (void **)&ghosts->ghost, error);
     for (unsigned r = 0; status == TM_OK && r < ranks; r++)
@@ -149,7 +149,7 @@ typedef struct {
     tm_leaf_tree tree;
     unsigned rank; /* that asks */
     uint8_t *told; /* [local leaves]: to this rank */
-    tm_ghosts send;
+    tm_ghost_list send;
     bool failed;
 } teller;
 
@@ -171,7 +171,7 @@ static void tell(teller *t, const tm_leaf *leaf, uint32_t cell,
         if (t->told[l] || (number >= s->first[t->rank] && number < s->first[t->rank + 1]))
             return;
         t->told[l] = 1;
-        t->failed |= !tm_ghosts_add(&t->send, &s->octree.leaf[l], number);
+        t->failed |= !tm_ghost_list_add(&t->send, &s->octree.leaf[l], number);
         return;
     }
     for (unsigned c = 0; c < CHILDREN; c++) {
@@ -203,7 +203,7 @@ static int compare_ghosts(const void *a, const void *b)
 }
 
 /* Adds those that are new to ascending ghosts; *fresh has the numbers of these. */
-static bool merge(tm_ghosts *ghosts, tm_ghost *got, size_t count, uint32_t **fresh,
+static bool merge(tm_ghost_list *ghosts, tm_ghost *got, size_t count, uint32_t **fresh,
                   size_t *news)
 {
     const size_t before = ghosts->count;
@@ -215,7 +215,7 @@ static bool merge(tm_ghosts *ghosts, tm_ghost *got, size_t count, uint32_t **fre
         if ((i > 0 && got[i].number == got[i - 1].number) ||
             bsearch(&got[i], ghosts->ghost, before, sizeof *got, compare_ghosts))
             continue;
-        if (!tm_ghosts_add(ghosts, &got[i].leaf, got[i].number) ||
+        if (!tm_ghost_list_add(ghosts, &got[i].leaf, got[i].number) ||
             !tm_append(fresh, news, &room, got[i].number))
             return false;
     }
@@ -225,7 +225,7 @@ static bool merge(tm_ghosts *ghosts, tm_ghost *got, size_t count, uint32_t **fre
 }
 
 /* Asks the ranks of leaves, ascending, for what touches them. */
-static tm_status ask(teller *t, tm_ghosts *ghosts, uint32_t **asked, size_t *count,
+static tm_status ask(teller *t, tm_ghost_list *ghosts, uint32_t **asked, size_t *count,
                      tm_error *error)
 {
     const tm_octree_share *s = t->share;
@@ -260,7 +260,7 @@ static tm_status ask(teller *t, tm_ghosts *ghosts, uint32_t **asked, size_t *cou
     return tm_ranks_agree(status, error);
 }
 
-tm_status tm_share_add_rings(tm_ghosts *ghosts, const tm_octree_share *share,
+tm_status tm_share_add_rings(tm_ghost_list *ghosts, const tm_octree_share *share,
                              unsigned more, tm_error *error)
 {
     teller t = {.share = share, .told = calloc(share->octree.leaves + 1, 1)};

@@ -166,7 +166,7 @@ static tm_status number_own(tm_octree_share *s, tm_error *error)
 }
 
 /* Puts these ghosts, ascending, around the own leaves, and drops the others. */
-static tm_status place_ghosts(tm_octree_share *s, const tm_ghosts *ghosts)
+static tm_status place_ghosts(tm_octree_share *s, const tm_ghost_list *ghosts)
 {
     tm_octree *o = &s->octree;
     const size_t own = s->own_past - s->own_first, count = own + ghosts->count;
@@ -287,7 +287,7 @@ static void place_nodes(tm_octree_share *s)
         }
 }
 
-tm_status tm_share_number_nodes(tm_octree_share *share, const tm_ghosts *ghosts,
+tm_status tm_share_number_nodes(tm_octree_share *share, const tm_ghost_list *ghosts,
                                 tm_error *error)
 {
     tm_octree *o = &share->octree;

@@ -12,27 +12,27 @@ typedef struct tm_ghost {
     uint32_t number;
 } tm_ghost;
 
-typedef struct tm_ghosts {
+typedef struct tm_ghost_list {
     size_t count, room;
     tm_ghost *ghost;
-} tm_ghosts;
+} tm_ghost_list;
 
-bool tm_ghosts_add(tm_ghosts *list, const tm_leaf *leaf, uint32_t number);
+bool tm_ghost_list_add(tm_ghost_list *list, const tm_leaf *leaf, uint32_t number);
 
 /* share_ghosts.c: the leaves of other ranks that touch those of this one, ascending.
  * first[ranks + 1]: the number of each rank's first leaf. */
-tm_status tm_share_find_ghosts(tm_ghosts *ghosts, const tm_octree *brick,
+tm_status tm_share_find_ghosts(tm_ghost_list *ghosts, const tm_octree *brick,
                                const tm_leaf_list *own, const size_t *first,
                                const tm_rank_cuts *cuts, tm_error *error);
 
 /* Adds to these, of which the share has its leaves and numbers, what touches them, with
  * so many rings more. */
-tm_status tm_share_add_rings(tm_ghosts *ghosts, const tm_octree_share *share,
+tm_status tm_share_add_rings(tm_ghost_list *ghosts, const tm_octree_share *share,
                              unsigned more, tm_error *error);
 
 /* share_nodes.c: of a share whose octree has nodes by the leaves that it has, the first
  * ring of ghosts only, these of all, with these ghosts in place of its own. */
-tm_status tm_share_number_nodes(tm_octree_share *share, const tm_ghosts *ghosts,
+tm_status tm_share_number_nodes(tm_octree_share *share, const tm_ghost_list *ghosts,
                                 tm_error *error);
 
 /* Exchanges items as tm_ranks_exchange() does if all ranks are done; else memory is out
