@@ -5,6 +5,7 @@
 #include "../../base/array.h"
 #include "../../base/disjoint_sets.h"
 #include "../../ranks/ranks.h"
+#include "../interior/interior_share.h"
 #include "adaptive_refinement.h"
 #include "octree_mesh_parts.h"
 #include "skin.h"
@@ -98,26 +99,17 @@ static tm_status mark_many(const maker *m, const bool *behind, uint8_t *split,
 {
     const tm_octree *octree = &m->share->octree;
     uint32_t *parent = tm_new(octree->nodes, sizeof *parent);
-    uint32_t *label = tm_new(octree->nodes, sizeof *label);
-    tm_mesh_ghosts ghosts = {0};
-    tm_status status =
-        tm_ranks_agree(parent && label ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_agree(parent ? TM_OK : tm_fail_memory(error), error);
     for (size_t n = 0; status == TM_OK && n < octree->nodes; n++)
         parent[n] = (uint32_t)n;
-    const uint32_t *const of_node[] = {parent};
-    if (status == TM_OK)
-        status = tm_mesh_ghosts_find(&ghosts, m->share, of_node, 1, NULL, error);
     for (size_t l = 0; status == TM_OK && l < octree->leaves; l++)
         for (int p = 1; behind[l] && p < TM_LEAF_EDGE; p++)
             tm_set_unite(parent, octree->node[l][0], octree->node[l][p]);
     if (status == TM_OK)
-        status = tm_mesh_ghosts_join(&ghosts, m->share->node_number, parent,
-                                     octree->nodes, label, error);
+        status = tm_share_join_sets(m->share, parent, error);
     if (status == TM_OK)
-        status = split_sets(m, behind, label, split, error);
+        status = split_sets(m, behind, parent, split, error);
     free(parent);
-    free(label);
-    tm_mesh_ghosts_free(&ghosts);
     return status;
 }
 

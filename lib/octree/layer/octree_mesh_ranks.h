@@ -15,11 +15,6 @@ tm_status tm_octree_mesh_make_on_ranks(tm_octree_mesh *mesh, const tm_octree_sha
                                        const tm_progress *progress, bool *alone,
                                        tm_error *error);
 
-/* As tm_interior_choose(), of the whole octree: what of it is of the share's leaves and
- * at its nodes, ghosts too. */
-tm_status tm_interior_choose_on_ranks(tm_interior *interior, const tm_octree_share *share,
-                                      const tm_surface *surface, tm_error *error);
-
 /* As tm_octree_mesh_choose() of a surface without walls, and rules without lists. */
 tm_status tm_octree_mesh_choose_on_ranks(tm_octree_mesh *mesh, tm_octree_share *share,
                                          tm_surface *surface, const tm_mesh_plan *plan,
