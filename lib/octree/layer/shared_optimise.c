@@ -35,11 +35,12 @@ typedef struct {
     tm_node_rule *rule;
     const tm_boundary *boundary;
     const tm_optimise_options *options;
-    double *jens;    /* [own elements] */
-    bool *near;      /* [nodes]: within the rings */
-    uint32_t *label; /* [nodes of the octree]: of their sets */
-    bool *crosses;   /* [nodes of the octree]: others may have some of the set */
-    double worst;    /* of own elements that stay as they are */
+    double *jens;        /* [own elements] */
+    bool *near;          /* [nodes]: within the rings of what is bad */
+    uint32_t *label;     /* [nodes of the octree]: of their sets */
+    bool *mark;          /* [nodes] */
+    uint32_t *candidate; /* own elements that are near what was bad at first */
+    size_t candidates;
 } sender;
 
 static void measure_chunk(void *context, size_t first, size_t past)
@@ -69,49 +70,58 @@ static bool is_near(const sender *s, size_t e)
     return near_node(s, e) != TM_NONE;
 }
 
-/* Marks the nodes of own bad elements. */
-static void mark_bad(const sender *s, bool *mark)
+static bool is_bad(const sender *s, size_t e)
 {
-    const tm_mixed_mesh *mesh = &s->mesh->assembly.mesh;
-    for (size_t e = 0; e < own_elements(s); e++) {
-        const size_t at = s->share->elements.first + e;
-        if (s->jens[e] < s->options->threshold)
-            for (size_t i = mesh->start[at]; i < mesh->start[at + 1]; i++)
-                mark[mesh->item[i]] = true;
-    }
+    return s->jens[e - s->share->elements.first] < s->options->threshold;
 }
 
-/* Marks the nodes of own elements that have one that is near. */
-static void mark_next(const sender *s, bool *mark)
+static void mark_nodes(const sender *s, size_t e, bool *mark)
 {
     const tm_mixed_mesh *mesh = &s->mesh->assembly.mesh;
-    for (size_t e = s->share->elements.first; e < s->share->elements.past; e++)
-        if (is_near(s, e))
-            for (size_t i = mesh->start[e]; i < mesh->start[e + 1]; i++)
-                mark[mesh->item[i]] = true;
+    for (size_t i = mesh->start[e]; i < mesh->start[e + 1]; i++)
+        mark[mesh->item[i]] = true;
 }
 
-/* Marks what is near bad elements of any rank. */
-static tm_status mark_near(sender *s, tm_error *error)
+/* Marks the nodes of candidates that are bad, of any rank, then so many rings around. */
+static tm_status mark_near(const sender *s, unsigned rings, tm_error *error)
 {
+    const tm_mesh_ghosts *ghosts = &s->share->ghosts;
     const size_t nodes = s->mesh->assembly.mesh.nodes;
-    bool *mark = tm_new(nodes, sizeof *mark);
-    tm_status status = tm_ranks_agree(mark ? TM_OK : tm_fail_memory(error), error);
-    if (status == TM_OK) {
-        mark_bad(s, s->near);
-        status = tm_mesh_ghosts_mark(&s->share->ghosts, s->near, error);
+    memset(s->near, false, nodes);
+    for (size_t c = 0; c < s->candidates; c++)
+        if (is_bad(s, s->candidate[c]))
+            mark_nodes(s, s->candidate[c], s->near);
+    tm_status status = tm_mesh_ghosts_mark(ghosts, s->near, error);
+    for (unsigned ring = 0; ring < rings && status == TM_OK; ring++) {
+        memcpy(s->mark, s->near, nodes);
+        for (size_t c = 0; c < s->candidates; c++)
+            if (is_near(s, s->candidate[c]))
+                mark_nodes(s, s->candidate[c], s->mark);
+        status = tm_mesh_ghosts_mark(ghosts, s->mark, error);
+        memcpy(s->near, s->mark, nodes);
     }
-    for (int ring = 0; ring < RINGS && status == TM_OK; ring++) {
-        memcpy(mark, s->near, nodes);
-        mark_next(s, mark);
-        status = tm_mesh_ghosts_mark(&s->share->ghosts, mark, error);
-        memcpy(s->near, mark, nodes);
-    }
-    s->worst = 1;
-    for (size_t e = 0; e < own_elements(s) && status == TM_OK; e++)
-        if (!is_near(s, s->share->elements.first + e))
-            s->worst = fmin(s->worst, s->jens[e]);
-    free(mark);
+    return status;
+}
+
+/* At first all own elements are candidates; then those within the most rings. */
+static tm_status find_candidates(sender *s, tm_error *error)
+{
+    size_t count = 0;
+    s->candidate = tm_new(own_elements(s), sizeof *s->candidate);
+    tm_status status =
+        tm_ranks_agree(s->candidate ? TM_OK : tm_fail_memory(error), error);
+    if (status != TM_OK)
+        return status;
+    s->candidates = own_elements(s);
+    for (size_t e = 0; e < s->candidates; e++)
+        s->candidate[e] = (uint32_t)(s->share->elements.first + e);
+    status = mark_near(s, RINGS, error);
+    for (size_t c = 0; status == TM_OK && c < s->candidates; c++)
+        if (is_near(s, s->candidate[c]))
+            s->candidate[count++] = s->candidate[c];
+    s->candidates = count;
+    uint32_t *fewer = realloc(s->candidate, (count + 1) * sizeof *fewer);
+    s->candidate = fewer ? fewer : s->candidate;
     return status;
 }
 
@@ -132,7 +142,8 @@ static uint32_t stand_in(const sender *s, uint32_t n)
 static void join_near(const sender *s)
 {
     const tm_mixed_mesh *mesh = &s->mesh->assembly.mesh;
-    for (size_t e = s->share->elements.first; e < s->share->elements.past; e++) {
+    for (size_t c = 0; c < s->candidates; c++) {
+        const size_t e = s->candidate[c];
         const uint32_t first = near_node(s, e);
         if (first == TM_NONE)
             continue;
@@ -143,59 +154,13 @@ static void join_near(const sender *s)
     }
 }
 
-/* Finds the sets, and those that have nodes which other ranks know, too. */
-static tm_status find_sets(sender *s, tm_error *error)
+/* Finds the sets. */
+static tm_status find_sets(const sender *s, tm_error *error)
 {
-    const tm_octree_share *of = s->share->of;
-    const size_t nodes = of->octree.nodes;
-    s->label = tm_new(nodes, sizeof *s->label);
-    s->crosses = calloc(nodes + 1, sizeof *s->crosses);
-    const tm_status status =
-        tm_ranks_agree(s->label && s->crosses ? TM_OK : tm_fail_memory(error), error);
-    if (status != TM_OK)
-        return status;
-    for (size_t n = 0; n < nodes; n++)
+    for (size_t n = 0; n < s->share->of->octree.nodes; n++)
         s->label[n] = (uint32_t)n;
     join_near(s);
-    for (uint32_t n = 0; n < nodes; n++)
-        if (n < of->own_node_first || n >= of->own_node_past)
-            s->crosses[tm_set_root(s->label, n)] = true;
-    for (size_t i = 0; i < of->nodes_sent.start[of->ranks]; i++)
-        s->crosses[tm_set_root(s->label, of->nodes_sent.item[i])] = true;
-    for (uint32_t n = 0; n < nodes; n++) /* a root comes before the others */
-        s->crosses[n] = s->crosses[tm_set_root(s->label, n)];
-    return tm_share_join_sets(of, s->label, error);
-}
-
-/* Whether an own element, which is near, is of a set that is this rank's alone. */
-static bool is_alone(const sender *s, size_t e)
-{
-    return !s->crosses[stand_in(s, near_node(s, e))];
-}
-
-/* What is this rank's alone is mended where it is. */
-static tm_status mend_alone(const sender *s, tm_optimise_report *report, tm_error *error)
-{
-    tm_mixed_mesh *mesh = &s->mesh->assembly.mesh;
-    const tm_own_range *own = &s->share->elements;
-    double *threshold = tm_new(mesh->elements, sizeof *threshold);
-    uint32_t *number = tm_new(mesh->elements, sizeof *number);
-    tm_status status = threshold && number ? TM_OK : tm_fail_memory(error);
-    for (size_t e = 0; status == TM_OK && e < mesh->elements; e++) {
-        const bool here =
-            e >= own->first && e < own->past && is_near(s, e) && is_alone(s, e);
-        threshold[e] = here ? s->options->threshold : -HUGE_VAL;
-        number[e] = (uint32_t)(own->number + e - own->first);
-    }
-    if (status == TM_OK) {
-        tm_optimise_options options = *s->options;
-        options.thresholds = threshold;
-        options.number = number;
-        status = tm_mixed_optimise(mesh, s->rule, s->boundary, &options, report, error);
-    }
-    free(threshold);
-    free(number);
-    return status;
+    return tm_share_join_sets(s->share->of, s->label, error);
 }
 
 /* What goes to other ranks: those of rank r are element[…], behind those of the ranks
@@ -224,11 +189,6 @@ static unsigned rank_of(const sender *s, const parcel *p, size_t e)
     return first;
 }
 
-static bool is_sent(const sender *s, const parcel *p, size_t e)
-{
-    return is_near(s, e) && (p->to_first || !is_alone(s, e));
-}
-
 static void enter_element(const sender *s, size_t e, sent_element *to)
 {
     const tm_mixed_mesh *mesh = &s->mesh->assembly.mesh;
@@ -243,19 +203,20 @@ static void enter_element(const sender *s, size_t e, sent_element *to)
 /* Sorts elements by the ranks that they go to. */
 static bool pack_elements(const sender *s, parcel *p)
 {
-    const tm_own_range *own = &s->share->elements;
     size_t *next = calloc(p->ranks, sizeof *next), all = 0;
-    for (size_t e = own->first; next && e < own->past; e++)
-        if (is_sent(s, p, e))
-            p->elements[rank_of(s, p, e)]++;
+    for (size_t c = 0; next && c < s->candidates; c++)
+        if (is_near(s, s->candidate[c]))
+            p->elements[rank_of(s, p, s->candidate[c])]++;
     for (unsigned r = 0; next && r < p->ranks; r++) {
         next[r] = all;
         all += p->elements[r];
     }
     p->element = tm_new(all, sizeof *p->element);
-    for (size_t e = own->first; next && p->element && e < own->past; e++)
-        if (is_sent(s, p, e))
+    for (size_t c = 0; next && p->element && c < s->candidates; c++) {
+        const size_t e = s->candidate[c];
+        if (is_near(s, e))
             enter_element(s, e, &p->element[next[rank_of(s, p, e)]++]);
+    }
     free(next);
     return next && p->element;
 }
@@ -278,11 +239,11 @@ static int compare_addresses(const void *a, const void *b)
 static bool pack_nodes(const sender *s, parcel *p)
 {
     const tm_mixed_mesh *mesh = &s->mesh->assembly.mesh;
-    const tm_own_range *own = &s->share->elements;
     size_t count = 0, room = 0;
     address *list = NULL;
-    for (size_t e = own->first; e < own->past; e++) {
-        if (!is_sent(s, p, e))
+    for (size_t c = 0; c < s->candidates; c++) {
+        const size_t e = s->candidate[c];
+        if (!is_near(s, e))
             continue;
         address *grown = tm_grow(list, &room, count + MOST_NODES, sizeof *list);
         if (!grown) {
@@ -399,10 +360,11 @@ static size_t list_moved(const received *r, const sent_node *old, size_t count,
 }
 
 /* Mends what has come; *moved gets what is elsewhere then. */
-static tm_status mend(const sender *s, const sent_element *element, size_t elements,
-                      sent_node *node, size_t nodes, sent_node **moved, size_t *listed,
-                      tm_optimise_report *report, tm_error *error)
+static tm_status mend(const sender *s, unsigned pass, const sent_element *element,
+                      size_t elements, sent_node *node, size_t nodes, sent_node **moved,
+                      size_t *listed, size_t *measured, tm_error *error)
 {
+    tm_optimise_report report = {0};
     received r = {.mesh.threads = s->mesh->assembly.mesh.threads};
     tm_optimise_options options = *s->options;
     tm_status status = TM_OK;
@@ -411,7 +373,10 @@ static tm_status mend(const sender *s, const sent_element *element, size_t eleme
         take_nodes(&r, node, nodes);
         take_elements(&r, element, elements);
         options.number = r.element;
-        status = tm_mixed_optimise(&r.mesh, r.rule, s->boundary, &options, report, error);
+        options.pass = pass;
+        status =
+            tm_mixed_optimise(&r.mesh, r.rule, s->boundary, &options, &report, error);
+        *measured = report.measured;
         *listed = list_moved(&r, node, nodes, *moved);
     } else {
         status = tm_fail_memory(error);
@@ -425,17 +390,19 @@ static tm_status mend(const sender *s, const sent_element *element, size_t eleme
     return status;
 }
 
-/* Sends what is sent, and mends what comes. */
-static tm_status mend_sent(const sender *s, bool to_first, sent_node **moved,
-                           size_t *listed, tm_optimise_report *report, tm_error *error)
+/* Sends what is near, and mends what comes: by one pass, or on rank 0 by all. */
+static tm_status mend_sent(const sender *s, unsigned pass, sent_node **moved,
+                           size_t *listed, size_t *measured, tm_error *error)
 {
-    parcel p = {.to_first = to_first};
+    parcel p = {.to_first = pass == 0};
     void *elements = NULL, *nodes = NULL;
     size_t element_count = 0, node_count = 0;
     tm_status status = tm_ranks_agree(pack(s, &p) ? TM_OK : tm_fail_memory(error), error);
     if (status == TM_OK)
         status = tm_ranks_exchange(p.element, p.elements, sizeof *p.element, &elements,
                                    p.elements, error);
+    free(p.element);
+    p.element = NULL;
     if (status == TM_OK)
         status =
             tm_ranks_exchange(p.node, p.nodes, sizeof *p.node, &nodes, p.nodes, error);
@@ -445,8 +412,8 @@ static tm_status mend_sent(const sender *s, bool to_first, sent_node **moved,
     }
     unpack(&p);
     if (status == TM_OK)
-        status = mend(s, elements, element_count, nodes, node_count, moved, listed,
-                      report, error);
+        status = mend(s, pass, elements, element_count, nodes, node_count, moved, listed,
+                      measured, error);
     free(elements);
     free(nodes);
     return tm_ranks_agree(status, error);
@@ -514,52 +481,68 @@ static tm_status put_moved(const sender *s, sent_node *moved, size_t listed,
     return status;
 }
 
-/* Each rank what is its alone, then the others. Where together they measure so much that
- * one process would have ended before, all goes to rank 0, from where it was: `kept`. */
-static tm_status mend_all(const sender *s, const double (*kept)[3], tm_error *error)
+/* How many candidates of all ranks are bad. */
+static size_t count_bad(const sender *s)
 {
-    tm_mixed_mesh *mesh = &s->mesh->assembly.mesh;
-    tm_optimise_report alone = {0}, sent = {0};
+    size_t bad = 0;
+    for (size_t c = 0; c < s->candidates; c++)
+        bad += is_bad(s, s->candidate[c]);
+    tm_ranks_sum(&bad, 1);
+    return bad;
+}
+
+/* Mends by one pass, or by all, what is bad and puts it where it is then. */
+static tm_status make_pass(const sender *s, unsigned pass, size_t *measured,
+                           tm_error *error)
+{
+    const tm_mixed_mesh *mesh = &s->mesh->assembly.mesh;
     sent_node *moved = NULL;
-    size_t listed = 0;
-    tm_status status = tm_ranks_agree(mend_alone(s, &alone, error), error);
+    size_t listed = 0, here = 0;
+    tm_status status = mark_near(s, pass == 0 ? RINGS : tm_optimise_rings(pass), error);
+    if (status == TM_OK && pass > 0)
+        status = find_sets(s, error);
     if (status == TM_OK)
-        status = mend_sent(s, false, &moved, &listed, &sent, error);
-    size_t measured = alone.measured + sent.measured;
-    tm_ranks_sum(&measured, 1);
-    if (status == TM_OK && measured >= s->options->most_measured) {
-        free(moved);
-        memcpy(mesh->xyz, kept, mesh->nodes * sizeof *kept);
-        moved = NULL;
-        status = mend_sent(s, true, &moved, &listed, &sent, error);
-    }
+        status = mend_sent(s, pass, &moved, &listed, &here, error);
     if (status == TM_OK)
         status = put_moved(s, moved, listed, error);
+    for (size_t c = 0; status == TM_OK && c < s->candidates; c++)
+        if (is_near(s, s->candidate[c]))
+            s->jens[s->candidate[c] - s->share->elements.first] =
+                tm_mixed_jens(mesh, s->candidate[c]);
+    tm_ranks_sum(&here, 1);
+    *measured += here;
     free(moved);
     return status;
 }
 
-/* How many of all are bad, and the worst. */
-static size_t find_bad(const sender *s, double *worst)
+/* Makes the passes, each of which all ranks make together. Where they measure so much
+ * that one process would have ended before, all goes to rank 0, from where it was:
+ * `kept`. */
+static tm_status make_passes(const sender *s, const double (*kept)[3], tm_error *error)
 {
-    size_t bad = 0;
-    *worst = 1;
-    for (size_t e = 0; e < own_elements(s); e++) {
-        bad += s->jens[e] < s->options->threshold;
-        *worst = fmin(*worst, s->jens[e]);
+    tm_mixed_mesh *mesh = &s->mesh->assembly.mesh;
+    const unsigned passes = tm_optimise_passes(s->options->effort);
+    tm_status status = TM_OK;
+    size_t measured = 0;
+    for (unsigned p = 1; p <= passes && status == TM_OK && count_bad(s) > 0; p++) {
+        status = make_pass(s, p, &measured, error);
+        if (measured >= s->options->most_measured)
+            break;
     }
-    tm_ranks_sum(&bad, 1);
-    tm_ranks_least(worst, 1);
-    return bad;
+    if (status != TM_OK || measured < s->options->most_measured)
+        return status;
+    memcpy(mesh->xyz, kept, mesh->nodes * sizeof *kept);
+    for (size_t c = 0; c < s->candidates; c++)
+        s->jens[s->candidate[c] - s->share->elements.first] =
+            tm_mixed_jens(mesh, s->candidate[c]);
+    return make_pass(s, 0, &measured, error);
 }
 
-/* The worst of all elements, when those that are near have changed. */
 static double find_worst(const sender *s)
 {
-    double worst = s->worst;
-    for (size_t e = s->share->elements.first; e < s->share->elements.past; e++)
-        if (is_near(s, e))
-            worst = fmin(worst, tm_mixed_jens(&s->mesh->assembly.mesh, e));
+    double worst = 1;
+    for (size_t e = 0; e < own_elements(s); e++)
+        worst = fmin(worst, s->jens[e]);
     tm_ranks_least(&worst, 1);
     return worst;
 }
@@ -568,19 +551,16 @@ static tm_status optimise(sender *s, tm_optimise_report *report, tm_error *error
 {
     tm_mixed_mesh *mesh = &s->mesh->assembly.mesh;
     tm_parallel_runs(mesh->threads, own_elements(s), TM_CHUNK, measure_chunk, s);
-    if (find_bad(s, &report->worst_after) == 0)
+    report->worst_after = find_worst(s);
+    if (report->worst_after >= s->options->threshold)
         return TM_OK;
-    tm_status status = mark_near(s, error);
-    free(s->jens);
-    s->jens = NULL;
-    if (status == TM_OK)
-        status = find_sets(s, error);
+    tm_status status = find_candidates(s, error);
     double(*kept)[3] = tm_new(mesh->nodes, sizeof *kept);
     if (status == TM_OK)
         status = tm_ranks_agree(kept ? TM_OK : tm_fail_memory(error), error);
     if (status == TM_OK) {
         memcpy(kept, mesh->xyz, mesh->nodes * sizeof *kept);
-        status = mend_all(s, (const double(*)[3])kept, error);
+        status = make_passes(s, (const double(*)[3])kept, error);
     }
     free(kept);
     report->worst_after = find_worst(s);
@@ -604,14 +584,18 @@ tm_status tm_shared_optimise(tm_octree_mesh *mesh, tm_node_rule *rule,
                 .options = options,
                 .jens =
                     tm_new(share->elements.past - share->elements.first, sizeof *s.jens),
-                .near = calloc(elements->nodes + 1, sizeof *s.near)};
+                .near = tm_new(elements->nodes, sizeof *s.near),
+                .mark = tm_new(elements->nodes, sizeof *s.mark),
+                .label = tm_new(share->of->octree.nodes, sizeof *s.label)};
     tm_status status =
-        tm_ranks_agree(s.jens && s.near ? TM_OK : tm_fail_memory(error), error);
+        s.jens && s.near && s.mark && s.label ? TM_OK : tm_fail_memory(error);
+    status = tm_ranks_agree(status, error);
     if (status == TM_OK)
         status = optimise(&s, report, error);
     free(s.jens);
     free(s.near);
+    free(s.mark);
     free(s.label);
-    free(s.crosses);
+    free(s.candidate);
     return status;
 }
