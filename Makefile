@@ -51,9 +51,9 @@ ifdef has_p4est
 LDLIBS += -Wl,--as-needed -lp4est -lsc $(MPI_LDLIBS) -Wl,--no-as-needed
 else
 left_out := octree-mesh octree-repair lib/ranks/mpi/start.c \
-	$(wildcard $(addsuffix /*.c,$(addprefix lib/octree/,interior feature layer repair))) \
+	$(wildcard $(addsuffix /*.c,$(addprefix lib/octree/,share interior feature layer repair))) \
 	$(shell grep -lE '^.include.*(p[48]est|brick\.h|octree_estimate|mpi_start)' lib/octree/forest/*.c) \
-	$(basename $(notdir $(shell grep -lE 'octree_build|octree/(interior|feature|layer|repair)|(octree|repair)_fixture' \
+	$(basename $(notdir $(shell grep -lE 'octree_build|octree/(share|interior|feature|layer|repair)|(octree|repair)_fixture' \
 		tests/unit/test_*.c)))
 endif
 
@@ -124,6 +124,8 @@ headers := $(call in_library,.h)
 public_headers := lib/termesh.h $(shell sed -n 's|^.include "\(.*\)"|lib/\1|p' lib/termesh.h)
 unit_tests := $(addprefix $(BUILD)/tests/,$(filter-out $(left_out),\
 	$(basename $(notdir $(wildcard tests/unit/test_*.c)))))
+# These can be run by a launcher, too.
+rank_tests := $(addprefix $(BUILD)/tests/,test_octree_share)
 oracles := $(patsubst tests/oracle/%.cc,$(BUILD)/tests/%,$(wildcard tests/oracle/*.cc))
 rank_tests := $(if $(has_p4est),$(patsubst tests/ranks/%.c,$(BUILD)/ranks/%,$(wildcard tests/ranks/*.c)))
 fuzzer := $(BUILD)/fuzz/fuzz
@@ -222,7 +224,11 @@ $(scripts): $(BUILD)/bin/%: cmd/%.sh
 $(completions): $(BUILD)/completion/bash/%: $(BUILD)/bin/% cmd/completion.sh
 	sh cmd/completion.sh $< $(BUILD)/completion
 
-$(unit_tests): $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(common) $(library)
+$(filter-out $(rank_tests),$(unit_tests)): $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(common) $(library)
+	@mkdir -p $(@D)
+	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lcmocka $(LDLIBS)
+$(filter $(rank_tests),$(unit_tests)): $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(ranks_object) \
+		$(common) $(library)
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lcmocka $(LDLIBS)
 

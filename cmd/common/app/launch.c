@@ -38,8 +38,11 @@ void filter_launch(const filter *f, char **argv)
         return;
     if (f->ranks && !tm_ranks_are_mpi())
         become_mpi_program(f, argv);
-    if (filter_speaks())
+    if (filter_speaks()) {
+        if (!tm_ranks_are_mpi())
+            tm_launched_forget();
         return;
+    }
     if (!tm_ranks_are_mpi())
         exit(EXIT_SUCCESS);
     const int nothing = open("/dev/null", O_WRONLY);
@@ -55,8 +58,10 @@ bool filter_together(const filter *f, bool can)
         return false;
     if (!can && tm_launched_rank() > 0)
         exit(EXIT_SUCCESS);
-    if (!can)
+    if (!can) {
+        tm_launched_forget();
         return false;
+    }
     if (tm_ranks_start(&error) != TM_OK)
         filter_fail(f, &error);
     return tm_ranks_count() > 1;

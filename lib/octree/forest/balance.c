@@ -5,12 +5,14 @@
  * its parent's neighbours on the side where it is. So levels are gone through from the
  * deepest up; a split that is missing is of a level that is still to come. Which those
  * are is asked in chunks, by several threads; there are few, and they are made one after
- * the other. The result is the only one with as few leaves as can be, which p4est's
- * balance finds too. */
+ * the other. Of an octant that another rank has this one does not know whether it is
+ * split, and tells that rank that it must be, level by level. The result is the only one
+ * with as few leaves as can be, which p4est's balance finds too. */
 #include "octree_parts.h"
 
 #include "../../base/array.h"
 #include "../../base/parallel.h"
+#include "../../ranks/ranks.h"
 #include "leaf_tree.h"
 
 #include <stdlib.h>
@@ -26,11 +28,13 @@ typedef struct anchors {
 /* Cells of the tree that are leaves have the numbers of those that are given, then of
  * those that are added. */
 typedef struct balancer {
-    tm_octree octree; /* with the leaves that are given */
+    tm_octree octree;         /* with the leaves that are given */
+    const tm_rank_cuts *cuts; /* NULL: these fill the brick */
     tm_leaf_tree tree;
     anchors split[TM_OCTREE_FINEST]; /* octants that are, by level */
     unsigned level;                  /* of those that are looked at */
     anchors *missing;                /* [chunks]: octants of a level less that must be */
+    anchors *away;                   /* [ranks]: of these, those that others have */
     size_t added, room;
     uint32_t *origin; /* [added]: the leaf that it is a part of */
     const tm_surface *surface;
@@ -165,6 +169,18 @@ static bool split_at(balancer *b, const uint32_t anchor[AXES], unsigned shift)
     return true;
 }
 
+/* Makes the splits of a list, of 2^shift units. */
+static bool make_splits(balancer *b, const anchors *list, unsigned shift)
+{
+    bool done = true;
+    for (size_t i = 0; i < list->count && done; i++) {
+        const unsigned at = b->cuts ? tm_rank_cuts_at(b->cuts, list->anchor[i]) : 0;
+        done = b->cuts && at != b->cuts->rank ? note(&b->away[at], list->anchor[i])
+                                              : split_at(b, list->anchor[i], shift);
+    }
+    return done;
+}
+
 /* Makes the splits that are missing for those of a level. */
 static bool complete(balancer *b, unsigned level)
 {
@@ -177,13 +193,80 @@ static bool complete(balancer *b, unsigned level)
     if (b->missing)
         tm_parallel_runs(threads, count, TM_CHUNK, look_at, b);
     for (size_t c = 0; b->missing && c < chunks; c++) {
-        const anchors *missing = &b->missing[c];
-        for (size_t i = 0; i < missing->count && !b->failed; i++)
-            b->failed = !split_at(b, missing->anchor[i], TM_OCTREE_FINEST + 1 - level);
-        free(missing->anchor);
+        if (!b->failed)
+            b->failed = !make_splits(b, &b->missing[c], TM_OCTREE_FINEST + 1 - level);
+        free(b->missing[c].anchor);
     }
     free(b->missing);
     return !b->failed;
+}
+
+static int compare_anchors(const void *a, const void *b)
+{
+    return memcmp(a, b, sizeof(uint32_t[AXES]));
+}
+
+/* All that is noted for other ranks, each octant once, rank by rank, and no more noted:
+ * to be freed. */
+static void *collect_away(balancer *b, size_t *count)
+{
+    size_t all = 0, n = 0;
+    for (unsigned r = 0; r < b->cuts->ranks; r++)
+        all += b->away[r].count;
+    uint32_t(*list)[AXES] = tm_new(all, sizeof *list);
+    for (unsigned r = 0; list && r < b->cuts->ranks; r++) {
+        anchors *away = &b->away[r];
+        const size_t first = n;
+        if (away->count > 0)
+            qsort(away->anchor, away->count, sizeof *away->anchor, compare_anchors);
+        for (size_t i = 0; i < away->count; i++)
+            if (i == 0 || compare_anchors(away->anchor[i - 1], away->anchor[i]) != 0)
+                memcpy(list[n++], away->anchor[i], sizeof *list);
+        count[r] = n - first;
+        away->count = 0;
+    }
+    return list;
+}
+
+/* Tells other ranks which octants of theirs must be split, of a level less, and splits
+ * those that they tell. */
+static tm_status complete_together(balancer *b, unsigned level, tm_error *error)
+{
+    const unsigned ranks = b->cuts->ranks;
+    size_t *count = tm_new(ranks, sizeof *count), all = 0;
+    void *send = count ? collect_away(b, count) : NULL;
+    anchors told = {0};
+    tm_status status =
+        tm_ranks_agree(send && !b->failed ? TM_OK : tm_fail_memory(error), error);
+    if (status == TM_OK)
+        status = tm_ranks_exchange(send, count, sizeof *told.anchor,
+                                   (void **)&told.anchor, count, error);
+    for (unsigned r = 0; status == TM_OK && r < ranks; r++)
+        all += count[r];
+    told.count = all;
+    if (status == TM_OK && !make_splits(b, &told, TM_OCTREE_FINEST + 1 - level))
+        b->failed = true; /* of which the others hear with the next level */
+    free(count);
+    free(send);
+    free(told.anchor);
+    return status;
+}
+
+/* Level by level. */
+static tm_status complete_all(balancer *b, tm_error *error)
+{
+    static const uint32_t low[AXES] = {0, 0, 0};
+    tm_status status = TM_OK;
+    b->failed = !note_splits(b, b->tree.top, low, tm_octree_shift(&b->octree));
+    for (unsigned level = TM_OCTREE_FINEST - 1; level > 0 && status == TM_OK; level--) {
+        if (!b->failed)
+            b->failed = !complete(b, level);
+        if (b->cuts)
+            status = complete_together(b, level, error);
+        else if (b->failed)
+            status = tm_fail_memory(error);
+    }
+    return status == TM_OK && b->failed ? tm_fail_memory(error) : status;
 }
 
 /* The leaves of a cell. */
@@ -243,25 +326,30 @@ static tm_status replace(balancer *b, tm_leaf_list *leaves, tm_error *error)
 }
 
 tm_status tm_balance(tm_leaf_list *leaves, const tm_octree *octree,
-                     const tm_surface *surface, tm_error *error)
+                     const tm_rank_cuts *cuts, const tm_surface *surface, tm_error *error)
 {
-    static const uint32_t low[AXES] = {0, 0, 0};
-    balancer b = {.octree = *octree, .surface = surface};
+    balancer b = {.octree = *octree, .cuts = cuts, .surface = surface};
     b.octree.leaf = leaves->leaf;
     b.octree.leaves = leaves->count;
     tm_status status = tm_leaf_tree_make(&b.tree, &b.octree, error);
-    if (status != TM_OK)
-        return status;
-    bool done = note_splits(&b, b.tree.top, low, tm_octree_shift(octree));
-    for (unsigned level = TM_OCTREE_FINEST - 1; level > 0 && done; level--)
-        done = complete(&b, level);
-    if (!done)
+    if (cuts)
+        b.away = calloc(cuts->ranks, sizeof *b.away);
+    if (status == TM_OK && cuts && !b.away)
         status = tm_fail_memory(error);
-    else if (b.added > 0)
+    if (cuts)
+        status = tm_ranks_agree(status, error);
+    if (status == TM_OK)
+        status = complete_all(&b, error);
+    if (status == TM_OK && b.added > 0)
         status = replace(&b, leaves, error);
+    if (cuts)
+        status = tm_ranks_agree(status, error);
     tm_leaf_tree_free(&b.tree);
     for (unsigned level = 0; level < TM_OCTREE_FINEST; level++)
         free(b.split[level].anchor);
+    for (unsigned r = 0; b.away && r < cuts->ranks; r++)
+        free(b.away[r].anchor);
+    free(b.away);
     free(b.origin);
     free(b.part);
     return status;

@@ -3,6 +3,7 @@
 
 #include "../../base/array.h"
 #include "../../base/parallel.h"
+#include "../../ranks/ranks.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -52,6 +53,7 @@ typedef struct descent {
     part *part;           /* [SHIFTS][sources]: of the octants on the way down */
     tm_leaf_list *leaves; /* that are made, or NULL: */
     tm_leaf *given;       /* the leaves that are there, from the next one on */
+    bool together;        /* ranks share the tasks */
     bool cuts;            /* octants of some depth become tasks */
     size_t tasks, task_room;
     struct task *task;
@@ -66,6 +68,7 @@ typedef struct task {
     uint32_t **triangle; /* [sources] */
     tm_leaf_list leaves;
     tm_leaf *given;
+    bool own; /* this rank does it, if not all do all */
     tm_status status;
     tm_error error;
 } task;
@@ -274,6 +277,8 @@ static void make_task(void *context, size_t i)
 {
     descent *all = context;
     task *t = &all->task[i];
+    if (all->together && !t->own)
+        return;
     descent d = {.octree = all->octree,
                  .rule = all->rule,
                  .rules = all->rules,
@@ -325,6 +330,34 @@ static void free_tasks(const descent *d)
     free(d->task);
 }
 
+static tm_status join_tasks(const descent *d)
+{
+    tm_status status = TM_OK;
+    for (size_t i = 0; status == TM_OK && i < d->tasks; i++)
+        status = join_task(d, &d->task[i]);
+    return status;
+}
+
+/* The work that a task may be: those with surface are as large as each other, too. */
+static size_t task_weight(const task *t)
+{
+    const size_t crossed = 64, other = 4, triangles = t->octant.part[0].count;
+    return triangles > 0 ? crossed + triangles : other;
+}
+
+/* Of ranks each keeps those that are next to each other of the tasks. */
+static void keep_own_tasks(descent *d)
+{
+    size_t all = 0, before = 0;
+    for (size_t i = 0; i < d->tasks; i++)
+        all += task_weight(&d->task[i]);
+    for (size_t i = 0; i < d->tasks; i++) {
+        task *t = &d->task[i];
+        t->own = tm_rank_of_weight(before, all, tm_ranks_count()) == tm_rank();
+        before += task_weight(t);
+    }
+}
+
 /* A cube that has all roots is met by all triangles. p4est has the roots in Z order too.
  * Large octants are visited one after the other, what is in those at the same time. */
 static tm_status visit_brick(descent *d)
@@ -335,10 +368,16 @@ static tm_status visit_brick(descent *d)
         o.part[s] = (part){.count = d->source[s].surface->triangles};
     d->cuts = true;
     tm_status status = visit(d, &o);
+    if (d->together)
+        status = tm_ranks_agree(status, d->error);
+    if (status == TM_OK && d->together)
+        keep_own_tasks(d);
     if (status == TM_OK)
         tm_parallel(d->octree->threads, d->tasks, make_task, d);
-    for (size_t i = 0; status == TM_OK && i < d->tasks; i++)
-        status = join_task(d, &d->task[i]);
+    if (status == TM_OK)
+        status = join_tasks(d);
+    if (d->together)
+        status = tm_ranks_agree(status, d->error);
     free_tasks(d);
     return status;
 }
@@ -394,6 +433,8 @@ static tm_status start(descent *d, const tm_surface *surface)
 static tm_status descend(descent *d, const tm_surface *surface)
 {
     tm_status status = start(d, surface);
+    if (d->together)
+        status = tm_ranks_agree(status, d->error);
     if (status == TM_OK)
         status = visit_brick(d);
     for (size_t s = 0; s < d->sources; s++)
@@ -407,9 +448,10 @@ static tm_status descend(descent *d, const tm_surface *surface)
 
 tm_status tm_octree_descend(tm_leaf_list *leaves, const tm_octree *octree,
                             const tm_surface *surface, const tm_octree_rule *rule,
-                            size_t rules, tm_error *error)
+                            size_t rules, bool together, tm_error *error)
 {
     descent d = {.octree = octree,
+                 .together = together,
                  .rule = rule,
                  .rules = rules,
                  .shift = TM_OCTREE_FINEST,

@@ -15,12 +15,15 @@ typedef struct maker {
     tm_error *error;
 } maker;
 
-static bool outside_brick(const tm_octree *octree, const uint32_t anchor[3])
+/* Whether the next leaf is in an octant. */
+static bool has_next(const maker *m, const uint32_t anchor[3], unsigned shift)
 {
+    if (m->next == m->octree->leaves)
+        return false;
     for (int i = 0; i < 3; i++)
-        if (anchor[i] >> TM_OCTREE_FINEST >= octree->roots[i])
-            return true;
-    return false;
+        if ((m->octree->leaf[m->next].anchor[i] ^ anchor[i]) >> shift)
+            return false;
+    return true;
 }
 
 static tm_status make(maker *m, const uint32_t anchor[3], unsigned shift, uint32_t *cell);
@@ -32,7 +35,7 @@ static tm_status make_children(maker *m, const uint32_t anchor[3], unsigned shif
     for (unsigned c = 0; c < CHILDREN && status == TM_OK; c++) {
         uint32_t low[3], cell = TM_NONE;
         tm_octree_child(anchor, shift, c, low);
-        if (!outside_brick(m->octree, low))
+        if (has_next(m, low, shift - 1))
             status = make(m, low, shift - 1, &cell);
         m->tree->child[octant][c] = cell;
     }
@@ -60,7 +63,9 @@ tm_status tm_leaf_tree_make(tm_leaf_tree *tree, const tm_octree *octree, tm_erro
     *tree = (tm_leaf_tree){.top = TM_NONE};
     maker m = {.tree = tree, .octree = octree, .error = error};
     const uint32_t low[3] = {0, 0, 0};
-    const tm_status status = make(&m, low, tm_octree_shift(octree), &tree->top);
+    const unsigned shift = tm_octree_shift(octree);
+    const tm_status status =
+        has_next(&m, low, shift) ? make(&m, low, shift, &tree->top) : TM_OK;
     if (status != TM_OK)
         tm_leaf_tree_free(tree);
     return status;

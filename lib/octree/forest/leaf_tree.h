@@ -6,7 +6,7 @@
 #include "octree.h"
 
 /* A cell of the tree: a leaf of the octree with this bit, an octant that is split without
- * it, or TM_NONE, which is outside the brick. */
+ * it, or TM_NONE, which has none: it is outside the brick, or other ranks have its. */
 #define TM_LEAF_BIT ((uint32_t)1 << 31)
 
 typedef struct tm_leaf_tree {
@@ -27,7 +27,7 @@ static inline bool tm_is_leaf(uint32_t cell)
     return cell >= TM_LEAF_BIT && cell != TM_NONE;
 }
 
-/* Makes the tree of leaves in order that fill the brick. O(leaves). */
+/* Makes the tree of leaves in order. O(leaves). */
 tm_status tm_leaf_tree_make(tm_leaf_tree *tree, const tm_octree *octree, tm_error *error);
 
 void tm_leaf_tree_free(tm_leaf_tree *tree);

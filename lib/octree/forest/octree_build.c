@@ -8,8 +8,7 @@
 
 #include <stdlib.h>
 
-/* An octree without leaves. */
-static tm_octree on_brick(const tm_brick *brick, unsigned threads)
+tm_octree tm_octree_on_brick(const tm_brick *brick, unsigned threads)
 {
     return (tm_octree){.threads = threads,
                        .low = {brick->low[0], brick->low[1], brick->low[2]},
@@ -40,10 +39,9 @@ static tm_status split_leaf(tm_leaf_list *out, const tm_octree *octree,
     return status;
 }
 
-/* Appends all leaves, those that are marked as their children. */
-static tm_status split_leaves(tm_leaf_list *out, const tm_octree *octree,
-                              const tm_surface *surface, const tm_leaf *leaf,
-                              size_t leaves, const uint8_t *split, tm_error *error)
+tm_status tm_octree_split_leaves(tm_leaf_list *out, const tm_octree *octree,
+                                 const tm_surface *surface, const tm_leaf *leaf,
+                                 size_t leaves, const uint8_t *split, tm_error *error)
 {
     tm_status status = TM_OK;
     for (size_t i = 0; i < leaves && status == TM_OK; i++)
@@ -99,8 +97,8 @@ static tm_status split_listed(tm_leaf_list *leaves, const tm_octree *octree,
             status = mark(split, leaves->count, &rule[r], error);
     tm_leaf_list now = {.count = 0};
     if (status == TM_OK)
-        status = split_leaves(&now, octree, surface, leaves->leaf, leaves->count, split,
-                              error);
+        status = tm_octree_split_leaves(&now, octree, surface, leaves->leaf,
+                                        leaves->count, split, error);
     free(split);
     free(leaves->leaf);
     *leaves = now;
@@ -110,13 +108,14 @@ static tm_status split_listed(tm_leaf_list *leaves, const tm_octree *octree,
 static tm_status build(tm_octree *octree, tm_leaf_list *leaves, const tm_surface *surface,
                        const tm_octree_rule *rule, size_t rules, tm_error *error)
 {
-    tm_status status = tm_octree_descend(leaves, octree, surface, rule, rules, error);
+    tm_status status =
+        tm_octree_descend(leaves, octree, surface, rule, rules, false, error);
     if (status == TM_OK)
-        status = tm_balance(leaves, octree, surface, error);
+        status = tm_balance(leaves, octree, NULL, surface, error);
     if (status == TM_OK && has_list(rule, rules)) {
         status = split_listed(leaves, octree, surface, rule, rules, error);
         if (status == TM_OK)
-            status = tm_balance(leaves, octree, surface, error);
+            status = tm_balance(leaves, octree, NULL, surface, error);
     }
     if (status == TM_OK)
         status = finish(octree, leaves, error);
@@ -139,7 +138,7 @@ tm_status tm_octree_build(tm_octree *octree, const tm_surface *surface,
         status = levels ? tm_octree_set_levels(rule, rules, brick.side, levels, error)
                         : tm_fail_memory(error);
     if (status == TM_OK) {
-        *octree = on_brick(&brick, surface->threads);
+        *octree = tm_octree_on_brick(&brick, surface->threads);
         status = build(octree, &leaves, surface, levels, rules, error);
     }
     free(leaves.leaf);
@@ -155,13 +154,13 @@ tm_status tm_octree_refine(tm_octree *octree, const tm_surface *surface,
 {
     tm_brick brick;
     tm_status status = tm_brick_of(&brick, octree, error);
-    tm_octree now = on_brick(&brick, octree->threads);
+    tm_octree now = tm_octree_on_brick(&brick, octree->threads);
     tm_leaf_list leaves = {.count = 0};
     if (status == TM_OK)
-        status = split_leaves(&leaves, octree, surface, octree->leaf, octree->leaves,
-                              split, error);
+        status = tm_octree_split_leaves(&leaves, octree, surface, octree->leaf,
+                                        octree->leaves, split, error);
     if (status == TM_OK)
-        status = tm_balance(&leaves, octree, surface, error);
+        status = tm_balance(&leaves, octree, NULL, surface, error);
     if (status == TM_OK)
         status = finish(&now, &leaves, error);
     tm_brick_free(&brick);

@@ -140,7 +140,7 @@ static tm_status fill_brick(maker *m)
     for (size_t r = 0; status == TM_OK && r < brick.count; r++)
         status = add_root(m, brick.root[r], &next);
     if (status == TM_OK)
-        status = tm_balance(&m->list, m->octree, NULL, m->error);
+        status = tm_balance(&m->list, m->octree, NULL, NULL, m->error);
     tm_brick_free(&brick);
     if (status != TM_OK)
         return status;

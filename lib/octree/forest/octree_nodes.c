@@ -49,8 +49,11 @@ static uint32_t child(const walk *w, uint32_t cell, unsigned corner)
     return cell == TM_NONE ? TM_NONE : w->child[cell][corner];
 }
 
+/* Of a leaf that is not there, as where a part of an octree ends, it is nobody's. */
 static void put(walk *w, uint32_t leaf, unsigned point, uint32_t id)
 {
+    if (leaf == TM_NONE)
+        return;
     const uint32_t l = leaf & ~TM_LEAF_BIT;
     w->node[l][point] = id;
     if (w->between && !w->failed && l < w->leaf[w->nodes])

@@ -212,20 +212,20 @@ static tm_status find_faces(finder *find, tm_error *error)
     boundary->piece = tm_new(boundary->faces, sizeof *boundary->piece);
     if (find->part->label)
         boundary->region = tm_new(boundary->faces, sizeof *boundary->region);
-    if (!boundary->face || !boundary->leaf || !boundary->piece ||
+    boundary->cut = calloc(boundary->faces + 1, sizeof *boundary->cut);
+    if (!boundary->face || !boundary->leaf || !boundary->piece || !boundary->cut ||
         (find->part->label && !boundary->region))
         return tm_fail_memory(error);
     go_over(find, fill_chunk);
     return TM_OK;
 }
 
-/* The faces around each node. */
-static tm_status find_around(tm_interior_boundary *boundary, tm_error *error)
+tm_status tm_interior_boundary_find_around(tm_interior_boundary *boundary,
+                                           tm_error *error)
 {
     boundary->around_start = calloc(boundary->nodes + 2, sizeof *boundary->around_start);
     boundary->around = tm_new(4 * boundary->faces, sizeof *boundary->around);
-    boundary->cut = calloc(boundary->faces + 1, sizeof *boundary->cut);
-    if (!boundary->around_start || !boundary->around || !boundary->cut)
+    if (!boundary->around_start || !boundary->around)
         return tm_fail_memory(error);
     size_t *end =
         boundary->around_start + 1; /* of the faces of a node, when all are in */
@@ -253,7 +253,7 @@ tm_status tm_interior_boundary_of_parts(tm_interior_boundary *boundary,
     if (status == TM_OK)
         status = find_sizes(boundary, octree, error);
     if (status == TM_OK)
-        status = find_around(boundary, error);
+        status = tm_interior_boundary_find_around(boundary, error);
     free(find.boundary_node);
     free(find.count);
     free(find.first);

@@ -81,6 +81,9 @@ tm_status tm_interior_boundary_find(tm_interior_boundary *boundary,
 tm_status tm_interior_boundary_of_parts(tm_interior_boundary *boundary,
                                         const tm_octree *octree, const tm_interior *part,
                                         size_t parts, tm_error *error);
+/* Finds around_start and around, of a boundary that has its faces. */
+tm_status tm_interior_boundary_find_around(tm_interior_boundary *boundary,
+                                           tm_error *error);
 void tm_interior_boundary_free(tm_interior_boundary *boundary);
 
 TM_EXTERN_C_END

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "interior_leaves.h"
-#include "contacts.h"
+#include "interior_parts.h"
 #include "region_leaves.h"
 
 #include "../../base/array.h"
@@ -36,39 +36,40 @@ typedef struct {
     const tm_interior *interior; /* whose arrays are filled */
     const tm_octree *octree;
     const tm_surface *surface;
+    size_t first; /* of the leaves that are asked for */
 } chooser;
 
 /* Asks of leaves that are not as the one before. */
 static void ask_chunk(void *context, size_t first, size_t past)
 {
     const chooser *c = context;
-    bool *chosen = c->interior->chosen;
-    for (size_t l = first; l < past; l++) {
-        if (l > 0 && tm_leaf_is_as_before(c->octree, l)) {
-            chosen[l] = l > first && chosen[l - 1];
+    for (size_t i = first; i < past; i++) {
+        const size_t l = c->first + i;
+        bool *chosen = &c->interior->chosen[l];
+        if (i > 0 && tm_leaf_is_as_before(c->octree, l)) {
+            *chosen = i > first && chosen[-1];
             continue;
         }
         double centre[3];
         tm_leaf_centre(c->octree, &c->octree->leaf[l], centre);
-        chosen[l] = tm_surface_has_inside(c->surface, centre);
+        *chosen = tm_surface_has_inside(c->surface, centre);
     }
 }
 
 /* The first leaves of a chunk may be as the last one of the chunk before it. */
-static void classify(const tm_interior *interior, const tm_octree *octree,
-                     const tm_surface *surface)
+void tm_interior_classify(const tm_interior *interior, const tm_octree *octree,
+                          const tm_surface *surface, size_t first, size_t past)
 {
-    chooser c = {interior, octree, surface};
-    tm_parallel_runs(octree->threads, octree->leaves, TM_CHUNK, ask_chunk, &c);
-    for (size_t first = TM_CHUNK; first < octree->leaves; first += TM_CHUNK)
-        for (size_t l = first; l < octree->leaves && tm_leaf_is_as_before(octree, l) &&
-                               l < first + TM_CHUNK;
-             l++)
+    chooser c = {interior, octree, surface, first};
+    tm_parallel_runs(octree->threads, past - first, TM_CHUNK, ask_chunk, &c);
+    for (size_t chunk = first + TM_CHUNK; chunk < past; chunk += TM_CHUNK)
+        for (size_t l = chunk;
+             l < past && tm_leaf_is_as_before(octree, l) && l < chunk + TM_CHUNK; l++)
             interior->chosen[l] = interior->chosen[l - 1];
 }
 
-/* Sets the octants of a leaf's nodes to whether it is chosen. */
-static void put_in_masks(tm_interior *interior, const tm_octree *octree, size_t l)
+void tm_interior_put_in_masks(const tm_interior *interior, const tm_octree *octree,
+                              size_t l)
 {
     for (int p = 0; p < TM_LEAF_NODES; p++) {
         const uint32_t node = octree->node[l][p];
@@ -91,8 +92,7 @@ static void fill_chunk(void *context, size_t first, size_t past)
                                   tm_point_octants[p], __ATOMIC_RELAXED);
 }
 
-/* Sets the octants of all chosen leaves in masks that are empty. */
-static void fill_masks(const tm_interior *interior, const tm_octree *octree)
+void tm_interior_fill_masks(const tm_interior *interior, const tm_octree *octree)
 {
     chooser c = {.interior = interior, .octree = octree};
     tm_parallel_runs(octree->threads, octree->leaves, TM_CHUNK, fill_chunk, &c);
@@ -105,7 +105,7 @@ void tm_interior_flip(tm_interior *interior, const tm_octree *octree, size_t lea
         interior->filled++;
     else
         interior->removed++;
-    put_in_masks(interior, octree, leaf);
+    tm_interior_put_in_masks(interior, octree, leaf);
 }
 
 void tm_interior_set_label(tm_interior *interior, const tm_octree *octree, size_t leaf,
@@ -122,7 +122,7 @@ typedef struct {
     const tm_surface *surface;
     tm_interior *interior;
     bool *bad; /* [nodes] */
-    tm_contacts contacts;
+    tm_contacts *contacts;
 } cleaner;
 
 static void mark_bad(void *context, size_t first, size_t past)
@@ -136,7 +136,7 @@ static void mark_bad(void *context, size_t first, size_t past)
 static tm_status find_contacts(cleaner *c, tm_error *error)
 {
     tm_parallel_runs(c->octree->threads, c->octree->nodes, TM_CHUNK, mark_bad, c);
-    return tm_contacts_find(&c->contacts, c->octree, c->bad, error);
+    return tm_contacts_find(c->contacts, c->octree, c->bad, error);
 }
 
 double tm_leaf_depth(const tm_octree *octree, const tm_surface *surface, size_t l)
@@ -189,19 +189,36 @@ static void mend(cleaner *c, const tm_contact *around, size_t count, bool only_r
         tm_interior_flip(c->interior, c->octree, around[best].leaf);
 }
 
-static tm_status clean(cleaner *c, tm_error *error)
+tm_status tm_interior_clean_round(tm_interior *interior, const tm_octree *octree,
+                                  const tm_surface *surface, int round,
+                                  tm_contacts *contacts, bool *bad, tm_error *error)
 {
-    for (int round = 0;; round++) {
-        tm_status status = find_contacts(c, error);
-        if (status != TM_OK || c->contacts.count == 0)
-            return status;
-        for (size_t i = 0, next; i < c->contacts.count; i = next) {
-            const tm_contact *around = &c->contacts.contact[i];
-            next = tm_contacts_next(&c->contacts, i);
-            if (!tm_octant_mask_is_good(c->interior->mask[around->node]))
-                mend(c, around, next - i, round >= FREE_ROUNDS);
-        }
+    cleaner c = {octree, surface, interior, bad, contacts};
+    const tm_status status = find_contacts(&c, error);
+    for (size_t i = 0, next; status == TM_OK && i < contacts->count; i = next) {
+        const tm_contact *around = &contacts->contact[i];
+        next = tm_contacts_next(contacts, i);
+        if (!tm_octant_mask_is_good(interior->mask[around->node]))
+            mend(&c, around, next - i, round >= FREE_ROUNDS);
     }
+    return status;
+}
+
+static tm_status clean(tm_interior *interior, const tm_octree *octree,
+                       const tm_surface *surface, tm_error *error)
+{
+    tm_contacts contacts = {0};
+    bool *bad = malloc(octree->nodes);
+    tm_status status = bad ? TM_OK : tm_fail_memory(error);
+    for (int round = 0; status == TM_OK; round++) {
+        status = tm_interior_clean_round(interior, octree, surface, round, &contacts, bad,
+                                         error);
+        if (contacts.count == 0)
+            break;
+    }
+    free(bad);
+    free(contacts.contact);
+    return status;
 }
 
 /* Marks nodes of chosen leaves. */
@@ -230,17 +247,28 @@ static void use_middles(void *context, size_t first, size_t past)
     }
 }
 
+void tm_interior_use_nodes(const tm_interior *interior, const tm_octree *octree)
+{
+    chooser c = {.interior = interior, .octree = octree};
+    memset(interior->used, false, octree->nodes);
+    tm_parallel_runs(octree->threads, octree->leaves, TM_CHUNK, use_nodes, &c);
+}
+
+void tm_interior_use_middles(const tm_interior *interior, const tm_octree *octree)
+{
+    chooser c = {.interior = interior, .octree = octree};
+    tm_parallel_runs(octree->threads, octree->leaves, TM_CHUNK, use_middles, &c);
+}
+
 /* The nodes that the mesh has. A face of which a part is shared with a smaller chosen
  * leaf has its centre, and is then divided in four. */
 void tm_interior_find_used(tm_interior *interior, const tm_octree *octree)
 {
-    chooser c = {.interior = interior, .octree = octree};
     interior->count = 0;
-    memset(interior->used, false, octree->nodes);
     for (size_t l = 0; l < octree->leaves; l++)
         interior->count += interior->chosen[l];
-    tm_parallel_runs(octree->threads, octree->leaves, TM_CHUNK, use_nodes, &c);
-    tm_parallel_runs(octree->threads, octree->leaves, TM_CHUNK, use_middles, &c);
+    tm_interior_use_nodes(interior, octree);
+    tm_interior_use_middles(interior, octree);
 }
 
 tm_status tm_interior_choose(tm_interior *interior, const tm_octree *octree,
@@ -266,15 +294,9 @@ tm_status tm_interior_choose_how(tm_interior *interior, const tm_octree *octree,
             tm_interior_find_used(interior, octree);
         return labelled;
     }
-    classify(interior, octree, surface);
-    fill_masks(interior, octree);
-    bool *bad = malloc(octree->nodes);
-    if (!bad)
-        return tm_fail_memory(error);
-    cleaner c = {.octree = octree, .surface = surface, .interior = interior, .bad = bad};
-    const tm_status status = clean(&c, error);
-    free(bad);
-    free(c.contacts.contact);
+    tm_interior_classify(interior, octree, surface, 0, octree->leaves);
+    tm_interior_fill_masks(interior, octree);
+    const tm_status status = clean(interior, octree, surface, error);
     if (status == TM_OK)
         tm_interior_find_used(interior, octree);
     return status;
@@ -321,6 +343,12 @@ static bool has_hole(const tm_octree *octree, const tm_leaf *leaf,
     return false;
 }
 
+bool tm_leaf_is_outside(const tm_octree *octree, const tm_leaf *leaf,
+                        const tm_surface *surface)
+{
+    return is_at_brick(octree, leaf) || has_hole(octree, leaf, surface);
+}
+
 /* Leaves that are not chosen are joined through common nodes: where masks are good that
  * is through common faces, too. */
 static bool choose_enclosed(tm_interior *enclosed, const tm_interior *interior,
@@ -335,8 +363,7 @@ static bool choose_enclosed(tm_interior *enclosed, const tm_interior *interior,
             if (octree->node[l][p] != TM_NONE)
                 tm_set_unite(parent, octree->node[l][0], octree->node[l][p]);
     for (size_t l = 0; parent && outside && l < octree->leaves; l++)
-        if (!interior->chosen[l] && (is_at_brick(octree, &octree->leaf[l]) ||
-                                     has_hole(octree, &octree->leaf[l], surface)))
+        if (!interior->chosen[l] && tm_leaf_is_outside(octree, &octree->leaf[l], surface))
             outside[tm_set_root(parent, octree->node[l][0])] = true;
     for (size_t l = 0; parent && outside && l < octree->leaves; l++) {
         enclosed->chosen[l] =
@@ -380,7 +407,7 @@ tm_status tm_interior_find_enclosed(tm_interior *enclosed, tm_interior *interior
         tm_interior_free(enclosed);
         return TM_OK;
     }
-    fill_masks(enclosed, octree);
+    tm_interior_fill_masks(enclosed, octree);
     share_used(enclosed, interior, octree);
     return TM_OK;
 }
@@ -419,7 +446,7 @@ static void find_lost(void *context, size_t first, size_t past)
 size_t tm_interior_find_lost(const tm_interior *interior, const tm_octree *octree,
                              const tm_surface *surface, uint8_t *lost)
 {
-    loss_finder f = {{interior, octree, surface}, lost};
+    loss_finder f = {{interior, octree, surface, 0}, lost};
     size_t count = 0;
     tm_parallel_runs(octree->threads, octree->leaves, TM_CHUNK, find_lost, &f);
     for (size_t l = 0; l < octree->leaves; l++)

@@ -403,14 +403,35 @@ static double find_worst(const tm_mixed_mesh *mesh)
     return worst;
 }
 
-static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *surface,
-                      const tm_progress *progress, tm_error *error)
+tm_status tm_octree_mesh_fail_empty(tm_error *error)
+{
+    return tm_fail(error, TM_ERROR_INPUT,
+                   "no leaf is inside the surface: it needs a finer level");
+}
+
+tm_status tm_octree_mesh_complete_report(tm_octree_mesh *m, const tm_octree *octree,
+                                         const tm_surface *surface, tm_error *error)
 {
     tm_octree_mesh_report *r = &m->report;
     tm_status status = TM_OK;
+    if (surface->walls)
+        status = count_labels(m, octree, surface, error);
+    else if (surface->regions)
+        status = count_regions(m, octree, surface, error);
+    r->corners_lost = m->feature.corners_lost;
+    r->curves_lost = m->feature.curves_lost;
+    if (m->feature.lost != TM_NONE)
+        memcpy(r->feature_lost_at, surface->xyz[m->feature.lost],
+               sizeof r->feature_lost_at);
+    return status;
+}
+
+static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *surface,
+                      const tm_progress *progress, tm_error *error)
+{
+    tm_status status = TM_OK;
     if (m->part->count == 0)
-        status = tm_fail(error, TM_ERROR_INPUT,
-                         "no leaf is inside the surface: it needs a finer level");
+        status = tm_octree_mesh_fail_empty(error);
     tm_progress_stage(progress, "finding the interior boundary");
     if (status == TM_OK)
         status = find_boundary(m, octree, surface, error);
@@ -424,23 +445,13 @@ static tm_status make(tm_octree_mesh *m, const tm_octree *octree, tm_surface *su
     tm_progress_stage(progress, "projecting the layer");
     if (status == TM_OK)
         status = tm_project_layer(&m->assembly, &m->boundary, &m->feature, surface, m->at,
-                                  error);
+                                  NULL, error);
     if (status == TM_OK)
         status = tm_untangle_layer(m, octree, surface, progress, error);
     if (status == TM_OK && surface->walls)
-        r->worst = find_worst(&m->assembly.mesh);
-    if (status == TM_OK && surface->walls)
-        status = count_labels(m, octree, surface, error);
-    else if (status == TM_OK && surface->regions)
-        status = count_regions(m, octree, surface, error);
-    if (status != TM_OK)
-        return status;
-    r->corners_lost = m->feature.corners_lost;
-    r->curves_lost = m->feature.curves_lost;
-    if (m->feature.lost != TM_NONE)
-        memcpy(r->feature_lost_at, surface->xyz[m->feature.lost],
-               sizeof r->feature_lost_at);
-    return TM_OK;
+        m->report.worst = find_worst(&m->assembly.mesh);
+    return status == TM_OK ? tm_octree_mesh_complete_report(m, octree, surface, error)
+                           : status;
 }
 
 tm_status tm_octree_mesh_make(tm_octree_mesh *mesh, const tm_octree *octree,
@@ -481,6 +492,11 @@ tm_status tm_octree_mesh_make_of(tm_octree_mesh *mesh, const tm_octree *octree,
     return status;
 }
 
+size_t tm_octree_mesh_elements(const tm_octree_mesh *mesh)
+{
+    return mesh->share ? mesh->share->elements.all : mesh->assembly.mesh.elements;
+}
+
 void tm_octree_mesh_free(tm_octree_mesh *mesh)
 {
     for (size_t p = 0; p < mesh->parts; p++)
@@ -492,5 +508,8 @@ void tm_octree_mesh_free(tm_octree_mesh *mesh)
     free(mesh->region);
     free(mesh->at);
     free(mesh->off_surface);
+    if (mesh->share)
+        tm_mesh_share_free(mesh->share);
+    free(mesh->share);
     *mesh = (tm_octree_mesh){0};
 }

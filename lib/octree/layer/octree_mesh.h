@@ -47,7 +47,9 @@ typedef struct tm_octree_mesh {
     bool *off_surface; /* [nodes of the interior boundary]: it is not there */
     uint32_t *region;  /* [leaves]: one more than the shell around them, 0 outside; NULL
                           where no region is in another, and the file numbers none */
-    tm_octree_mesh_report report;
+    struct tm_mesh_share *share;  /* where this is what one of several ranks has of it, as
+                                     mesh_share.h says; else NULL */
+    tm_octree_mesh_report report; /* of the whole mesh */
 } tm_octree_mesh;
 
 /* Makes the mesh of an octree. With surface->regions a shell inside of another one bounds
@@ -66,6 +68,9 @@ tm_status tm_octree_mesh_make_of(tm_octree_mesh *mesh, const tm_octree *octree,
                                  tm_interior *interior, tm_surface *surface,
                                  const tm_progress *progress, tm_error *error);
 void tm_octree_mesh_free(tm_octree_mesh *mesh);
+
+/* The elements of all ranks. */
+size_t tm_octree_mesh_elements(const tm_octree_mesh *mesh);
 
 TM_EXTERN_C_END
 

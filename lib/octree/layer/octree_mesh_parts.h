@@ -7,6 +7,7 @@
 #include "../interior/interior_boundary.h"
 #include "assemble.h"
 #include "../feature/feature.h"
+#include "mesh_share.h"
 #include "octree_mesh.h"
 
 /* spurious_components.c: pieces of the mesh, and hollows in it, that the surface does not
@@ -30,12 +31,15 @@ tm_status tm_spurious_components_remove(tm_interior *interior, const tm_octree *
 /* Puts each outer node where its feature says: on its corner, on its curve, on its patch;
  * between these they are spread by averaging, so that no face is squashed. Then the inner
  * nodes and those next to them are averaged. at[s] is where outer node s is on the
- * surface, before and after. Elements may be inverted by this. TM_ERROR_SYSTEM where
- * memory is out. O(nodes of the interior boundary) queries of the surface, O(elements).
+ * surface, before and after. Elements may be inverted by this. `share` says what part of
+ * the mesh this rank has, and that all ranks do this; NULL: all of it. TM_ERROR_SYSTEM
+ * where memory is out. O(nodes of the interior boundary) queries of the surface,
+ * O(elements).
  */
 tm_status tm_project_layer(tm_assembly *assembly, const tm_interior_boundary *boundary,
                            const tm_feature *feature, const tm_surface *surface,
-                           tm_surface_point *at, tm_error *error);
+                           tm_surface_point *at, const tm_mesh_share *share,
+                           tm_error *error);
 
 /* lattice_points.c: positions of a mesh's nodes at which every element is valid. */
 
@@ -55,11 +59,19 @@ tm_status tm_lattice_points(const tm_assembly *assembly, const tm_octree *octree
 /* Fills lost, rounded and dropped of the report, which are 0 before: by the distance to
  * the boundary of the mesh, in sides of the leaves there, of which those below `level`
  * are taken for such of it. Only `dropped` where the inside is by the winding number:
- * there surface may be within the mesh. TM_ERROR_SYSTEM where memory is out. O(n log n).
+ * there surface may be within the mesh. `lost` are so many leaves without boundary close
+ * by, which a mesh that has no interior must be told. TM_ERROR_SYSTEM where memory is
+ * out. O(n log n).
  */
 tm_status tm_octree_mesh_find_losses(tm_octree_mesh *mesh, const tm_octree *octree,
                                      const tm_surface *surface, unsigned level,
-                                     tm_error *error);
+                                     const tm_leaf *lost, size_t losts, tm_error *error);
+
+/* Of leaves [first, past) those without boundary close by (tm_interior_find_lost()), to
+ * be freed; NULL where memory is out. */
+tm_leaf *tm_octree_mesh_lost_leaves(const tm_interior *interior, const tm_octree *octree,
+                                    const tm_surface *surface, size_t first, size_t past,
+                                    size_t *count);
 
 /* untangling.c: the last step of the mesh: no element is inverted. */
 
@@ -71,5 +83,35 @@ tm_status tm_octree_mesh_find_losses(tm_octree_mesh *mesh, const tm_octree *octr
 tm_status tm_untangle_layer(tm_octree_mesh *mesh, const tm_octree *octree,
                             const tm_surface *surface, const tm_progress *progress,
                             tm_error *error);
+
+/* octree_mesh.c: what octree_mesh_ranks.c does, too. */
+
+/* That there is nothing to make. */
+tm_status tm_octree_mesh_fail_empty(tm_error *error);
+
+/* Fills of the report what regions and features are lost, of a mesh that is made. */
+tm_status tm_octree_mesh_complete_report(tm_octree_mesh *mesh, const tm_octree *octree,
+                                         const tm_surface *surface, tm_error *error);
+
+/* closest_on_ranks.c: fills at[] of own nodes of the boundary, and makes off_surface[].
+ * All ranks call it. */
+tm_status tm_octree_mesh_find_closest_on_ranks(tm_octree_mesh *mesh, tm_own_range own,
+                                               const tm_surface *surface,
+                                               tm_error *error);
+
+/* adaptive_refinement.c: what adaptive_ranks.c does, too. */
+
+/* Of a mesh with more elements nothing is tried: it would be made twice again. So many
+ * leaves behind a boundary that touch are many. */
+enum { TM_MOST_TO_SPLIT = 5000000, TM_BEHIND_MANY = 8 };
+
+/* Finds the leaves whose boundary is that of smaller ones, of those above a level, and
+ * whether there are any. */
+bool tm_interior_find_behind(const tm_interior *interior, const tm_octree *octree,
+                             unsigned level, bool *behind);
+
+/* By how much pieces and Euler number of the boundary differ from the surface's. */
+uint64_t tm_topology_missing(const tm_octree_mesh_report *report,
+                             const tm_surface *surface);
 
 #endif

@@ -6,6 +6,7 @@
 #include "../../base/parallel.h"
 #include "../../element/shape.h"
 #include "../../mesh/node_rows.h"
+#include "../../ranks/ranks.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -20,6 +21,9 @@ typedef struct {
     const tm_feature *feature;
     const tm_surface *surface;
     tm_surface_point *at;
+    const tm_mesh_share *share; /* NULL: this is the whole mesh */
+    size_t own, own_past;       /* this rank's boundary nodes */
+    tm_mesh_ghosts ghosts;      /* outer nodes */
     unsigned threads;
     bool curves_only; /* in this sweep */
 } fitter;
@@ -80,7 +84,7 @@ static void put_first(void *context, size_t first, size_t past)
 {
     const fitter *projection = context;
     double point[3];
-    for (size_t s = first; s < past; s++) {
+    for (size_t s = projection->own + first; s < projection->own + past; s++) {
         double *outer = projection->assembly->mesh.xyz[projection->assembly->outer + s];
         const uint32_t of = projection->feature->of[s];
         if (projection->feature->kind[s] == TM_ON_PATCH &&
@@ -98,7 +102,7 @@ static void put_first(void *context, size_t first, size_t past)
 static void sweep_boundary(void *context, size_t first, size_t past)
 {
     const fitter *projection = context;
-    for (size_t s = first; s < past; s++) {
+    for (size_t s = projection->own + first; s < projection->own + past; s++) {
         const uint8_t kind = projection->feature->kind[s];
         double point[3];
         if (kind == TM_ON_CORNER || (kind == TM_ON_PATCH && projection->curves_only))
@@ -108,34 +112,77 @@ static void sweep_boundary(void *context, size_t first, size_t past)
     }
 }
 
-static void look_around(const void *context, size_t s, uint64_t *seen)
+/* The number of a boundary node in the whole mesh. */
+static size_t number_of(const fitter *projection, uint32_t s)
+{
+    const tm_mesh_share *share = projection->share;
+    return share ? share->number[projection->assembly->outer + s] - share->core.all : s;
+}
+
+static void look_around(const void *context, size_t n, uint64_t *seen)
 {
     const fitter *projection = context;
     const tm_interior_boundary *boundary = projection->boundary;
+    const size_t s = projection->own + n;
     for (int j = 0; projection->feature->kind[s] == TM_ON_CURVE && j < 2; j++)
-        tm_sweep_sees(seen, projection->feature->along[s][j]);
+        tm_sweep_sees(seen, number_of(projection, projection->feature->along[s][j]));
     for (size_t a = boundary->around_start[s]; a < boundary->around_start[s + 1]; a++) {
         const uint32_t *face = boundary->face[boundary->around[a]];
         const unsigned k = tm_boundary_face_corners(boundary, boundary->around[a]);
         for (unsigned c = 0; c < k; c++)
-            tm_sweep_sees(seen, face[c]);
+            tm_sweep_sees(seen, number_of(projection, face[c]));
     }
+}
+
+static tm_status give_outer(void *context, tm_error *error)
+{
+    const fitter *projection = context;
+    double(*xyz)[3] = projection->assembly->mesh.xyz;
+    return tm_mesh_ghosts_fill(&projection->ghosts, xyz, sizeof *xyz, error);
+}
+
+/* The ghosts of a range of nodes, of those that have an order, where this is given. */
+static tm_status find_ghosts(tm_mesh_ghosts *ghosts, const tm_mesh_share *share,
+                             size_t nodes, size_t first, size_t past,
+                             const uint32_t *order, tm_error *error)
+{
+    bool *kept = calloc(nodes + 1, sizeof *kept);
+    tm_status status = tm_ranks_agree(kept ? TM_OK : tm_fail_memory(error), error);
+    for (size_t n = first; status == TM_OK && n < past; n++)
+        kept[n] = !order || order[n] != TM_NONE;
+    if (status == TM_OK)
+        status = tm_mesh_ghosts_some(ghosts, &share->ghosts, kept, error);
+    free(kept);
+    return status;
+}
+
+static tm_status sweep_all(fitter *projection, const tm_sweep *sweep, tm_error *error)
+{
+    const size_t own = projection->own_past - projection->own;
+    tm_parallel_runs(projection->threads, own, TM_CHUNK, put_first, projection);
+    tm_status status = projection->share ? give_outer(projection, error) : TM_OK;
+    for (int i = 0; i < CURVE_SWEEPS + BOUNDARY_SWEEPS && status == TM_OK; i++) {
+        projection->curves_only = i < CURVE_SWEEPS;
+        status = tm_sweep_make(sweep, sweep_boundary, give_outer, projection, error);
+    }
+    return status;
 }
 
 static tm_status project_boundary(fitter *projection, tm_error *error)
 {
-    const size_t nodes = projection->boundary->nodes;
+    const tm_assembly *a = projection->assembly;
+    const size_t own = projection->own_past - projection->own;
     tm_sweep sweep;
-    const tm_status status =
-        tm_sweep_plan(&sweep, nodes, projection->threads, look_around, projection, error);
-    if (status == TM_OK) {
-        tm_parallel_runs(projection->threads, nodes, TM_CHUNK, put_first, projection);
-        for (int i = 0; i < CURVE_SWEEPS + BOUNDARY_SWEEPS; i++) {
-            projection->curves_only = i < CURVE_SWEEPS;
-            tm_sweep_make(&sweep, sweep_boundary, projection);
-        }
-    }
+    tm_status status =
+        tm_sweep_plan(&sweep, own, projection->threads, look_around, projection, error);
+    if (status == TM_OK && projection->share)
+        status =
+            find_ghosts(&projection->ghosts, projection->share, a->mesh.nodes, a->outer,
+                        a->outer + projection->boundary->nodes, NULL, error);
+    if (status == TM_OK)
+        status = sweep_all(projection, &sweep, error);
     tm_sweep_free(&sweep);
+    tm_mesh_ghosts_free(&projection->ghosts);
     return status;
 }
 
@@ -151,6 +198,11 @@ typedef struct {
     uint32_t *count; /* [nodes]: of neighbours, from neighbour[start[n]] */
     uint32_t *neighbour;
     double (*bias)[3]; /* [nodes]: what the mean of the neighbours lacks on the lattice */
+    size_t own, own_past;       /* this rank's of the octree */
+    size_t middle, middle_past; /* its middles */
+    uint32_t *number; /* [nodes of the mesh]: as order, among those of the octree of all
+                         ranks; NULL: that is order */
+    tm_mesh_ghosts ghosts[2];
 } zone;
 
 static bool has_moving(const zone *z, const tm_mixed_mesh *mesh, size_t e)
@@ -191,6 +243,9 @@ static tm_status find_moving(const fitter *projection, zone *z, tm_error *error)
                 z->order[a->inner[p][s]] = 0;
     }
     tm_parallel_runs(projection->threads, mesh->elements, TM_CHUNK, mark_moving, z);
+    if (projection->share && tm_mesh_ghosts_fill(&projection->share->ghosts, z->moves,
+                                                 sizeof *z->moves, error) != TM_OK)
+        return TM_ERROR_SYSTEM;
     for (size_t n = 0; n < mesh->nodes; n++) {
         const bool is_outer = n >= a->outer && n < outer_end;
         z->order[n] = z->moves[n] && !is_outer ? (uint32_t)z->nodes++ : TM_NONE;
@@ -206,6 +261,41 @@ static tm_status find_moving(const fitter *projection, zone *z, tm_error *error)
         if (z->order[n] != TM_NONE)
             z->node[z->order[n]] = (uint32_t)n;
     return TM_OK;
+}
+
+static size_t place_of(const zone *z, size_t node)
+{
+    return tm_first_not_below(z->node, z->nodes, (uint32_t)node);
+}
+
+/* Which of them are this rank's, their numbers, and who has them as ghosts. */
+static tm_status find_own(const fitter *projection, zone *z, tm_error *error)
+{
+    const tm_mesh_share *share = projection->share;
+    const size_t nodes = z->mesh->nodes,
+                 middles = projection->assembly->outer + projection->boundary->nodes;
+    z->own_past = z->middle = z->core;
+    z->middle_past = z->nodes;
+    if (!share)
+        return TM_OK;
+    z->own = place_of(z, share->core.first);
+    z->own_past = place_of(z, share->core.past);
+    z->middle = place_of(z, middles + share->middles.first);
+    z->middle_past = place_of(z, middles + share->middles.past);
+    const size_t before = tm_ranks_before(z->own_past - z->own, NULL);
+    z->number = tm_new(nodes, sizeof *z->number);
+    tm_status status = tm_ranks_agree(z->number ? TM_OK : tm_fail_memory(error), error);
+    for (size_t i = z->own; status == TM_OK && i < z->own_past; i++)
+        z->number[z->node[i]] = (uint32_t)(before + i - z->own);
+    if (status == TM_OK)
+        status = find_ghosts(&z->ghosts[0], share, nodes, 0, projection->assembly->outer,
+                             z->order, error);
+    if (status == TM_OK)
+        status =
+            find_ghosts(&z->ghosts[1], share, nodes, middles, nodes, z->order, error);
+    return status == TM_OK
+               ? tm_mesh_ghosts_fill(&z->ghosts[0], z->number, sizeof *z->number, error)
+               : status;
 }
 
 /* Calls visit for both directions of an element's edges whose first end is in a range. */
@@ -330,9 +420,8 @@ static tm_status find_bias(const fitter *projection, zone *z, tm_error *error)
     return TM_OK;
 }
 
-static void average_run(void *context, size_t first, size_t past)
+static void average_nodes(const zone *z, size_t first, size_t past)
 {
-    const zone *z = context;
     for (size_t n = first; n < past; n++) {
         double mean[3];
         mean_of(z, n, mean);
@@ -341,19 +430,37 @@ static void average_run(void *context, size_t first, size_t past)
     }
 }
 
+static void average_run(void *context, size_t first, size_t past)
+{
+    const zone *z = context;
+    average_nodes(z, z->own + first, z->own + past);
+}
+
 static void average_middles(void *context, size_t first, size_t past)
 {
     const zone *z = context;
-    average_run(context, z->core + first, z->core + past);
+    average_nodes(z, z->middle + first, z->middle + past);
+}
+
+static tm_status give_core(void *context, tm_error *error)
+{
+    const zone *z = context;
+    return tm_mesh_ghosts_fill(&z->ghosts[0], z->mesh->xyz, sizeof *z->mesh->xyz, error);
+}
+
+static tm_status give_middles(const zone *z, tm_error *error)
+{
+    return tm_mesh_ghosts_fill(&z->ghosts[1], z->mesh->xyz, sizeof *z->mesh->xyz, error);
 }
 
 static void look_at_neighbours(const void *context, size_t n, uint64_t *seen)
 {
     const zone *z = context;
-    for (uint32_t i = 0; i < z->count[n]; i++) {
-        const uint32_t order = z->order[z->neighbour[z->start[n] + i]];
+    const uint32_t *neighbour = z->neighbour + z->start[z->own + n];
+    for (uint32_t i = 0; i < z->count[z->own + n]; i++) {
+        const uint32_t order = z->order[neighbour[i]];
         if (order < z->core)
-            tm_sweep_sees(seen, order);
+            tm_sweep_sees(seen, z->number ? z->number[neighbour[i]] : order);
     }
 }
 
@@ -361,11 +468,14 @@ static void look_at_neighbours(const void *context, size_t n, uint64_t *seen)
 static tm_status average(zone *z, unsigned threads, tm_error *error)
 {
     tm_sweep sweep;
-    const tm_status status =
-        tm_sweep_plan(&sweep, z->core, threads, look_at_neighbours, z, error);
+    tm_status status = tm_sweep_plan(&sweep, z->own_past - z->own, threads,
+                                     look_at_neighbours, z, error);
     for (int i = 0; status == TM_OK && i < CORE_SWEEPS; i++) {
-        tm_sweep_make(&sweep, average_run, z);
-        tm_parallel_runs(threads, z->nodes - z->core, TM_CHUNK, average_middles, z);
+        status = tm_sweep_make(&sweep, average_run, give_core, z, error);
+        tm_parallel_runs(threads, z->middle_past - z->middle, TM_CHUNK, average_middles,
+                         z);
+        if (status == TM_OK && z->number)
+            status = give_middles(z, error);
     }
     tm_sweep_free(&sweep);
     return status;
@@ -373,20 +483,27 @@ static tm_status average(zone *z, unsigned threads, tm_error *error)
 
 tm_status tm_project_layer(tm_assembly *assembly, const tm_interior_boundary *boundary,
                            const tm_feature *feature, const tm_surface *surface,
-                           tm_surface_point *at, tm_error *error)
+                           tm_surface_point *at, const tm_mesh_share *share,
+                           tm_error *error)
 {
     fitter projection = {.assembly = assembly,
                          .boundary = boundary,
                          .feature = feature,
                          .surface = surface,
                          .at = at,
+                         .share = share,
+                         .own = share ? share->outer.first : 0,
+                         .own_past = share ? share->outer.past : boundary->nodes,
                          .threads = surface->threads};
     zone z = {.mesh = &assembly->mesh};
-    tm_status status = find_moving(&projection, &z, error);
+    tm_status status = tm_ranks_agree(find_moving(&projection, &z, error), error);
+    if (status == TM_OK)
+        status = find_own(&projection, &z, error);
     if (status == TM_OK)
         status = find_neighbours(&z, error);
     if (status == TM_OK)
         status = find_bias(&projection, &z, error);
+    status = tm_ranks_agree(status, error);
     if (status == TM_OK)
         status = project_boundary(&projection, error);
     if (status == TM_OK)
@@ -398,5 +515,8 @@ tm_status tm_project_layer(tm_assembly *assembly, const tm_interior_boundary *bo
     free(z.count);
     free(z.neighbour);
     free(z.bias);
+    free(z.number);
+    tm_mesh_ghosts_free(&z.ghosts[0]);
+    tm_mesh_ghosts_free(&z.ghosts[1]);
     return status;
 }

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sweeps over nodes that look at their neighbours, each as it is by then (Gauss and
- * Seidel), on several threads: nodes in a row are cut into runs, and runs that see each
- * other get different colours. Runs of a colour are swept at the same time, colour by
- * colour; what comes of it depends on the runs alone. */
+ * Seidel), on several threads and ranks: nodes in a row are cut into runs, and runs that
+ * see each other get different colours. Runs of a colour are swept at the same time,
+ * colour by colour; what comes of it depends on the runs alone. Each rank has some nodes
+ * in a row; of a run of several ranks each sweeps its piece when those before it are
+ * done. */
 #ifndef TM_LAYER_SWEEP_H
 #define TM_LAYER_SWEEP_H
 
@@ -15,31 +17,40 @@
 enum { TM_SWEEP_RUN = 16384 };
 
 typedef struct tm_sweep {
-    size_t count, runs; /* nodes, and their runs */
+    size_t first,
+        count;        /* this rank's nodes have the numbers first … first + count - 1 */
+    size_t all, runs; /* nodes of all ranks, and their runs */
     unsigned threads;
     size_t colours;
     size_t *start; /* [colours + 1] */
     size_t *run;   /* [runs]: those of colour c are run[start[c]] … */
+    size_t *steps; /* [colours]: the most pieces of its runs */
+    size_t *step;  /* [runs]: this rank's piece of it; SIZE_MAX: none */
 } tm_sweep;
 
-/* The runs that are seen, a bit for each. */
+/* The runs that are seen, a bit for each; nodes by their numbers in all. */
 static inline void tm_sweep_sees(uint64_t *seen, size_t node)
 {
     enum { BITS = 64 };
     seen[node / TM_SWEEP_RUN / BITS] |= (uint64_t)1 << node / TM_SWEEP_RUN % BITS;
 }
 
-/* Plans sweeps over nodes 0 … count-1: look(context, n, seen) says by tm_sweep_sees()
- * which others node n looks at; it is called for several nodes at the same time.
- * TM_ERROR_SYSTEM where memory is out; to be freed, after an error too. O(count), and
- * little for each two runs. */
+/* Plans sweeps over nodes of which this rank has `count`, behind those of the ranks
+ * before it: look(context, n, seen), n = 0 … count-1, says by tm_sweep_sees() which
+ * others its node n looks at; it is called for several nodes at the same time.
+ * TM_ERROR_SYSTEM where memory is out; to be freed, after an error too. All ranks call
+ * it. O(count), and little for each two runs. */
 tm_status tm_sweep_plan(tm_sweep *sweep, size_t count, unsigned threads,
                         void (*look)(const void *context, size_t n, uint64_t *seen),
                         const void *context, tm_error *error);
 void tm_sweep_free(tm_sweep *sweep);
 
-/* Calls work(context, first, past) for each run, colour by colour. */
-void tm_sweep_make(const tm_sweep *sweep,
-                   void (*work)(void *context, size_t first, size_t past), void *context);
+/* Calls work(context, first, past) for each run, or this rank's piece of it, colour by
+ * colour; of several ranks exchange(context, error) after each step, which gives others
+ * what has changed. All ranks call it, and have the same status. */
+tm_status tm_sweep_make(const tm_sweep *sweep,
+                        void (*work)(void *context, size_t first, size_t past),
+                        tm_status (*exchange)(void *context, tm_error *error),
+                        void *context, tm_error *error);
 
 #endif

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "octree_mesh_parts.h"
+#include "shared_optimise.h"
 
 #include "../../base/array.h"
 #include "../../base/parallel.h"
 #include "../../element/shape.h"
 #include "../../geom/vector.h"
 #include "../../optimise/optimise_surface.h"
+#include "../../ranks/ranks.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -18,6 +20,7 @@ static const double least_valid = 1e-6;
 
 typedef struct {
     tm_mixed_mesh *mesh;
+    const tm_mesh_share *share; /* NULL: this is the whole mesh */
     const double (*base)[3];
     uint8_t *steps;  /* [nodes]: how often it went half of its way back */
     bool *changed;   /* [nodes]: in the last round */
@@ -69,7 +72,7 @@ static bool any_is_turned(const tm_octree_mesh *m)
     turned_finder t = {.mesh = m};
     tm_parallel_runs(m->assembly.mesh.threads, m->boundary.faces, TM_CHUNK, find_turned,
                      &t);
-    return t.any;
+    return tm_ranks_any(t.any);
 }
 
 static bool is_valid(const tm_mixed_mesh *mesh, size_t e)
@@ -107,12 +110,16 @@ static void restore(retreat *r, size_t n)
         xyz[i] = r->steps[n] > HALVES ? r->base[n][i] : (xyz[i] + r->base[n][i]) / 2;
 }
 
-/* One round over the elements at nodes that changed; false when all are valid. */
-static bool take_back(retreat *r)
+/* One round over the elements at nodes that changed; *more is false when all are valid.
+ */
+static tm_status take_back(retreat *r, bool *more, tm_error *error)
 {
     const tm_mixed_mesh *mesh = r->mesh;
+    const size_t first = r->share ? r->share->elements.first : 0;
+    const size_t past = r->share ? r->share->elements.past : mesh->elements;
+    tm_status status = TM_OK;
     bool any = false;
-    for (size_t e = 0; e < mesh->elements; e++) {
+    for (size_t e = first; e < past; e++) {
         if (!has_changed(r, e) || is_valid(mesh, e))
             continue;
         if (mark_nodes(r, e))
@@ -120,23 +127,29 @@ static bool take_back(retreat *r)
         else
             r->invalid++;
     }
+    if (r->share)
+        status = tm_mesh_ghosts_mark(&r->share->ghosts, r->to_change, error);
     for (size_t n = 0; n < mesh->nodes; n++) {
         r->changed[n] = r->to_change[n];
         if (r->to_change[n])
             restore(r, n);
         r->to_change[n] = false;
     }
-    return any;
+    *more = tm_ranks_any(any);
+    return status;
 }
 
-static void retreat_all(tm_octree_mesh *m, retreat *r)
+static tm_status retreat_all(tm_octree_mesh *m, retreat *r, tm_error *error)
 {
+    tm_status status = TM_OK;
     memset(r->changed, true, r->mesh->nodes);
-    while (take_back(r))
-        ;
+    for (bool more = true; more && status == TM_OK;)
+        status = take_back(r, &more, error);
+    tm_ranks_sum(&r->invalid, 1);
     m->report.invalid = r->invalid;
     for (size_t s = 0; s < m->boundary.nodes; s++)
         m->off_surface[s] |= r->steps[m->assembly.outer + s] > 0;
+    return status;
 }
 
 static tm_status hold_back(tm_octree_mesh *m, const tm_octree *octree, tm_error *error)
@@ -144,6 +157,7 @@ static tm_status hold_back(tm_octree_mesh *m, const tm_octree *octree, tm_error 
     const size_t nodes = m->assembly.mesh.nodes;
     double(*base)[3] = tm_new(nodes, sizeof *base);
     retreat r = {.mesh = &m->assembly.mesh,
+                 .share = m->share,
                  .base = (const double(*)[3])base,
                  .steps = calloc(nodes + 1, 1),
                  .changed = malloc(nodes + 1),
@@ -153,8 +167,11 @@ static tm_status hold_back(tm_octree_mesh *m, const tm_octree *octree, tm_error 
     if (status == TM_OK)
         status = tm_lattice_points(&m->assembly, octree, m->part, m->parts, &m->boundary,
                                    base, error);
+    status = tm_ranks_agree(status, error);
+    if (status == TM_OK && m->share)
+        status = tm_mesh_ghosts_fill(&m->share->ghosts, base, sizeof *base, error);
     if (status == TM_OK)
-        retreat_all(m, &r);
+        status = retreat_all(m, &r, error);
     free(base);
     free(r.steps);
     free(r.changed);
@@ -195,11 +212,10 @@ static tm_status improve(tm_octree_mesh *m, tm_node_rule *rule,
             .threshold = goal[g],
             .off_surface_threshold = goal[g],
             .effort = 1,
-            .most_measured = at_least[g] + each[g] * m->assembly.mesh.elements,
+            .most_measured = at_least[g] + each[g] * tm_octree_mesh_elements(m),
             .progress = progress};
         tm_optimise_report report;
-        status = tm_mixed_optimise(&m->assembly.mesh, rule, boundary, &options, &report,
-                                   error);
+        status = tm_shared_optimise(m, rule, boundary, &options, &report, error);
         *worst = report.worst_after;
     }
     return status;
@@ -346,9 +362,12 @@ static tm_status release(tm_octree_mesh *m, const tm_octree *octree, tm_node_rul
 
 static size_t count_off_surface(const tm_octree_mesh *m)
 {
+    const size_t first = m->share ? m->share->outer.first : 0;
+    const size_t past = m->share ? m->share->outer.past : m->boundary.nodes;
     size_t count = 0;
-    for (size_t s = 0; s < m->boundary.nodes; s++)
+    for (size_t s = first; s < past; s++)
         count += m->off_surface[s];
+    tm_ranks_sum(&count, 1);
     return count;
 }
 
@@ -410,10 +429,11 @@ tm_status tm_untangle_layer(tm_octree_mesh *mesh, const tm_octree *octree,
 {
     const tm_boundary boundary = tm_boundary_of_surface(surface);
     tm_node_rule *rule = find_rules(mesh);
-    if (!rule)
-        return tm_fail_memory(error);
     double worst = 1;
-    tm_status status = improve(mesh, rule, &boundary, progress, &worst, error);
+    tm_status status = tm_ranks_agree(rule ? TM_OK : tm_fail_memory(error), error);
+    if (status != TM_OK)
+        return status;
+    status = improve(mesh, rule, &boundary, progress, &worst, error);
     bool valid = status != TM_OK || (worst >= least_valid && !any_is_turned(mesh));
     if (!valid && surface->walls) {
         status = release(mesh, octree, rule, &boundary, progress, error);

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Things at the nodes and in the leaves of a share, as nodes of its mesh: which ranks
+ * have them as ghosts, and what these get from those that own them. */
+#ifndef TM_LAYER_MESH_GHOSTS_H
+#define TM_LAYER_MESH_GHOSTS_H
+
+#include "../share/octree_share.h"
+
+typedef struct tm_mesh_ghosts {
+    unsigned ranks;
+    size_t *sends, *receives; /* [ranks + 1] */
+    uint32_t
+        *sent; /* own things, by local numbers: rank r has sent[sends[r]] … as ghosts */
+    uint32_t *received; /* ghosts: received[receives[r]] … are rank r's own */
+} tm_mesh_ghosts;
+
+/* Finds them. of_node[i][local node], of so many lists, and of_leaf[local leaf], which
+ * may be NULL, are the things there, TM_NONE where there is none: all ranks that have a
+ * node or a leaf must agree in which lists there is something. TM_ERROR_SYSTEM where
+ * memory is out. To be freed, after an error too. O(ghosts). */
+tm_status tm_mesh_ghosts_find(tm_mesh_ghosts *ghosts, const tm_octree_share *share,
+                              const uint32_t *const *of_node, size_t lists,
+                              const uint32_t *of_leaf, tm_error *error);
+/* Those of them that are kept, about which all ranks agree. */
+tm_status tm_mesh_ghosts_some(tm_mesh_ghosts *some, const tm_mesh_ghosts *all,
+                              const bool *kept, tm_error *error);
+void tm_mesh_ghosts_free(tm_mesh_ghosts *ghosts);
+
+/* Gives ghosts the values, of `size` bytes, of their owners. All ranks call it, and have
+ * the same status. */
+tm_status tm_mesh_ghosts_fill(const tm_mesh_ghosts *ghosts, void *value, size_t size,
+                              tm_error *error);
+
+/* Marks everywhere what any rank has marked. */
+tm_status tm_mesh_ghosts_mark(const tm_mesh_ghosts *ghosts, bool *mark, tm_error *error);
+
+#endif
