@@ -65,6 +65,9 @@ tm_status tm_slices_check_coordinates(const tm_slices *slices, tm_error *error);
  * stream. */
 tm_status tm_slices_even(tm_slices *slices, size_t b, tm_error *error);
 
+/* Removes a block. */
+void tm_slices_remove(tm_slices *slices, tm_block *block);
+
 /* Makes rank 0's stream that of all rows; the others' blocks are empty then. */
 tm_status tm_slices_gather(tm_slices *slices, tm_error *error);
 
