@@ -37,80 +37,53 @@ static tm_status find_roots(const tm_sorted_tets *s, const tm_tet_share *share,
 
 /* Regions -------------------------------------------------------------------------- */
 
-/* A tetrahedron that a rank gets to take apart: its number, its root, its nodes and their
- * homes. */
-enum { NUMBER, ROOT, NODES, HOMES = NODES + 4, WORDS = HOMES + 4 };
+/* A tetrahedron that a rank gets to take apart: its number and its root. */
+enum { NUMBER, ROOT, WORDS };
 
 /* The regions whose roots this rank has. */
 typedef struct regions_here {
-    uint32_t *item; /* [count][WORDS] */
+    uint32_t *item; /* [count][WORDS], numbers ascending */
     size_t count;
     tm_number_set root;
     tm_tet_share share;
 } regions_here;
 
+/* Says which tetrahedra are whose, and asks for what is around them. */
 static tm_status send_regions(const tm_sorted_tets *s, const uint32_t *root,
-                              regions_here *h, tm_error *error)
+                              regions_here *h, tm_post *asking, tm_error *error)
 {
     tm_post post = {0};
-    for (size_t t = 0; t < s->rows.count; t++) {
+    unsigned *last = tm_new(s->nodes.set.count, sizeof *last); /* that it was asked for */
+    post.failed = !last;
+    for (size_t v = 0; last && v < s->nodes.set.count; v++)
+        last[v] = tm_ranks_count();
+    for (size_t t = 0; last && t < s->rows.count; t++) {
         const uint32_t *record = s->record + t * s->words;
-        uint32_t letter[WORDS] = {(uint32_t)(s->rows.first + t), root[t]};
-        memcpy(letter + NODES, record, 4 * sizeof *record);
-        for (size_t i = 0; i < 4; i++)
-            letter[HOMES + i] = tm_sorted_home(
-                s, s->nodes.xyz[tm_number_set_below(&s->nodes.set, record[i])]);
-        tm_post_put(&post, tm_rows_owner(&s->rows, root[t]), letter, WORDS);
+        const unsigned to = tm_rows_owner(&s->rows, root[t]);
+        tm_post_put(&post, to, (const uint32_t[]){(uint32_t)(s->rows.first + t), root[t]},
+                    WORDS);
+        for (size_t i = 0; i < 4; i++) {
+            const size_t v = tm_number_set_below(&s->nodes.set, record[i]);
+            if (last[v] != to)
+                tm_tet_share_ask(asking, s, v, to);
+            last[v] = to;
+        }
     }
+    free(last);
     const tm_status status = tm_post_deliver(&post, &h->item, &h->count, error);
     h->count /= WORDS;
     return status;
 }
 
-/* The nodes of what is here, each once, with their homes. */
-static bool list_nodes(const regions_here *h, uint32_t *list, uint32_t **node,
-                       uint32_t **home, size_t *nodes)
+/* The roots of the regions. */
+static tm_status list_roots(regions_here *h, tm_error *error)
 {
-    tm_number_set set = {0};
-    bool enough = true;
-    for (size_t i = 0; i < h->count; i++)
-        memcpy(list + 4 * i, h->item + i * WORDS + NODES, 4 * sizeof *list);
-    enough = tm_number_set_of(&set, list, 4 * h->count, TM_NONE);
-    *nodes = enough ? set.count : 0;
-    *node = tm_new(*nodes, sizeof **node);
-    *home = tm_new(*nodes, sizeof **home);
-    enough = enough && *node && *home;
-    if (enough)
-        tm_number_set_list(&set, *node);
-    for (size_t i = 0; enough && i < 4 * h->count; i++)
-        (*home)[tm_number_set_below(&set, list[i])] =
-            h->item[i / 4 * WORDS + HOMES + i % 4];
-    tm_number_set_free(&set);
-    return enough;
-}
-
-/* Gets what is around the regions. */
-static tm_status take_share(regions_here *h, const tm_homes *homes,
-                            const tm_tet_slices *slices, const tm_poly_options *options,
-                            bool *odd, tm_error *error)
-{
-    uint32_t *list = tm_new(h->count, 4 * sizeof *list), *node = NULL, *home = NULL;
-    size_t nodes = 0;
-    tm_status status =
-        tm_ranks_enough(list && list_nodes(h, list, &node, &home, &nodes), error);
-    if (status == TM_OK && list)
-        for (size_t i = 0; i < h->count; i++)
-            list[i] = h->item[i * WORDS + ROOT];
-    if (status == TM_OK)
-        status =
-            tm_ranks_enough(tm_number_set_of(&h->root, list, h->count, TM_NONE), error);
+    uint32_t *list = tm_new(h->count, sizeof *list);
+    for (size_t i = 0; list && i < h->count; i++)
+        list[i] = h->item[i * WORDS + ROOT];
+    const bool enough = list && tm_number_set_of(&h->root, list, h->count, TM_NONE);
     free(list);
-    if (status == TM_OK)
-        status = tm_tet_share_make(&h->share, homes, slices, node, home, nodes, odd,
-                                   options, error);
-    free(node);
-    free(home);
-    return status;
+    return tm_ranks_enough(enough, error);
 }
 
 /* Takes the regions apart; what each tetrahedron is in is named by the first one in it,
@@ -194,13 +167,14 @@ static void add_up(tm_poly_report *report, size_t tets, size_t regions, size_t c
 tm_status tm_rank_cells_make(tm_rank_cells *cells, const tm_sorted_tets *sorted,
                              const tm_homes *homes, const tm_tet_slices *slices,
                              const tm_tet_share *share, const tm_poly_options *options,
-                             bool ignore_markers, tm_poly_report *report, bool *odd,
-                             tm_error *error)
+                             bool ignore_markers, tm_poly_report *report, tm_error *error)
 {
     const size_t count = sorted->rows.count;
     uint32_t *root = tm_new(count, sizeof *root), *name = tm_new(count, sizeof *name);
     regions_here here = {0};
+    tm_post asking = {0};
     size_t regions = 0;
+    bool odd = false;
     cells->cell = tm_new(count, sizeof *cells->cell);
     cells->first = tm_new(count, sizeof *cells->first);
     tm_status status =
@@ -208,17 +182,22 @@ tm_status tm_rank_cells_make(tm_rank_cells *cells, const tm_sorted_tets *sorted,
     if (status == TM_OK)
         status = find_roots(sorted, share, options, root, &regions, error);
     if (status == TM_OK)
-        status = send_regions(sorted, root, &here, error);
+        status = send_regions(sorted, root, &here, &asking, error);
     if (status == TM_OK)
-        status = take_share(&here, homes, slices, options, odd, error);
-    if (status == TM_OK && !*odd) {
+        status = list_roots(&here, error);
+    if (status == TM_OK)
+        status =
+            tm_tet_share_make(&here.share, &asking, homes, slices, &odd, options, error);
+    if (status == TM_OK && odd)
+        status = tm_fail(error, TM_ERROR_INTERNAL, "what was a mesh is none");
+    if (status == TM_OK) {
         if (ignore_markers)
             tm_ignore_markers(&here.share.mesh);
         status = take_apart(&here, sorted, options, report, name, error);
     }
-    if (status == TM_OK && !*odd)
+    if (status == TM_OK)
         status = number_cells(cells, sorted, name, error);
-    if (status == TM_OK && !*odd)
+    if (status == TM_OK)
         add_up(report, sorted->rows.total, regions, cells->cells);
     tm_tet_share_free(&here.share);
     tm_number_set_free(&here.root);

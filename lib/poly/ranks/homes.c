@@ -34,8 +34,7 @@ static tm_status send_tets(const tm_sorted_tets *s, tm_at_home *tet, tm_error *e
         item[0] = (uint32_t)(s->rows.first + t);
         memcpy(item + 1, record, s->words * sizeof *item);
         for (size_t i = 0; i < 4; i++)
-            home[i] = tm_sorted_home(
-                s, s->nodes.xyz[tm_number_set_below(&s->nodes.set, record[i])]);
+            home[i] = s->home[tm_number_set_below(&s->nodes.set, record[i])];
         send_home(&post, home, 4, item, 1 + s->words);
     }
     free(item);
@@ -174,15 +173,11 @@ static tm_status answer(const tm_homes *h, const tm_at_home *at, const uint32_t 
     return status;
 }
 
-static tm_status ask(const uint32_t *node, const uint32_t *home, size_t nodes,
-                     uint32_t **asked, size_t *count, tm_error *error)
+void tm_tet_share_ask(tm_post *asking, const tm_sorted_tets *sorted, size_t node,
+                      unsigned rank)
 {
-    tm_post post = {0};
-    for (size_t i = 0; i < nodes; i++)
-        tm_post_put(&post, home[i], (const uint32_t[]){tm_rank(), node[i]}, 2);
-    const tm_status status = tm_post_deliver(&post, asked, count, error);
-    *count /= 2;
-    return status;
+    tm_post_put(asking, sorted->home[node],
+                (const uint32_t[]){rank, sorted->nodes.number[node]}, 2);
 }
 
 /* Puts items that came, some of them several times, in the order of their numbers. */
@@ -212,9 +207,9 @@ static tm_status fill_tets(tm_tet_share *share, const uint32_t *item, size_t wor
     mesh->tet = tm_new(count, sizeof *mesh->tet);
     mesh->neighbour = tm_new(count, sizeof *mesh->neighbour);
     mesh->region = width > 0 ? tm_new(count, width * sizeof *mesh->region) : NULL;
-    tm_status status = tm_ranks_enough(
-        mesh->tet && mesh->neighbour && (mesh->region || width == 0), error);
-    for (size_t t = 0; status == TM_OK && t < count; t++) {
+    const bool enough = mesh->tet && mesh->neighbour && (mesh->region || width == 0);
+    tm_status status = tm_ranks_enough(enough, error);
+    for (size_t t = 0; enough && item && t < count; t++) {
         memcpy(mesh->tet[t], item + t * words + 1, sizeof *mesh->tet);
         if (width > 0)
             memcpy(mesh->region + t * width, item + t * words + 1 + 4,
@@ -257,20 +252,19 @@ static bool fill_faces(tm_tet_share *share, const uint32_t *item, size_t items,
     return true;
 }
 
-tm_status tm_tet_share_make(tm_tet_share *share, const tm_homes *homes,
-                            const tm_tet_slices *slices, const uint32_t *node,
-                            const uint32_t *home, size_t nodes, bool *odd,
+tm_status tm_tet_share_make(tm_tet_share *share, tm_post *asking, const tm_homes *homes,
+                            const tm_tet_slices *slices, bool *odd,
                             const tm_poly_options *options, tm_error *error)
 {
     uint32_t *asked = NULL, *tet = NULL, *face = NULL;
-    size_t count = 0, tets = 0, faces = 0;
+    size_t words = 0, tets = 0, faces = 0;
     tm_number_set here = {0}, rows = {0};
     *share = (tm_tet_share){.mesh = {.first_dead = TM_NONE}};
-    tm_status status = ask(node, home, nodes, &asked, &count, error);
+    tm_status status = tm_post_deliver(asking, &asked, &words, error);
     if (status == TM_OK)
-        status = answer(homes, &homes->tet, asked, count, &tet, &tets, error);
+        status = answer(homes, &homes->tet, asked, words / 2, &tet, &tets, error);
     if (status == TM_OK)
-        status = answer(homes, &homes->face, asked, count, &face, &faces, error);
+        status = answer(homes, &homes->face, asked, words / 2, &face, &faces, error);
     free(asked);
     if (status == TM_OK)
         status =

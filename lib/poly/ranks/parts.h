@@ -6,13 +6,15 @@
 
 #include "../../geom/space_order.h"
 #include "../../mesh/ranks/part_nodes.h"
+#include "../../ranks/post.h"
 #include "../../stream/ranks/slices.h"
 #include "../../tet/mesh.h"
 #include "polyhedra_ranks.h"
 
 /* The blocks of the stream, and how many rows all ranks have. */
 typedef struct tm_tet_slices {
-    const tm_block *node, *ele, *face, *edge; /* face, edge: may be NULL */
+    const tm_block *node, *face, *edge; /* face, edge: may be NULL */
+    tm_block *ele;
     tm_rows nodes, tets;
     size_t faces;
     size_t width; /* attributes of a tetrahedron */
@@ -24,7 +26,8 @@ typedef struct tm_sorted_tets {
     tm_rows rows;
     size_t words;        /* of a record */
     uint32_t *record;    /* [rows.count][words] */
-    tm_part_nodes nodes; /* those that these have */
+    tm_part_nodes nodes; /* those that these have, and */
+    uint32_t *home;      /* their homes: the ranks that know what is at them */
     tm_space space;
     double box[2][3];
     uint32_t *cut; /* [ranks - 1], ascending: where on the curve the next rank begins */
@@ -65,11 +68,13 @@ typedef struct tm_tet_share {
     uint32_t *node;    /* [mesh.nodes]: their numbers */
 } tm_tet_share;
 
-/* Of the nodes that this rank names, of which each has a home. *odd is set where they are
- * no mesh. */
-tm_status tm_tet_share_make(tm_tet_share *share, const tm_homes *homes,
-                            const tm_tet_slices *slices, const uint32_t *node,
-                            const uint32_t *home, size_t nodes, bool *odd,
+/* Asks for what is at a node, of the tetrahedra that this rank has, for a rank. */
+void tm_tet_share_ask(tm_post *asking, const tm_sorted_tets *sorted, size_t node,
+                      unsigned rank);
+
+/* Of all nodes that were asked for. *odd is set where they are no mesh. */
+tm_status tm_tet_share_make(tm_tet_share *share, tm_post *asking, const tm_homes *homes,
+                            const tm_tet_slices *slices, bool *odd,
                             const tm_poly_options *options, tm_error *error);
 void tm_tet_share_free(tm_tet_share *share);
 
@@ -85,7 +90,7 @@ typedef struct tm_rank_cells {
 tm_status tm_rank_cells_make(tm_rank_cells *cells, const tm_sorted_tets *sorted,
                              const tm_homes *homes, const tm_tet_slices *slices,
                              const tm_tet_share *share, const tm_poly_options *options,
-                             bool ignore_markers, tm_poly_report *report, bool *odd,
+                             bool ignore_markers, tm_poly_report *report,
                              tm_error *error);
 
 /* facets_ranks.c: fills the blocks .facet, whose rows are not slices but those of this

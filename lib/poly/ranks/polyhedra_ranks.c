@@ -63,15 +63,10 @@ static tm_status take_share(tm_tet_share *share, const tm_sorted_tets *s,
                             const tm_homes *homes, const tm_tet_slices *slices,
                             const tm_poly_options *options, bool *odd, tm_error *error)
 {
-    uint32_t *home = tm_new(s->nodes.set.count, sizeof *home);
-    tm_status status = tm_ranks_enough(home, error);
-    for (size_t v = 0; status == TM_OK && home && v < s->nodes.set.count; v++)
-        home[v] = tm_sorted_home(s, s->nodes.xyz[v]);
-    if (status == TM_OK)
-        status = tm_tet_share_make(share, homes, slices, s->nodes.number, home,
-                                   s->nodes.set.count, odd, options, error);
-    free(home);
-    return status;
+    tm_post asking = {0};
+    for (size_t v = 0; v < s->nodes.set.count; v++)
+        tm_tet_share_ask(&asking, s, v, tm_rank());
+    return tm_tet_share_make(share, &asking, homes, slices, odd, options, error);
 }
 
 /* Whether an edge of this rank's tetrahedra is locked; those of others may seem to be. */
@@ -155,12 +150,13 @@ static tm_status find_cells(working *w, const tm_tet_slices *slices,
         *odd = is_odd(&w->share, &w->sorted, slices->faces);
     if (status != TM_OK || *odd)
         return status;
+    tm_block_clear(slices->ele); /* nobody will ask for it any more */
     if (ignore_markers)
         tm_ignore_markers(&w->share.mesh);
     report->turned = w->sorted.turned;
     boxed.box = (const double(*)[3])w->sorted.box;
     return tm_rank_cells_make(&w->cells, &w->sorted, &w->homes, slices, &w->share, &boxed,
-                              ignore_markers, &report->poly, odd, error);
+                              ignore_markers, &report->poly, error);
 }
 
 tm_status tm_polyhedra_ranks(tm_slices *slices, const tm_poly_options *options,

@@ -77,7 +77,7 @@ static tm_status take_rows(tm_sorted_tets *s, const tm_tet_slices *slices,
                                                        nodes.set.count, 1, rank),
                                  error);
     }
-    for (size_t t = 0; status == TM_OK && list && t < count && !*odd; t++) {
+    for (size_t t = 0; status == TM_OK && list && record && t < count && !*odd; t++) {
         uint32_t *to = record + t * s->words;
         *odd |= !take_tet(s, &nodes, rank, list + 4 * t, to);
         if (width > 0)
@@ -219,6 +219,14 @@ static tm_status even_out(tm_sorted_tets *s, uint32_t *record, size_t count,
     return tm_post_deliver(&post, &s->record, &words, error);
 }
 
+static tm_status find_homes(tm_sorted_tets *s, tm_error *error)
+{
+    s->home = tm_new(s->nodes.set.count, sizeof *s->home);
+    for (size_t v = 0; s->home && v < s->nodes.set.count; v++)
+        s->home[v] = tm_sorted_home(s, s->nodes.xyz[v]);
+    return tm_ranks_enough(s->home, error);
+}
+
 tm_status tm_sorted_tets_make(tm_sorted_tets *sorted, const tm_tet_slices *slices,
                               bool *odd, tm_error *error)
 {
@@ -252,12 +260,13 @@ tm_status tm_sorted_tets_make(tm_sorted_tets *sorted, const tm_tet_slices *slice
                             slices, &list, error);
     free(piece);
     free(list);
-    return status;
+    return status == TM_OK && !*odd ? find_homes(sorted, error) : status;
 }
 
 void tm_sorted_tets_free(tm_sorted_tets *sorted)
 {
     free(sorted->record);
     free(sorted->cut);
+    free(sorted->home);
     tm_part_nodes_free(&sorted->nodes);
 }
