@@ -146,17 +146,32 @@ void tm_homes_free(tm_homes *homes)
 
 /* Shares --------------------------------------------------------------------------- */
 
+/* The places of letters, of a rank and a node, rank by rank. */
+static uint32_t *by_rank(const uint32_t *asked, size_t count)
+{
+    size_t *next = calloc(tm_ranks_count() + 1, sizeof *next);
+    uint32_t *order = next ? tm_new(count, sizeof *order) : NULL;
+    for (size_t a = 0; order && a < count; a++)
+        next[asked[2 * a] + 1]++;
+    for (unsigned r = 0; order && r < tm_ranks_count(); r++)
+        next[r + 1] += next[r];
+    for (size_t a = 0; order && a < count; a++)
+        order[next[asked[2 * a]]++] = (uint32_t)a;
+    free(next);
+    return order;
+}
+
 /* Answers who asks for what is at nodes, letters of rank and node, each item once. */
 static tm_status answer(const tm_homes *h, const tm_at_home *at, const uint32_t *asked,
                         size_t count, uint32_t **got, size_t *items, tm_error *error)
 {
     tm_post post = {0};
-    uint32_t *last = tm_new(at->items, sizeof *last);
-    post.failed = !last;
+    uint32_t *last = tm_new(at->items, sizeof *last), *order = by_rank(asked, count);
+    post.failed = !last || !order;
     for (size_t i = 0; last && i < at->items; i++)
         last[i] = TM_NONE;
-    for (size_t a = 0; last && a < count; a++) {
-        const uint32_t rank = asked[2 * a], node = asked[2 * a + 1];
+    for (size_t a = 0; !post.failed && a < count; a++) {
+        const uint32_t rank = asked[2 * order[a]], node = asked[2 * order[a] + 1];
         const uint32_t v = tm_number_set_below(&h->node, node);
         if (!tm_number_set_has(&h->node, node))
             continue;
@@ -168,6 +183,7 @@ static tm_status answer(const tm_homes *h, const tm_at_home *at, const uint32_t 
         }
     }
     free(last);
+    free(order);
     const tm_status status = tm_post_deliver(&post, got, items, error);
     *items /= at->words;
     return status;
