@@ -162,6 +162,11 @@ tm_status tm_tet_mesh_copy(tm_tet_mesh *to, const tm_tet_mesh *from, tm_error *e
 tm_status tm_tet_mesh_sort(tm_tet_mesh *mesh, uint32_t *order, unsigned threads,
                            tm_error *error);
 
+/* The even permutation of the corners that sorts them by rank, or all but the last two:
+ * as tm_tet_mesh_sort() has them. Its order is that of the curve's positions of first
+ * corners, then of the ranks of all four. */
+void tm_tet_sort_corners(const uint32_t rank[4], uint8_t corner[4]);
+
 /* rank[v] is how many nodes come before node v by x, y and z; at one place by their
  * numbers. False where memory is out. O(n log n), by several threads. */
 bool tm_tet_mesh_rank_nodes(const tm_tet_mesh *mesh, uint32_t *rank, unsigned threads);
