@@ -68,6 +68,9 @@ tm_status tm_slices_gather(tm_slices *slices, tm_error *error);
  * stream. */
 tm_status tm_slices_even(tm_slices *slices, size_t b, tm_error *error);
 
+/* Makes rank 0's stream that of all rows; the others' blocks are empty then. */
+tm_status tm_slices_gather(tm_slices *slices, tm_error *error);
+
 TM_EXTERN_C_END
 
 #endif
