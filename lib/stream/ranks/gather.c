@@ -7,12 +7,7 @@
 
 #include <stdlib.h>
 
-<<<<<<< HEAD
-/* Of all ranks' arrays of `width` numbers for each row, all for rank 0; none of width 0.
- */
-=======
 /* Puts all rows of a flat array in its place, of which each has `width` numbers. */
->>>>>>> 1cda07828afa9068b2af5dee59525b35f9f85367
 static tm_status gather(void **array, size_t rows, size_t width, size_t size,
                         tm_error *error)
 {
@@ -21,76 +16,6 @@ static tm_status gather(void **array, size_t rows, size_t width, size_t size,
         return TM_OK;
     const tm_status status =
         tm_ranks_gather(*array, rows, width * size, &all, NULL, error);
-<<<<<<< HEAD
-    if (status != TM_OK)
-        return status;
-    free(*array);
-    *array = all;
-    return TM_OK;
-}
-
-/* How long the lists are, instead of where they begin; and back. */
-static void take_differences(size_t *start, size_t rows)
-{
-    for (size_t r = 0; r < rows; r++)
-        start[r] = start[r + 1] - start[r];
-}
-
-static size_t *add_up(size_t *length, size_t rows)
-{
-    size_t *start = realloc(length, (rows + 1) * sizeof *start);
-    size_t sum = 0;
-    for (size_t r = 0; r < rows && start; r++) {
-        const size_t next = sum + start[r];
-        start[r] = sum;
-        sum = next;
-    }
-    if (start)
-        start[rows] = sum;
-    return start;
-}
-
-static tm_status gather_lists(tm_block *block, size_t total, tm_error *error)
-{
-    const size_t items = block->start[block->count];
-    void *item = block->item, *length = block->start;
-    tm_status status = gather(&item, items, 1, sizeof(uint32_t), error);
-    block->item = item;
-    take_differences(block->start, block->count);
-    if (status == TM_OK)
-        status = gather(&length, block->count, 1, sizeof(size_t), error);
-    block->start = length;
-    if (status == TM_OK && length) {
-        size_t *start = add_up(length, total);
-        if (!start)
-            status = tm_fail_memory(error);
-        else
-            block->start = start;
-    }
-    return tm_ranks_agree(status, error);
-}
-
-static tm_status gather_rows(tm_block *block, size_t total, tm_error *error)
-{
-    void *real = block->real, *integer = block->integer, *attribute = block->attribute;
-    void *marker = block->marker;
-    const size_t rows = block->count;
-    tm_status status =
-        gather(&real, rows, tm_block_reals(block->kind), sizeof(double), error);
-    if (status == TM_OK)
-        status = gather(&integer, rows, tm_block_integers(block->kind), sizeof(uint32_t),
-                        error);
-    if (status == TM_OK)
-        status = gather(&attribute, rows, block->attributes, sizeof(double), error);
-    if (status == TM_OK)
-        status = gather(&marker, rows, block->markers, sizeof(int32_t), error);
-    block->real = real;
-    block->integer = integer;
-    block->attribute = attribute;
-    block->marker = marker;
-    if (status == TM_OK && tm_block_shape_of(block->kind)->list)
-        status = gather_lists(block, total, error);
-=======
     free(*array);
     *array = all;
     return status;
@@ -140,7 +65,6 @@ static tm_status gather_block(tm_block *block, size_t total, tm_error *error)
     if (status == TM_OK && shape->list)
         status = tm_ranks_agree(gather_lists(block, total, error), error);
     block->count = tm_rank() == 0 ? total : 0;
->>>>>>> 1cda07828afa9068b2af5dee59525b35f9f85367
     return status;
 }
 
@@ -149,17 +73,8 @@ tm_status tm_slices_gather(tm_slices *slices, tm_error *error)
     tm_status status = TM_OK;
     for (size_t b = 0; b < slices->stream.blocks && status == TM_OK; b++) {
         tm_block *block = &slices->stream.block[b];
-<<<<<<< HEAD
-        tm_slice *slice = &slices->slice[b];
-        if (block->kind == TM_GROUP || block->kind == TM_UNKNOWN)
-            continue;
-        status = gather_rows(block, slice->total, error);
-        block->count = tm_rank() == 0 ? slice->total : 0;
-        *slice = (tm_slice){tm_rank() == 0 ? 0 : slice->total, slice->total};
-=======
         if (block->kind != TM_UNKNOWN && block->kind != TM_GROUP)
             status = gather_block(block, slices->slice[b].total, error);
->>>>>>> 1cda07828afa9068b2af5dee59525b35f9f85367
     }
     return status;
 }

@@ -60,9 +60,6 @@ tm_status tm_slices_take_nodes(const tm_slices *slices, uint32_t *item, size_t i
 /* As tm_stream_check_coordinates(). */
 tm_status tm_slices_check_coordinates(const tm_slices *slices, tm_error *error);
 
-/* Gives rank 0 all rows of all blocks, and the others none. */
-tm_status tm_slices_gather(tm_slices *slices, tm_error *error);
-
 /* What each rank has of blocks of arbitrary slices, as slices are: makes block b of the
  * stream, of which this rank has rows `before` on, one of slices. For who has made a
  * stream. */
