@@ -5,6 +5,8 @@
 #include "../../lib/format/medit/medit.h"
 #include "../../lib/format/openfoam/openfoam.h"
 #include "../../lib/format/surface/surface_format.h"
+#include "../../lib/format/vtk/vtk_read.h"
+#include "../../lib/stream/group.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -181,12 +183,58 @@ static void test_openfoam(void **state)
     }
 }
 
+/* The bytes of names are numbers in a .vtu file: UTF-8 as char has it, signed or not. */
+static void test_vtu_strings(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *bytes, *name, *what; /* no name: refused */
+    } files[] = {{"50 32 49 32 195 188 0", "\xc3\xbc", NULL},
+                 {"50 32 49 32 -61 -68 0", "\xc3\xbc", NULL},
+                 {"50 32 49 32 9770 0", NULL, "number 4 of a string is 9770"},
+                 {"50 32 49 32 -129 0", NULL, "number 4 of a string is -129"},
+                 {"50 32 49 32 97.5 0", NULL, "'97.5' is not a whole number"}};
+    static const tm_vtk_read_options options = {.threads = 1};
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        tm_text text = {0};
+        tm_stream stream;
+        tm_vtk_read_report report;
+        tm_error error;
+        tm_text_format(
+            &text,
+            "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><FieldData><Array "
+            "type=\"String\" Name=\"group_names\" format=\"ascii\">%s</Array>"
+            "</FieldData><Piece NumberOfPoints=\"3\" NumberOfCells=\"1\"><CellData>"
+            "<DataArray type=\"Int32\" Name=\"marker\">1</DataArray></CellData><Points>"
+            "<DataArray type=\"Float64\" NumberOfComponents=\"3\">0 0 0 1 0 0 0 1 0"
+            "</DataArray></Points><Cells><DataArray type=\"Int32\" "
+            "Name=\"connectivity\">0 1 2</DataArray><DataArray type=\"Int32\" "
+            "Name=\"offsets\">3</DataArray><DataArray type=\"UInt8\" Name=\"types\">5"
+            "</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>",
+            files[i].bytes);
+        tm_stream_init(&stream);
+        const tm_status status =
+            tm_vtu_read(&stream, text.byte, text.size, "file", &options, &report, &error);
+        if (files[i].name) {
+            assert_int_equal(status, TM_OK);
+            assert_string_equal(
+                tm_group_find(tm_stream_find(&stream, ".group"), TM_GROUP_FACES, 1),
+                files[i].name);
+        } else {
+            assert_refused(status, &error, stream.blocks, files[i].what);
+        }
+        tm_vtk_read_report_free(&report);
+        tm_stream_free(&stream);
+        tm_text_free(&text);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_surfaces),      cmocka_unit_test(test_abaqus),
         cmocka_unit_test(test_abaqus_quotes), cmocka_unit_test(test_medit_cut),
-        cmocka_unit_test(test_openfoam),
+        cmocka_unit_test(test_openfoam),      cmocka_unit_test(test_vtu_strings),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
