@@ -82,6 +82,7 @@ typedef struct tm_tet_mesh {
     size_t dangling;      /* rows of .face that are no face of a tetrahedron */
 } tm_tet_mesh;
 
+/* Whether slot t has a tetrahedron, and whether node v was not removed. */
 static inline bool tm_tet_lives(const tm_tet_mesh *mesh, uint32_t t)
 {
     return mesh->tet[t][0] != TM_NONE;
@@ -208,6 +209,8 @@ tm_status tm_tet_mesh_reserve(tm_tet_mesh *mesh, size_t nodes, size_t tets, size
 
 /* A slot for a tetrahedron; its contents are the caller's to set. */
 uint32_t tm_tet_mesh_new_tet(tm_tet_mesh *mesh);
+
+/* Frees the slot of a tetrahedron; who its neighbours were is the caller's to forget. */
 void tm_tet_mesh_delete_tet(tm_tet_mesh *mesh, uint32_t t);
 
 /* A node at p, without attributes and marker: they are the caller's to set. There must
