@@ -126,6 +126,7 @@ unit_tests := $(addprefix $(BUILD)/tests/,$(filter-out $(left_out),\
 	$(basename $(notdir $(wildcard tests/unit/test_*.c)))))
 oracles := $(patsubst tests/oracle/%.cc,$(BUILD)/tests/%,$(wildcard tests/oracle/*.cc))
 fuzzer := $(BUILD)/fuzz/fuzz
+faults := $(BUILD)/faults/preload.so
 solver := $(BUILD)/solve/poisson
 benchers := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/*.c))
 shapes := $(BUILD)/bench/shapes
@@ -197,7 +198,7 @@ define link
 	$(CC) $(TM_CFLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(LDFLAGS) $(LDLIBS)
 endef
 $(gmsh_filters:%=$(BUILD)/bin/%): $(gmsh_objects)
-$(gmsh_filters:%=$(BUILD)/bin/%): private LDLIBS += -lgmsh
+$(gmsh_filters:%=$(BUILD)/bin/%): private LDLIBS += -lgmsh -lstdc++
 $(filter %-import,$(bin)): $(BUILD)/bin/%: $(BUILD)/cmd/import/%.o $(common) $(library)
 	$(link)
 $(filter %-export,$(bin)): $(BUILD)/bin/%: $(BUILD)/cmd/export/%.o $(common) $(library)
@@ -247,6 +248,11 @@ $(fuzzer): $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/fuzz/*.c)) $(library)
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) $(LDLIBS)
 
+# For tests/cli/faults.bats: calls that fail.
+$(faults): tests/faults/preload.c
+	@mkdir -p $(@D)
+	$(CC) $(filter-out -fsanitize%,$(TM_CFLAGS)) -shared -o $@ $< $(LDFLAGS)
+
 $(benchers): $(BUILD)/bench/%: $(BUILD)/tests/bench/%.o $(library)
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) $(LDLIBS)
@@ -261,8 +267,9 @@ $(solver): $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/solve/*.c)) $(library)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lcholmod $(LDLIBS)
 
 # What the tests run.
-tests: all $(unit_tests) $(oracles) $(fuzzer) $(solver) $(shapes)
+tests: all $(unit_tests) $(oracles) $(fuzzer) $(faults) $(solver) $(shapes)
 
+check: export FAULTS := $(filter-out 0,$(FAULTS))
 check: tests
 	sh tests/run.sh $(BUILD) $(ONLY)
 
