@@ -139,7 +139,7 @@ pages := $(wildcard man/*.[157])
 sources := $(wildcard lib/*.h lib/*/*.[ch] lib/*/*/*.[ch] lib/*/*/*/*.[ch] \
 	$(filter_sources) cmd/common/*/*.[ch] tests/*/*.[ch] tests/*/*.cc examples/*.c examples/*.cc)
 
-.PHONY: all tests check benchers bench fuzz lint warnings format install uninstall clean
+.PHONY: all filters tests check benchers bench fuzz lint warnings format install uninstall clean
 .SECONDARY:
 
 all: $(bin) $(rank_bin) $(scripts) $(completions) $(library) $(shared)
@@ -152,6 +152,8 @@ endif
 ifndef has_gmsh
 	@echo "There is no gmshc.h: gmsh-import and gmsh-export are left out." >&2
 endif
+
+filters: $(bin)
 
 # Programs of the tree that write tables of the library.
 $(BUILD)/generated/%.h: $(BUILD)/generate/%

@@ -7,6 +7,7 @@
 bats_require_minimum_version 1.5.0
 load helpers
 load filters
+load large
 
 # The rest of the input: a cube, its tetrahedra, octree elements and polyhedra.
 make_inputs() {
@@ -83,4 +84,20 @@ commands() {
     # shellcheck disable=SC2046 # words
     python3 "$root/tests/faults/run.py" $([ -z "${FAULTS:-}" ] || echo -a -j "$(nproc)") \
         "$TM_BUILD/faults/preload.so" <cases
+}
+
+large_commands() {
+    [ "$1" != tetgen-mesh ] || return 0 # TetGen is another program
+    # shellcheck disable=SC2046 # words
+    echo "$1" --quiet --threads 1 $(more_options "$1") $(operands "$1" "in/$(large_input "$1")")
+}
+
+# Below what the program needs to start the system ends it.
+@test "little memory, ulimit -v: ends as it should, or exit 4, why, and nothing else" {
+    case ${TM_BUILD:?} in */san*) skip "memory has no limit under the sanitizers" ;; esac
+    make_large_inputs
+    for_each_filter large_commands | grep ' ' >cases
+    [ "$(wc -l <cases)" -gt 30 ]
+    [ -n "${FAULTS:-}" ] || { shuf -n 6 cases >some && mv some cases; }
+    python3 "$root/tests/faults/run.py" -m "$TM_BUILD/faults/preload.so" <cases
 }

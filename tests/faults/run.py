@@ -2,6 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Each call of a program that may fail fails once: run.py [-a] [-j JOBS] PRELOAD <CASES
 
+With -m memory is limited instead, to ten sizes from that with which it says its version
+to that with which it comes to its end.
+
 CASES has a command a line, "<FILE command" for one with standard input; `in/` is the
 folder where run.py was started, the working folder is another one, in which there is a
 file `old`. PRELOAD is preload.c as a library. With -a all calls of all kinds fail, one by
@@ -33,6 +36,7 @@ KINDS = {'memory': 'memory', 'map': 'memory', 'thread': 'Resource temporarily un
          'read': 'Input/output error', 'write': 'No space left on device',
          'close': 'Input/output error', 'name': 'Input/output error'}
 DISTURBED = ('short', 'interrupted')
+STEPS = 10  # of limited memory
 FOREVER = 2 ** 63
 SAMPLE = 2  # calls of a kind, of memory more
 MORE = 10
@@ -89,8 +93,12 @@ def start(place, case, preload, fault):
     place.clear()
     if words[0].startswith('<'):
         stdin = open(os.path.join(place.run, words.pop(0)[1:]), 'rb')
-    environment = dict(os.environ, TMPDIR=place.tmp, LD_PRELOAD=preload,
-                       TM_FAULTS='%s %d %d' % fault, TM_FAULTS_COUNT=place.count)
+    environment = dict(os.environ, TMPDIR=place.tmp)
+    if fault[0] == 'limit':
+        words = ['prlimit', '--core=0', '--as=%d' % fault[1]] + words
+    else:
+        environment.update(LD_PRELOAD=preload, TM_FAULTS='%s %d %d' % fault,
+                           TM_FAULTS_COUNT=place.count)
     try:
         ended = subprocess.run(words, cwd=place.run, env=environment, stdin=stdin,
                                capture_output=True, timeout=TIMEOUT, check=False)
@@ -124,7 +132,7 @@ def wrong(case, fault, right, got):
     lines = got.message.decode(errors='replace').splitlines()
     if len(lines) != 1 or not lines[0].startswith(name + ': '):
         return 'says %d lines' % len(lines)
-    if all(why not in lines[0] for why in (KINDS[fault[0]], 'memory', 'Gmsh')):
+    if all(why not in lines[0] for why in (KINDS.get(fault[0], 'memory'), 'memory', 'Gmsh')):
         return 'does not say why'
     return None
 
@@ -159,14 +167,30 @@ class Tests:
         finally:
             self.places.put(place)
 
+    def least_memory(self, case, right):
+        """The least limit with which a case ends as it should, in bytes."""
+        low, high = 1 << 20, 1 << 34
+        while high - low > 1 << 16:
+            limit = (low + high) // 2
+            got, _ = self.run(case, ('limit', limit, 0))
+            low, high = (low, limit) if got == right else (limit, high)
+        return high
+
+    def limits(self, case):
+        """The limits to run a case with."""
+        version = case.split()[0 if case[0] != '<' else 1] + ' --version'
+        low, high = (self.least_memory(c, self.run(c, ('none', 0, 0))[0])
+                     for c in (version, case))
+        return [('limit', low + (high - low) * step // STEPS, 0) for step in range(STEPS)]
+
     def test(self, pool, case, every, chance):
-        """Runs a case with all its faults."""
+        """Runs a case with all its faults; every None: with little memory."""
         right, counts = self.run(case, ('none', 0, 0))
         if right.status not in (0, 1) or right.left:
             print('%s: ends with %s: %s' % (case, right.status, right.message.decode()))
             self.bad += 1
             return
-        faults = faults_of(counts, every, chance)
+        faults = self.limits(case) if every is None else faults_of(counts, every, chance)
         for fault, (got, _) in zip(faults, pool.map(lambda f: self.run(case, f), faults)):
             self.runs += 1
             what = wrong(case, fault, right, got)
@@ -180,7 +204,7 @@ class Tests:
 
 def main():
     words = sys.argv[1:]
-    every = '-a' in words
+    every = None if '-m' in words else '-a' in words
     jobs = int(words[words.index('-j') + 1]) if '-j' in words else 1
     seed = os.environ.get('TM_SEED') or str(random.randrange(10 ** 9))
     cases = [line.strip() for line in sys.stdin if line.strip()]
