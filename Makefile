@@ -149,6 +149,7 @@ fuzzer := $(BUILD)/fuzz/fuzz
 fuzz_names := $(filter-out $(left_out),$(basename $(notdir $(wildcard tests/fuzz/targets/*.c))))
 fuzz_targets := $(fuzz_names:%=$(BUILD)/fuzz/targets/%)
 replays := $(fuzz_names:%=$(BUILD)/fuzz/replay/%)
+faults := $(BUILD)/faults/preload.so
 solver := $(BUILD)/solve/poisson
 benchers := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/*.c))
 shapes := $(BUILD)/bench/shapes
@@ -161,7 +162,8 @@ pages := $(wildcard man/*.[157])
 sources := $(wildcard lib/*.h lib/*/*.[ch] lib/*/*/*.[ch] lib/*/*/*/*.[ch] \
 	$(filter_sources) cmd/common/*/*.[ch] tests/*/*.[ch] tests/*/*/*.[ch] tests/*/*.cc examples/*.c examples/*.cc)
 
-.PHONY: all tests check coverage benchers bench fuzz lint warnings format install uninstall clean
+.PHONY: all filters tests check coverage benchers bench fuzz lint warnings format install \
+	uninstall clean
 .SECONDARY:
 
 all: $(bin) $(rank_bin) $(scripts) $(completions) $(library) $(shared)
@@ -174,6 +176,8 @@ endif
 ifndef has_gmsh
 	@echo "There is no gmshc.h: gmsh-import and gmsh-export are left out." >&2
 endif
+
+filters: $(bin)
 
 # Programs of the tree that write tables of the library.
 $(BUILD)/generated/%.h: $(BUILD)/generate/%
@@ -220,7 +224,7 @@ define link
 	$(CC) $(TM_CFLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(LDFLAGS) $(LDLIBS)
 endef
 $(gmsh_filters:%=$(BUILD)/bin/%): $(gmsh_objects)
-$(gmsh_filters:%=$(BUILD)/bin/%): private LDLIBS += -lgmsh
+$(gmsh_filters:%=$(BUILD)/bin/%): private LDLIBS += -lgmsh -lstdc++
 $(filter %-import,$(bin)): $(BUILD)/bin/%: $(BUILD)/cmd/import/%.o $(common) $(library)
 	$(link)
 $(filter %-export,$(bin)): $(BUILD)/bin/%: $(BUILD)/cmd/export/%.o $(common) $(library)
@@ -284,6 +288,11 @@ $(replays): $(BUILD)/fuzz/replay/%: $(BUILD)/tests/fuzz/targets/%.o \
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lcmocka $(LDLIBS)
 
+# For tests/cli/faults.bats: calls that fail.
+$(faults): tests/faults/preload.c
+	@mkdir -p $(@D)
+	$(CC) $(filter-out -fsanitize%,$(TM_CFLAGS)) -shared -o $@ $< $(LDFLAGS)
+
 $(benchers): $(BUILD)/bench/%: $(BUILD)/tests/bench/%.o $(library)
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) $(LDLIBS)
@@ -303,8 +312,10 @@ $(rank_tests): $(BUILD)/ranks/%: $(BUILD)/tests/ranks/%.o $(ranks_object) $(libr
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) $(LDLIBS)
 
 # What the tests run.
-tests: all $(rank_tests) $(unit_tests) $(oracles) $(fuzzer) $(replays) $(solver) $(shapes)
+tests: all $(rank_tests) $(unit_tests) $(oracles) $(fuzzer) $(replays) $(faults) $(solver) \
+		$(shapes)
 
+check: export FAULTS := $(filter-out 0,$(FAULTS))
 check: tests
 	sh tests/run.sh $(BUILD) $(ONLY)
 
