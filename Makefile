@@ -124,8 +124,6 @@ headers := $(call in_library,.h)
 public_headers := lib/termesh.h $(shell sed -n 's|^.include "\(.*\)"|lib/\1|p' lib/termesh.h)
 unit_tests := $(addprefix $(BUILD)/tests/,$(filter-out $(left_out),\
 	$(basename $(notdir $(wildcard tests/unit/test_*.c)))))
-# These can be run by a launcher, too.
-rank_tests := $(addprefix $(BUILD)/tests/,test_octree_share)
 oracles := $(patsubst tests/oracle/%.cc,$(BUILD)/tests/%,$(wildcard tests/oracle/*.cc))
 rank_tests := $(if $(has_p4est),$(patsubst tests/ranks/%.c,$(BUILD)/ranks/%,$(wildcard tests/ranks/*.c)))
 fuzzer := $(BUILD)/fuzz/fuzz
@@ -224,11 +222,7 @@ $(scripts): $(BUILD)/bin/%: cmd/%.sh
 $(completions): $(BUILD)/completion/bash/%: $(BUILD)/bin/% cmd/completion.sh
 	sh cmd/completion.sh $< $(BUILD)/completion
 
-$(filter-out $(rank_tests),$(unit_tests)): $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(common) $(library)
-	@mkdir -p $(@D)
-	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lcmocka $(LDLIBS)
-$(filter $(rank_tests),$(unit_tests)): $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(ranks_object) \
-		$(common) $(library)
+$(unit_tests): $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(common) $(library)
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lcmocka $(LDLIBS)
 
@@ -270,7 +264,7 @@ $(solver): $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/solve/*.c)) $(library)
 # Programs that mpirun starts.
 $(rank_tests): $(BUILD)/ranks/%: $(BUILD)/tests/ranks/%.o $(ranks_object) $(library)
 	@mkdir -p $(@D)
-	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) $(LDLIBS)
+	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lcmocka $(LDLIBS)
 
 # What the tests run.
 tests: all $(rank_tests) $(unit_tests) $(oracles) $(fuzzer) $(solver) $(shapes)
