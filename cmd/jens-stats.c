@@ -2,6 +2,7 @@
 /* jens-stats: how good tetrahedra, pyramids, wedges and hexahedra are, by J_ENS and other
  * measures, and whether they are proved to be valid. */
 #include "common/input/mesh_input.h"
+#include "common/input/mesh_share.h"
 #include "common/plot/plot.h"
 
 #include "../lib/base/parallel.h"
@@ -46,6 +47,7 @@ typedef struct options {
     const char *histo;
     const char *plot;
     bool has_limit; /* --fail-below */
+    bool together;  /* with other ranks */
     tm_jens_request request;
 } options;
 
@@ -86,6 +88,7 @@ static options read_options(filter *f)
     o.request.scaled_jacobian = o.output == 's' || o.plot || f->json;
     o.request.others = f->json;
     o.request.threads = f->threads;
+    o.together = filter_together(f, true);
     return o;
 }
 
@@ -110,6 +113,63 @@ static tm_elements read_elements(const filter *f, tm_stream *stream)
         elements.item = ele->integer;
     }
     return elements;
+}
+
+/* What is measured, on one rank or, of ranks that work together, its share. */
+typedef struct mesh {
+    tm_stream stream;
+    tm_slices slices;
+    mesh_share share;
+    tm_elements elements;
+    unsigned base; /* the index base of the stream */
+    size_t before; /* elements that other ranks have before them */
+} mesh;
+
+static void read_mesh(const filter *f, mesh *m)
+{
+    *m = (mesh){0};
+    m->elements = read_elements(f, &m->stream);
+    m->base = m->stream.base;
+}
+
+/* The same of ranks. */
+static void read_share(const filter *f, mesh *m)
+{
+    tm_slice mix = {0, 0}, ele = {0, 0};
+    *m = (mesh){0};
+    mesh_share_read(f, &m->slices);
+    tm_slices_find(&m->slices, ".mix", &mix);
+    tm_slices_find(&m->slices, ".ele", &ele);
+    if (mix.total > 0 && ele.total > 0)
+        filter_note(f, "%s: .ele is not measured, only .mix", filter_input_name(f));
+    mesh_share_take(f, &m->share, &m->slices, mix.total > 0 ? ".mix" : ".ele");
+    const tm_block *block = m->share.block;
+    m->base = m->slices.stream.base;
+    m->before = m->share.slice.before;
+    if (mix.total == 0 && ele.total > 0)
+        mesh_share_turn(f, &m->share, "are counted turned");
+    if (block)
+        m->elements =
+            (tm_elements){(const double(*)[3])m->share.xyz, block->count, block->start,
+                          block->start ? block->item : block->integer};
+}
+
+static void measure(const filter *f, const options *o, mesh *m, tm_jens_statistics *s)
+{
+    tm_error error;
+    tm_jens_request request = o->request;
+    void *chunk;
+    size_t chunks;
+    request.before = m->before;
+    filter_stage(f, "measuring");
+    filter_agree(f,
+                 tm_jens_statistics_chunks((tm_jens_statistics **)&chunk, &chunks,
+                                           &m->elements, &request, &error),
+                 &error);
+    if (o->together)
+        mesh_share_gather(f, &chunk, &chunks, sizeof *s);
+    tm_jens_statistics_join(s, chunk, chunks, &request);
+    free(chunk);
 }
 
 /* Lists ---------------------------------------------------------------------------- */
@@ -176,7 +236,7 @@ enum { CHUNK = 8192 }; /* elements that one thread lists at a time */
 typedef struct listing {
     list_element *list;
     const tm_elements *elements;
-    unsigned base;
+    size_t base;
     tm_text *chunk;
 } listing;
 
@@ -199,8 +259,8 @@ static void list_chunk(void *context, size_t chunk)
 /* A line for each element: its number, from base, and its values, in the shortest form
  * that reads back to the same double; the same for every number of threads. */
 static tm_status list_elements(tm_text *text, list_element *list,
-                               const tm_elements *elements, unsigned base,
-                               unsigned threads, tm_error *error)
+                               const tm_elements *elements, size_t base, unsigned threads,
+                               tm_error *error)
 {
     const size_t chunks = elements->count / CHUNK + (elements->count % CHUNK != 0);
     tm_text *chunk = calloc(chunks + 1, sizeof *chunk);
@@ -231,8 +291,8 @@ static const tm_jens_histogram *histogram(const options *o, const tm_jens_statis
 }
 
 /* What standard output or -o gets; nothing where standard output is for the JSON. */
-static void write_report(filter *f, const options *o, const tm_elements *elements,
-                         const tm_jens_statistics *s, unsigned base)
+static void write_report(filter *f, const options *o, const mesh *m,
+                         const tm_jens_statistics *s)
 {
     if (!filter_has_report(f))
         return;
@@ -241,14 +301,18 @@ static void write_report(filter *f, const options *o, const tm_elements *element
     if (o->output == 'e' || o->output == 's') {
         tm_jens_histogram_table(&text, histogram(o, s), s->elements);
         if (o->request.certify)
-            tm_jens_certified_table(&text, s, base);
+            tm_jens_certified_table(&text, s, m->base);
     }
+    tm_status status = TM_OK;
     for (size_t i = 0; i < sizeof lists / sizeof *lists; i++)
-        if (lists[i].output == o->output &&
-            list_elements(&text, lists[i].list, elements, base, f->threads, &error) !=
-                TM_OK)
-            filter_fail(f, &error);
-    filter_write_text(f, &text);
+        if (lists[i].output == o->output)
+            status = list_elements(&text, lists[i].list, &m->elements,
+                                   m->base + m->before, f->threads, &error);
+    filter_agree(f, status, &error);
+    if (o->together && o->output != 'e' && o->output != 's')
+        filter_write_texts(f, &text);
+    else
+        filter_write_text(f, &text);
     tm_text_free(&text);
 }
 
@@ -256,6 +320,8 @@ static void write_files(const filter *f, const options *o, const tm_jens_statist
 {
     tm_error error;
     tm_text text = {0};
+    if (!filter_speaks())
+        return;
     if (o->histo) {
         tm_jens_histogram_file(&text, histogram(o, s));
         if (output_file_write(o->histo, &text, &error) != TM_OK)
@@ -299,25 +365,27 @@ int main(int argc, char **argv)
         .letters = "esjal" FILTER_LETTERS_NOT_J,
         .json_is_output = true,
         .j_is_own = true,
+        .ranks = true,
     };
     filter_start(&f, argc, argv);
     const options o = read_options(&f);
 
-    tm_stream stream;
-    tm_error error;
+    mesh m;
     tm_jens_statistics statistics = {0};
-    const tm_elements elements = read_elements(&f, &stream);
-    filter_stage(&f, "measuring");
-    if (tm_jens_statistics_measure(&statistics, &elements, &o.request, &error) != TM_OK)
-        filter_fail(&f, &error);
+    if (o.together)
+        read_share(&f, &m);
+    else
+        read_mesh(&f, &m);
+    measure(&f, &o, &m, &statistics);
     if (f.json) {
-        tm_jens_statistics_json(filter_json_begin(&f), &statistics, &o.request,
-                                stream.base);
+        tm_jens_statistics_json(filter_json_begin(&f), &statistics, &o.request, m.base);
         filter_json_end(&f);
     }
     write_files(&f, &o, &statistics);
-    write_report(&f, &o, &elements, &statistics, stream.base);
+    write_report(&f, &o, &m, &statistics);
     const bool good = is_good(&f, &o, &statistics);
-    tm_stream_free(&stream);
+    mesh_share_free(&m.share);
+    tm_slices_free(&m.slices);
+    tm_stream_free(&m.stream);
     return filter_finish(&f, good ? 0 : EXIT_GOAL);
 }

@@ -2,10 +2,12 @@
 /* mesh-check: what is wrong with a mesh, as exit status and as a list. */
 #include "common/input/against.h"
 #include "common/input/mesh_input.h"
+#include "common/input/mesh_share.h"
 #include "common/input/surface_input.h"
 
 #include "../lib/examine/element_examine.h"
 #include "../lib/examine/poly/poly_examine.h"
+#include "../lib/examine/ranks/examine_ranks.h"
 #include "../lib/examine/surface_examine.h"
 
 #include <math.h>
@@ -88,6 +90,43 @@ static void examine(const filter *f, const tm_stream *stream, tm_examination *fo
         filter_fail(f, &error);
 }
 
+static size_t rows_of_all(const tm_slices *slices, const char *name)
+{
+    tm_slice slice = {0};
+    tm_slices_find(slices, name, &slice);
+    return slice.total;
+}
+
+/* The same by all ranks together. */
+static void examine_slices(const filter *f, const tm_slices *slices,
+                           tm_examination *found)
+{
+    tm_error error;
+    tm_status status;
+    const tm_stream *stream = &slices->stream;
+    const int chosen = choose(f, stream);
+    const size_t nodes = rows_of_all(slices, ".node");
+    filter_stage(f, "examining");
+    if (chosen == POLYHEDRA) {
+        const tm_poly_slices mesh = {.own = tm_poly_arrays_of(stream),
+                                     .nodes = nodes,
+                                     .facets = rows_of_all(slices, ".facet"),
+                                     .cells = rows_of_all(slices, ".cell")};
+        status = tm_poly_examine_ranks(found, &mesh, f->threads, &error);
+    } else {
+        const tm_element_slices mesh = {
+            .own = chosen == MIXED ? tm_mesh_view_of_mixed(stream)
+                                   : tm_mesh_view_of_tets(stream),
+            .nodes = nodes,
+            .elements = rows_of_all(slices, element_block[chosen]),
+            .faces = rows_of_all(slices, ".face"),
+            .edges = rows_of_all(slices, ".edge"),
+            .facets = chosen == MIXED ? rows_of_all(slices, ".facet") : 0};
+        status = tm_element_examine_ranks(found, &mesh, f->threads, &error);
+    }
+    filter_agree(f, status, &error);
+}
+
 /* Nothing where standard output is for the JSON, or is to be quiet. */
 static void write_report(filter *f, const tm_examination *found, const limits *l,
                          unsigned base)
@@ -145,6 +184,48 @@ static bool has_elements(const tm_stream *stream)
     return false;
 }
 
+/* What was found, as JSON and as text. Returns the exit status. */
+static int report(filter *f, const tm_examination *found, const limits *l, unsigned base)
+{
+    if (f->json) {
+        tm_json *json = filter_json_begin(f);
+        tm_examination_json(json, found);
+        against_json(json, &l->against);
+        filter_json_end(f);
+    }
+    write_report(f, found, l, base);
+    return tm_examination_is_good(found) && is_within(l) ? 0 : EXIT_GOAL;
+}
+
+/* Ranks other than the first have nothing to say of what that does alone. */
+static void report_nothing(filter *f)
+{
+    filter_json_begin(f);
+    filter_json_end(f);
+}
+
+/* All ranks; of a surface rank 0 gets the others' rows and works alone. */
+static int check_together(filter *f, limits *l)
+{
+    tm_slices slices;
+    tm_error error;
+    int status = 0;
+    mesh_share_read(f, &slices);
+    if (has_elements(&slices.stream)) {
+        tm_examination found;
+        examine_slices(f, &slices, &found);
+        status = report(f, &found, l, slices.stream.base);
+    } else {
+        filter_agree(f, tm_slices_gather(&slices, &error), &error);
+        if (filter_speaks())
+            status = check_surface(f, &slices.stream, l);
+        else
+            report_nothing(f);
+    }
+    tm_slices_free(&slices);
+    return filter_finish(f, status);
+}
+
 int main(int argc, char **argv)
 {
     filter f = {
@@ -164,10 +245,13 @@ int main(int argc, char **argv)
         .options = long_options,
         .letters = FILTER_LETTERS,
         .json_is_output = true,
+        .ranks = true,
     };
     filter_start(&f, argc, argv);
     limits l = {.against = against_start(), .within = -1};
     read_options(&f, &l);
+    if (filter_together(&f, !l.against.file))
+        return check_together(&f, &l);
 
     tm_stream stream;
     mesh_input_read_to_compute(&f, &stream);
@@ -179,14 +263,7 @@ int main(int argc, char **argv)
     tm_examination found;
     examine(&f, &stream, &found);
     against_measure(&f, &l.against, &stream);
-    if (f.json) {
-        tm_json *json = filter_json_begin(&f);
-        tm_examination_json(json, &found);
-        against_json(json, &l.against);
-        filter_json_end(&f);
-    }
-    write_report(&f, &found, &l, stream.base);
+    const int status = report(&f, &found, &l, stream.base);
     tm_stream_free(&stream);
-    const bool good = tm_examination_is_good(&found) && is_within(&l);
-    return filter_finish(&f, good ? 0 : EXIT_GOAL);
+    return filter_finish(&f, status);
 }

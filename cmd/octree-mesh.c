@@ -8,6 +8,7 @@
 #include "../lib/octree/forest/octree_estimate.h"
 #include "../lib/octree/layer/octree_mesh_stream.h"
 #include "../lib/octree/layer/mesh_choice.h"
+#include "../lib/octree/layer/octree_mesh_ranks.h"
 #include "../lib/element/jens.h"
 #include "../lib/poly/octant/join_octants.h"
 #include "../lib/ranks/ranks.h"
@@ -315,7 +316,7 @@ static void note_losses(const filter *f, const tm_surface *s,
  * in walls. */
 static bool can_share(const settings *o, const tm_surface *s)
 {
-    if (s->walls || s->region || o->polyhedra)
+    if (s->walls || s->region || s->by_winding || o->polyhedra)
         return false;
     for (size_t r = 0; r < o->rules.rules.count; r++)
         if (o->rules.rules.rule[r].kind == TM_RULE_LEAVES)
@@ -352,12 +353,16 @@ typedef struct {
 static report report_of(const tm_octree *octree, const tm_octree_mesh *mesh)
 {
     const tm_mixed_mesh *m = &mesh->assembly.mesh;
+    const tm_mesh_share *s = mesh->share;
     report r = {.mesh = mesh->report,
-                .octants = octree->leaves,
-                .nodes = m->nodes,
-                .boundary_nodes = mesh->boundary.nodes};
-    for (size_t e = 0; e < m->elements; e++)
+                .octants = s ? s->of->all_leaves : octree->leaves,
+                .nodes = s ? s->nodes : m->nodes,
+                .boundary_nodes = s ? s->outer.all : mesh->boundary.nodes};
+    const size_t first = s ? s->elements.first : 0;
+    const size_t past = s ? s->elements.past : m->elements;
+    for (size_t e = first; e < past; e++)
         r.kind[m->start[e + 1] - m->start[e]]++;
+    tm_ranks_sum(r.kind, sizeof r.kind / sizeof *r.kind);
     return r;
 }
 
@@ -408,6 +413,78 @@ static void join_octants(filter *f, tm_stream *stream, report *r)
         filter_note(f, "not quite fit for finite volumes: %s", faults);
 }
 
+/* The mesh by this process alone; its report. */
+static report make_alone(filter *f, settings *o, tm_surface *surface, tm_stream *stream)
+{
+    tm_octree octree;
+    tm_octree_mesh mesh;
+    tm_error error;
+    make_mesh(f, o, surface, &octree, &mesh);
+    note_losses(f, surface, &mesh.report,
+                ldexp(octree.side, -(int)tm_octree_deepest(&octree)));
+    report r = report_of(&octree, &mesh);
+    const size_t elements = mesh.assembly.mesh.elements;
+    filter_stage(f, "numbering");
+    if (tm_octree_mesh_to_stream(&mesh, &octree, surface, o->levels, stream, &error) !=
+        TM_OK)
+        filter_fail(f, &error);
+    if (o->polyhedra)
+        join_octants(f, stream, &r);
+    if (f->json)
+        write_json(f, &r);
+    filter_write(f, stream, "%zu octants, %zu nodes, %zu %s", r.octants, r.nodes,
+                 o->polyhedra ? r.polyhedra : elements,
+                 o->polyhedra ? "polyhedra" : "elements");
+    tm_octree_mesh_free(&mesh);
+    tm_octree_free(&octree);
+    return r;
+}
+
+/* Writes what ranks have made together. */
+static report write_together(filter *f, const settings *o, tm_surface *surface,
+                             const tm_octree_share *share, tm_octree_mesh *mesh,
+                             tm_slices *slices)
+{
+    tm_error error;
+    const unsigned finest = tm_octree_share_deepest(share);
+    note_losses(f, surface, &mesh->report, ldexp(share->octree.side, -(int)finest));
+    const report r = report_of(&share->octree, mesh);
+    filter_stage(f, "numbering");
+    filter_agree(
+        f,
+        tm_octree_mesh_to_slices(mesh, share, finest, surface, o->levels, slices, &error),
+        &error);
+    if (f->json)
+        write_json(f, &r);
+    filter_write_slices(f, slices, "%zu octants, %zu nodes, %zu elements", r.octants,
+                        r.nodes, mesh->share->elements.all);
+    return r;
+}
+
+/* The mesh by all ranks; false where that is for rank 0 alone. */
+static bool make_together(filter *f, settings *o, tm_surface *surface, tm_slices *slices,
+                          report *r)
+{
+    tm_octree_share share = {0};
+    tm_octree_mesh mesh;
+    tm_error error;
+    bool alone;
+    o->plan.progress = filter_progress(f);
+    filter_agree(
+        f,
+        tm_octree_mesh_choose_on_ranks(&mesh, &share, surface, &o->plan, &alone, &error),
+        &error);
+    if (!alone)
+        *r = write_together(f, o, surface, &share, &mesh, slices);
+    tm_octree_mesh_free(&mesh);
+    tm_octree_share_free(&share);
+    if (alone && tm_rank() > 0)
+        exit(EXIT_SUCCESS);
+    if (alone)
+        tm_ranks_leave();
+    return !alone;
+}
+
 int main(int argc, char **argv)
 {
     filter f = {.name = "octree-mesh",
@@ -424,45 +501,22 @@ int main(int argc, char **argv)
     filter_operands(&f);
     o.surface.threads = f.threads;
     tm_surface surface;
-    tm_stream stream;
-    tm_octree octree;
-    tm_octree_mesh mesh;
-    tm_error error;
+    tm_slices slices = {0};
+    report r;
     if (!f.input)
         filter_together(&f, false);
-    surface_input_build(&f, &o.surface, &surface, &stream);
+    surface_input_build(&f, &o.surface, &surface, &slices.stream);
     const bool together = filter_together(&f, can_share(&o, &surface));
     double *largest = follow_curvature(&f, &o, &surface);
     refuse_many(&f, &o, &surface);
     note_outside(&f, &o.rules, &surface);
     mpi_environment_set(&f);
-    make_mesh(&f, &o, &surface, &octree, &mesh);
+    if (!together || !make_together(&f, &o, &surface, &slices, &r))
+        r = make_alone(&f, &o, &surface, &slices.stream);
     octree_rules_free(&o.rules);
     free(largest);
-    note_losses(&f, &surface, &mesh.report,
-                ldexp(octree.side, -(int)tm_octree_deepest(&octree)));
-    report r = report_of(&octree, &mesh);
-    const size_t elements = mesh.assembly.mesh.elements;
-    filter_stage(&f, "numbering");
-    if (tm_octree_mesh_to_stream(&mesh, &octree, &surface, o.levels, &stream, &error) !=
-        TM_OK)
-        filter_fail(&f, &error);
-    if (o.polyhedra)
-        join_octants(&f, &stream, &r);
-    if (together && tm_rank() > 0) {
-        tm_ranks_any(false);
-        return 0;
-    }
-    if (f.json)
-        write_json(&f, &r);
-    filter_write(&f, &stream, "%zu octants, %zu nodes, %zu %s", r.octants, r.nodes,
-                 o.polyhedra ? r.polyhedra : elements,
-                 o.polyhedra ? "polyhedra" : "elements");
-    if (together)
-        tm_ranks_any(false);
-    tm_octree_mesh_free(&mesh);
-    tm_octree_free(&octree);
+    tm_slices_free(&slices);
     tm_surface_free(&surface);
-    tm_stream_free(&stream);
-    return filter_finish(&f, r.mesh.invalid == 0 ? EXIT_SUCCESS : EXIT_GOAL);
+    const bool done = r.mesh.invalid == 0 || tm_rank() > 0;
+    return filter_finish(&f, done ? EXIT_SUCCESS : EXIT_GOAL);
 }

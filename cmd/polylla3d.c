@@ -320,10 +320,12 @@ int main(int argc, char **argv)
         .help = poly_options_help,
         .options = poly_options,
         .words = poly_option_words,
-        .letters = FILTER_LETTERS};
+        .letters = FILTER_LETTERS,
+        .ranks = true};
     filter_start(&f, argc, argv);
     poly_settings o = poly_settings_read(&f);
     filter_operands(&f);
+    filter_together(&f, false);
     tm_stream stream;
     filter_read(&f, &stream);
 

@@ -2,11 +2,13 @@
 /* tet-stats: how good the tetrahedra of a mesh are, or of two meshes side by side. */
 #include "common/input/against.h"
 #include "common/input/mesh_input.h"
+#include "common/input/mesh_share.h"
 #include "common/plot/plot.h"
 
 #include "../lib/element/tet_quality.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { OPTION_PLOT = FILTER_OWN, OPTION_LIST };
@@ -24,6 +26,7 @@ typedef struct options {
     bool list;
     bool compare;      /* there are two FILEs */
     const char *after; /* the second; NULL: standard input */
+    bool together;     /* with other ranks */
     against against;
 } options;
 
@@ -57,6 +60,36 @@ static void measure(const filter *f, const mesh *m, const options *o,
     if (tm_tet_statistics_measure(s, m->xyz, m->nodes, (const uint32_t(*)[4])m->tet,
                                   m->tets, o->threshold, f->threads, &error) != TM_OK)
         filter_fail(f, &error);
+}
+
+/* The same of ranks that have shares of it; rank 0 knows. */
+static void measure_shares(const filter *f, const options *o, tm_tet_statistics *s)
+{
+    tm_slices slices;
+    mesh_share share;
+    tm_slice nodes = {0, 0};
+    tm_error error;
+    mesh_share_read(f, &slices);
+    tm_slices_find(&slices, ".node", &nodes);
+    mesh_share_take(f, &share, &slices, ".ele");
+    if (share.block)
+        mesh_share_turn(f, &share, "are counted turned");
+    filter_stage(f, "measuring");
+    const size_t tets = share.block ? share.block->count : 0;
+    const uint32_t(*tet)[4] =
+        share.block ? (const uint32_t(*)[4])share.block->integer : NULL;
+    void *chunk = NULL;
+    size_t chunks = 0;
+    filter_agree(f,
+                 tm_tet_statistics_chunks((tm_tet_statistics **)&chunk, &chunks,
+                                          (const double(*)[3])share.xyz, tet, tets,
+                                          o->threshold, f->threads, &error),
+                 &error);
+    mesh_share_gather(f, &chunk, &chunks, sizeof *s);
+    tm_tet_statistics_join(s, chunk, chunks, nodes.total, o->threshold);
+    free(chunk);
+    mesh_share_free(&share);
+    tm_slices_free(&slices);
 }
 
 /* One line for each tetrahedron: its number in the stream, its smallest and its largest
@@ -98,6 +131,8 @@ static void write_plot(const filter *f, const options *o, const tm_tet_statistic
                        const tm_tet_statistics *s)
 {
     tm_text script = {0};
+    if (!filter_speaks())
+        return;
     tet_plot_script(&script, before, s);
     plot_write(f, &script, o->plot);
 }
@@ -153,6 +188,7 @@ static void read_options(filter *f, options *o)
         filter_usage_error(f, "only one of the two files can be standard input");
     if (o->compare && o->list)
         filter_usage_error(f, "--list takes one file, not two");
+    o->together = filter_together(f, !o->list && !o->against.file);
 }
 
 int main(int argc, char **argv)
@@ -175,22 +211,26 @@ int main(int argc, char **argv)
         .ranks = true,
     };
     options o = {.threshold = 30, .against = against_start()};
-    mesh first, second;
+    mesh first = {0}, second = {0};
     tm_tet_statistics before, after;
     filter_start(&f, argc, argv);
     read_options(&f, &o);
 
-    read_mesh(&f, &first);
-    measure(&f, &first, &o, &before);
-    if (o.compare) {
-        filter g = f;
+    filter g = f;
+    if (o.compare)
         g.input = o.after;
-        read_mesh(&g, &second);
-        measure(&g, &second, &o, &after);
-        against_measure(&g, &o.against, &second.stream);
-        tm_stream_free(&second.stream);
+    if (o.together) {
+        measure_shares(&f, &o, &before);
+        if (o.compare)
+            measure_shares(&g, &o, &after);
     } else {
-        against_measure(&f, &o.against, &first.stream);
+        read_mesh(&f, &first);
+        measure(&f, &first, &o, &before);
+        if (o.compare) {
+            read_mesh(&g, &second);
+            measure(&g, &second, &o, &after);
+        }
+        against_measure(&g, &o.against, o.compare ? &second.stream : &first.stream);
     }
     const tm_tet_statistics *earlier = o.compare ? &before : NULL;
     const tm_tet_statistics *last = o.compare ? &after : &before;
@@ -200,5 +240,6 @@ int main(int argc, char **argv)
         write_plot(&f, &o, earlier, last);
     write_report(&f, &o, &first, earlier, last);
     tm_stream_free(&first.stream);
+    tm_stream_free(&second.stream);
     return filter_finish(&f, 0);
 }

@@ -78,6 +78,7 @@
 #include "examine/poly/poly_examine.h"
 #include "examine/poly/poly_finite_volume.h"
 #include "examine/poly/poly_statistics.h"
+#include "examine/ranks/examine_ranks.h"
 #include "examine/tet_statistics.h"
 
 /* format: files of other programs */

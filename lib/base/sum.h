@@ -6,6 +6,7 @@
 #define TM_BASE_SUM_H
 
 #include <math.h>
+#include <stddef.h>
 
 /* {0} is an empty sum. */
 typedef struct tm_sum {
@@ -25,6 +26,17 @@ static inline void tm_sum_add(tm_sum *sum, double term)
 static inline double tm_sum_value(tm_sum sum)
 {
     return isfinite(sum.high) ? sum.high + sum.low : sum.high;
+}
+
+/* That of all, in their order. */
+static inline double tm_sum_all(const tm_sum *sum, size_t count)
+{
+    tm_sum all = {0, 0};
+    for (size_t i = 0; i < count; i++) {
+        tm_sum_add(&all, sum[i].high);
+        tm_sum_add(&all, sum[i].low);
+    }
+    return tm_sum_value(all);
 }
 
 #endif

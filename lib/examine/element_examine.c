@@ -11,7 +11,7 @@
 #include <stdlib.h>
 
 /* Elements that one thread measures at a time. */
-enum { CHUNK = 8192 };
+enum { CHUNK = TM_CHUNK };
 
 /* What a chunk of elements adds to the examination. */
 typedef struct measured {
@@ -70,34 +70,52 @@ static void measure_chunk(void *context, size_t chunk)
     m->chunk[chunk] = sum;
 }
 
-/* Kinds, volumes and corners. */
-static tm_status examine_elements(tm_examination *found, const tm_mesh_view *mesh,
-                                  int8_t *sign, unsigned threads, tm_error *error)
+void tm_element_measures_free(tm_element_measures *measures)
 {
-    const size_t chunks = mesh->elements / CHUNK + (mesh->elements % CHUNK != 0);
-    measuring m = {mesh, sign, tm_new(chunks, sizeof *m.chunk)};
-    if (!m.chunk)
+    free(measures->sign);
+    free(measures->volume);
+}
+
+tm_status tm_element_measure(tm_examination *found, const tm_mesh_view *mesh,
+                             tm_element_measures *measures, unsigned threads,
+                             tm_error *error)
+{
+    const size_t chunks = tm_parallel_chunks(mesh->elements, CHUNK);
+    *measures =
+        (tm_element_measures){.chunks = chunks,
+                              .sign = tm_new(mesh->elements, sizeof *measures->sign),
+                              .volume = tm_new(chunks, sizeof *measures->volume)};
+    measuring m = {mesh, measures->sign, tm_new(chunks, sizeof *m.chunk)};
+    if (!measures->sign || !measures->volume || !m.chunk) {
+        free(m.chunk);
         return tm_fail_memory(error);
+    }
     tm_parallel(threads, chunks, measure_chunk, &m);
-    tm_sum volume = {0};
     for (size_t i = 0; i < chunks; i++) {
         for (size_t k = 0; k < TM_ELEMENT_KINDS; k++)
             found->kind[k] += m.chunk[i].kind[k];
-        tm_sum_add(&volume, m.chunk[i].volume.high);
-        tm_sum_add(&volume, m.chunk[i].volume.low);
+        measures->volume[i] = m.chunk[i].volume;
         tm_defect_add_list(&found->defect[TM_INVERTED], &m.chunk[i].inverted);
         tm_defect_add_list(&found->defect[TM_DEGENERATE], &m.chunk[i].degenerate);
     }
-    found->volume = tm_sum_value(volume);
     free(m.chunk);
     return TM_OK;
+}
+
+tm_examination tm_element_examination(bool mixed, size_t nodes, size_t elements)
+{
+    return (tm_examination){.element = mixed ? "element" : "tetrahedron",
+                            .elements = mixed ? "elements" : "tetrahedra",
+                            .mixed = mixed,
+                            .nodes = nodes,
+                            .element_count = elements};
 }
 
 /* What is looked at once the boundary is known, each on a thread. */
 typedef struct rest {
     tm_examination *found;
     const tm_mesh_view *mesh;
-    const tm_boundary_faces *boundary;
+    const tm_walked *walked;
     struct looked_at {
         tm_status status;
         tm_error error;
@@ -108,16 +126,17 @@ static void examine_part(void *context, size_t i)
 {
     rest *r = context;
     struct looked_at *part = &r->part[i];
+    const tm_walked *w = r->walked;
+    const size_t nodes = r->mesh->nodes;
     if (i == 0)
-        part->status =
-            tm_examine_nodes(r->found, r->mesh->xyz, r->mesh->nodes, &part->error);
+        part->status = tm_examine_nodes(r->found, r->mesh->xyz, nodes, &part->error);
     else if (i == 1)
-        part->status =
-            tm_examine_boundary(r->found, r->mesh->xyz, r->mesh->nodes, r->boundary->node,
-                                r->boundary->count, &part->error);
+        part->status = tm_examine_boundary(r->found, nodes, w->first, w->past,
+                                           (const uint32_t(*)[4])w->boundary.node,
+                                           w->boundary.count, &part->error);
     else
-        part->status =
-            tm_element_examine_nonconforming(r->found, r->boundary, &part->error);
+        part->status = tm_element_examine_nonconforming(r->found, &w->boundary, w->first,
+                                                        w->past, &part->error);
 }
 
 static tm_status examine_rest(rest *r, unsigned threads, tm_error *error)
@@ -131,25 +150,41 @@ static tm_status examine_rest(rest *r, unsigned threads, tm_error *error)
     return TM_OK;
 }
 
+/* Components, nodes in use, the area. */
+static void count(tm_examination *found, const tm_mesh_view *mesh, const int8_t *sign,
+                  const tm_walked *walked)
+{
+    tm_sum area = {0};
+    for (size_t v = 0; v < mesh->nodes; v++)
+        found->unused_nodes += !walked->used[v];
+    found->euler += (int64_t)(mesh->nodes - found->unused_nodes);
+    for (uint32_t e = 0; e < mesh->elements; e++) {
+        found->components += sign[e] != TM_NODE_TWICE && walked->parent[e] == e;
+        found->euler -= sign[e] != TM_NODE_TWICE;
+    }
+    tm_add_boundary_area(&area, mesh->xyz, (const uint32_t(*)[4])walked->boundary.node,
+                         walked->boundary.count);
+    found->area = tm_sum_value(area);
+}
+
 tm_status tm_element_examine(tm_examination *found, const tm_mesh_view *mesh,
                              unsigned threads, tm_error *error)
 {
-    *found = (tm_examination){.element = mesh->start ? "element" : "tetrahedron",
-                              .elements = mesh->start ? "elements" : "tetrahedra",
-                              .mixed = mesh->start,
-                              .nodes = mesh->nodes,
-                              .element_count = mesh->elements};
-    int8_t *sign = tm_new(mesh->elements, sizeof *sign);
-    if (!sign)
-        return tm_fail_memory(error);
-    tm_boundary_faces boundary = {0};
-    tm_status status = examine_elements(found, mesh, sign, threads, error);
+    *found = tm_element_examination(mesh->start, mesh->nodes, mesh->elements);
+    tm_element_measures measures;
+    tm_walked walked = {.past = (uint32_t)mesh->nodes};
+    tm_status status = tm_element_measure(found, mesh, &measures, threads, error);
+    if (status == TM_OK) {
+        found->volume = tm_sum_all(measures.volume, measures.chunks);
+        status =
+            tm_element_examine_faces(found, mesh, measures.sign, &walked, threads, error);
+    }
     if (status == TM_OK)
-        status = tm_element_examine_faces(found, mesh, sign, &boundary, threads, error);
-    free(sign);
-    rest r = {.found = found, .mesh = mesh, .boundary = &boundary};
+        count(found, mesh, measures.sign, &walked);
+    tm_element_measures_free(&measures);
+    rest r = {.found = found, .mesh = mesh, .walked = &walked};
     if (status == TM_OK)
         status = examine_rest(&r, threads, error);
-    free(boundary.node);
+    tm_walked_free(&walked);
     return status;
 }

@@ -21,9 +21,8 @@ typedef struct walk {
     tm_face_table table;
     tm_at_nodes far;    /* the larger nodes of far edges */
     tm_at_nodes listed; /* rows of .edge; no arrays where there are none */
-    uint32_t *parent;   /* [elements]: a forest with a tree for each component */
-    uint8_t *used;      /* [nodes] */
-    uint32_t *cut;      /* walker i has the nodes from cut[i] up to cut[i + 1] */
+    tm_walked *walked;
+    uint32_t *cut; /* walker i has the nodes from cut[i] up to cut[i + 1] */
     struct walker *walker;
 } walk;
 
@@ -44,13 +43,8 @@ typedef struct walker {
 typedef struct members {
     tm_face_member element[2]; /* the first two */
     size_t elements;
-    uint32_t face_row, facet_row; /* the first of .face, of .facet; TM_NONE */
+    uint32_t face_row, facet_row; /* names of the first of .face, .facet; TM_NONE */
 } members;
-
-static bool is_whole(const walk *w, size_t e)
-{
-    return w->sign[e] != TM_NODE_TWICE;
-}
 
 static void add_defect(walker *w, tm_defect d, uint32_t first, uint32_t second,
                        uint32_t third)
@@ -67,7 +61,7 @@ static uint32_t lesser(uint32_t a, uint32_t b)
 
 static void set_used(const walker *w, uint32_t v)
 {
-    __atomic_store_n(&w->w->used[v], 1, __ATOMIC_RELAXED);
+    __atomic_store_n(&w->w->walked->used[v], 1, __ATOMIC_RELAXED);
 }
 
 static void meet_edge(walker *w, uint32_t v, uint32_t end)
@@ -157,6 +151,12 @@ static bool is_right(const walker *w, const members *at, uint32_t f, bool turned
     return sign == 0 || (turned == at->element[second].turned) == (sign > 0);
 }
 
+static uint32_t name_of_row(const tm_walked *walked, uint32_t row, bool is_facet)
+{
+    const uint32_t *name = is_facet ? walked->facet_row : walked->face_row;
+    return name ? name[row] : row;
+}
+
 /* A row of .face or .facet, of which this face is; the elements at it were taken. */
 static void take_row(walker *w, members *at, const tm_face_member *member)
 {
@@ -165,13 +165,14 @@ static void take_row(walker *w, members *at, const tm_face_member *member)
     const bool is_facet = row >= faces;
     uint32_t *first = is_facet ? &at->facet_row : &at->face_row;
     row -= is_facet ? faces : 0;
+    const uint32_t name = name_of_row(w->w->walked, row, is_facet);
     if (*first != TM_NONE) {
-        add_defect(w, TM_REPEATED_FACE, row, *first, is_facet);
+        add_defect(w, TM_REPEATED_FACE, name, *first, is_facet);
         return;
     }
-    *first = row;
+    *first = name;
     if (is_facet ? !is_right(w, at, row, member->turned) : at->elements == 0)
-        add_defect(w, TM_DANGLING_FACE, row, 0, is_facet);
+        add_defect(w, TM_DANGLING_FACE, name, 0, is_facet);
 }
 
 static members take_members(walker *w, const tm_face *face)
@@ -186,7 +187,7 @@ static members take_members(walker *w, const tm_face *face)
         if (at.elements < 2)
             at.element[at.elements] = *member;
         if (at.elements > 0)
-            tm_set_unite_shared(w->w->parent, element_of(w, at.element[0].id),
+            tm_set_unite_shared(w->w->walked->parent, element_of(w, at.element[0].id),
                                 element_of(w, member->id));
         at.elements++;
     }
@@ -307,24 +308,28 @@ static void take_no_faces(const walk *w, tm_examination *found)
 {
     const uint32_t faces = (uint32_t)w->mesh->faces;
     const uint32_t rows = faces + (uint32_t)w->mesh->facets;
-    for (uint32_t row = 0; row < rows; row++)
+    for (uint32_t row = 0; row < rows; row++) {
+        const bool is_facet = row >= faces;
+        const uint32_t name =
+            name_of_row(w->walked, is_facet ? row - faces : row, is_facet);
         if (!tm_row_is_face(w->mesh, row))
             tm_defect_add(&found->defect[TM_DANGLING_FACE],
-                          (uint32_t[TM_DEFECT_NUMBERS]){row < faces ? row : row - faces,
-                                                        0, row >= faces});
+                          (uint32_t[TM_DEFECT_NUMBERS]){name, 0, is_facet});
+    }
 }
 
 static bool allocate(walk *w, unsigned threads)
 {
     const tm_mesh_view *mesh = w->mesh;
-    w->parent = tm_new(mesh->elements, sizeof *w->parent);
-    w->used = calloc(mesh->nodes + 1, sizeof *w->used);
+    tm_walked *walked = w->walked;
+    walked->parent = tm_new(mesh->elements, sizeof *walked->parent);
+    walked->used = calloc(mesh->nodes + 1, sizeof *walked->used);
     w->cut = tm_new((size_t)threads + 1, sizeof *w->cut);
     w->walker = calloc(threads, sizeof *w->walker);
-    if (!w->parent || !w->used || !w->cut || !w->walker)
+    if (!walked->parent || !walked->used || !w->cut || !w->walker)
         return false;
     for (uint32_t e = 0; e < mesh->elements; e++)
-        w->parent[e] = e;
+        walked->parent[e] = e;
     return true;
 }
 
@@ -343,8 +348,9 @@ static bool append_boundary(tm_boundary_faces *to, const tm_boundary_faces *more
 
 /* What the walkers found, in the order of the nodes. */
 static tm_status collect(const walk *w, unsigned threads, tm_examination *found,
-                         tm_boundary_faces *boundary, tm_error *error)
+                         tm_error *error)
 {
+    tm_boundary_faces *boundary = &w->walked->boundary;
     for (unsigned t = 0; t < threads; t++) {
         const walker *one = &w->walker[t];
         if (one->status != TM_OK)
@@ -356,13 +362,6 @@ static tm_status collect(const walk *w, unsigned threads, tm_examination *found,
         found->euler += (int64_t)one->faces - (int64_t)one->edges;
     }
     found->boundary_faces = boundary->count;
-    for (size_t v = 0; v < w->mesh->nodes; v++)
-        found->unused_nodes += !w->used[v];
-    found->euler += (int64_t)(w->mesh->nodes - found->unused_nodes);
-    for (uint32_t e = 0; e < w->mesh->elements; e++) {
-        found->components += is_whole(w, e) && w->parent[e] == e;
-        found->euler -= is_whole(w, e);
-    }
     return TM_OK;
 }
 
@@ -374,16 +373,31 @@ static void free_walk(walk *w, unsigned threads)
     tm_face_table_free(&w->table);
     tm_at_nodes_free(&w->far);
     tm_at_nodes_free(&w->listed);
-    free(w->parent);
-    free(w->used);
     free(w->cut);
 }
 
+/* What lists the members cuts the nodes of all. */
+static void cut_nodes(const walk *w, unsigned threads)
+{
+    tm_face_table_cut(&w->table, threads, w->cut);
+    for (unsigned t = 0; t <= threads; t++) {
+        const uint32_t v = w->cut[t] < w->walked->past ? w->cut[t] : w->walked->past;
+        w->cut[t] = v > w->walked->first ? v : w->walked->first;
+    }
+}
+
+void tm_walked_free(tm_walked *walked)
+{
+    free(walked->parent);
+    free(walked->used);
+    free(walked->boundary.node);
+}
+
 tm_status tm_element_examine_faces(tm_examination *found, const tm_mesh_view *mesh,
-                                   const int8_t *sign, tm_boundary_faces *boundary,
+                                   const int8_t *sign, tm_walked *walked,
                                    unsigned threads, tm_error *error)
 {
-    walk w = {.mesh = mesh, .sign = sign};
+    walk w = {.mesh = mesh, .sign = sign, .walked = walked};
     tm_status status = tm_face_table_make(&w.table, mesh, threads, error);
     threads = tm_threads_for(threads, MOST_WALKERS, mesh->elements);
     if (status == TM_OK &&
@@ -392,9 +406,9 @@ tm_status tm_element_examine_faces(tm_examination *found, const tm_mesh_view *me
         status = tm_fail_memory(error);
     if (status == TM_OK) {
         take_no_faces(&w, found);
-        tm_face_table_cut(&w.table, threads, w.cut);
+        cut_nodes(&w, threads);
         tm_parallel(threads, threads, walk_nodes, &w);
-        status = collect(&w, threads, found, boundary, error);
+        status = collect(&w, threads, found, error);
     }
     free_walk(&w, threads);
     return status;

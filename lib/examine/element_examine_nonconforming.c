@@ -9,7 +9,8 @@
 
 typedef struct triangles {
     const tm_boundary_faces *boundary;
-    tm_hash_table table; /* of the boundary's triangles */
+    uint32_t first, past; /* nodes, one of which is the smallest one of what counts */
+    tm_hash_table table;  /* of the boundary's triangles */
 } triangles;
 
 static void sort3(uint32_t n[3])
@@ -51,7 +52,7 @@ static void look_up(tm_examination *found, const triangles *all,
         for (size_t i = 0; i < 3; i++)
             n[i] = quadrilateral[i < left_out ? i : i + 1];
         sort3(n);
-        if (*slot_of(all, n) != TM_HASH_FREE)
+        if (n[0] >= all->first && n[0] < all->past && *slot_of(all, n) != TM_HASH_FREE)
             tm_defect_add(
                 &found->defect[TM_UNMATCHED_FACE],
                 (uint32_t[TM_DEFECT_NUMBERS]){n[0], n[1], n[2], TM_FACE_HALVED});
@@ -60,14 +61,14 @@ static void look_up(tm_examination *found, const triangles *all,
 
 tm_status tm_element_examine_nonconforming(tm_examination *found,
                                            const tm_boundary_faces *boundary,
-                                           tm_error *error)
+                                           uint32_t first, uint32_t past, tm_error *error)
 {
     size_t count = 0;
     for (size_t f = 0; f < boundary->count; f++)
         count += boundary->node[f][3] == TM_NONE;
     if (count == 0 || count == boundary->count)
         return TM_OK;
-    triangles all = {.boundary = boundary};
+    triangles all = {.boundary = boundary, .first = first, .past = past};
     if (!tm_hash_make(&all.table, count))
         return tm_fail_memory(error);
     for (size_t f = 0; f < boundary->count; f++)

@@ -5,7 +5,6 @@
 
 #include "../base/array.h"
 #include "../base/disjoint_sets.h"
-#include "../base/sum.h"
 #include "../geom/vector.h"
 
 #include <stdlib.h>
@@ -145,26 +144,25 @@ static bool check_node(tm_examination *found, surface *s, uint32_t v)
     return true;
 }
 
-static double area(const surface *s, const double (*xyz)[3])
+void tm_add_boundary_area(tm_sum *sum, const double (*xyz)[3], const uint32_t (*face)[4],
+                          size_t faces)
 {
-    tm_sum sum = {0};
-    for (size_t f = 0; f < s->faces; f++) {
-        const uint32_t *n = s->face[f];
+    for (size_t f = 0; f < faces; f++) {
+        const uint32_t *n = face[f];
         const double *a = xyz[n[0]], *b = xyz[n[1]], *c = xyz[n[2]];
-        tm_sum_add(&sum, corners_of(n) == 3 ? tm_triangle_area(a, b, c)
-                                            : tm_bilinear_area(a, b, c, xyz[n[3]]));
+        tm_sum_add(sum, corners_of(n) == 3 ? tm_triangle_area(a, b, c)
+                                           : tm_bilinear_area(a, b, c, xyz[n[3]]));
     }
-    return tm_sum_value(sum);
 }
 
-tm_status tm_examine_boundary(tm_examination *found, const double (*xyz)[3], size_t nodes,
-                              const uint32_t (*face)[4], size_t faces, tm_error *error)
+tm_status tm_examine_boundary(tm_examination *found, size_t nodes, uint32_t first,
+                              uint32_t past, const uint32_t (*face)[4], size_t faces,
+                              tm_error *error)
 {
     surface s = {.face = face, .faces = faces};
     bool enough = list_faces(&s, nodes);
-    for (uint32_t v = 0; enough && v < nodes; v++)
+    for (uint32_t v = first; enough && v < past; v++)
         enough = check_node(found, &s, v);
-    found->area = area(&s, xyz);
     surface_free(&s);
     return enough ? TM_OK : tm_fail_memory(error);
 }

@@ -9,9 +9,9 @@
 
 #include <stdlib.h>
 
-/* Elements that one thread measures at a time. Sums are rounded chunk by chunk, so that
- * the last digits of averages depend on this number, but not on the threads. */
-enum { CHUNK = 8192 };
+/* Sums are rounded chunk by chunk, so that the last digits of averages depend on their
+ * size, but not on the threads. */
+enum { CHUNK = TM_JENS_CHUNK };
 
 const double tm_jens_edge[TM_JENS_BUCKETS] = {0.0333, 0.05, 0.1,  0.15, 0.2,  0.25, 0.3,
                                               0.35,   0.4,  0.45, 0.5,  0.55, 0.6,  0.65,
@@ -112,7 +112,8 @@ static void measure_chunk(void *context, size_t chunk)
             take(&s.verdict_shape, tm_verdict_shape(nodes, elements->xyz, item));
         }
         if (request->certify)
-            name(&s.certified[tm_certify(nodes, elements->xyz, item)], e);
+            name(&s.certified[tm_certify(nodes, elements->xyz, item)],
+                 request->before + e);
     }
     m->chunk[chunk] = s;
 }
@@ -160,24 +161,44 @@ static void finish(tm_spread *s, size_t elements)
     s->average = elements > 0 ? s->sum / (double)elements : 0;
 }
 
+tm_status tm_jens_statistics_chunks(tm_jens_statistics **chunk, size_t *chunks,
+                                    const tm_elements *elements,
+                                    const tm_jens_request *request, tm_error *error)
+{
+    *chunks = tm_parallel_chunks(elements->count, CHUNK);
+    *chunk = tm_new(*chunks, sizeof **chunk);
+    if (!*chunk)
+        return tm_fail_memory(error);
+    measuring m = {elements, request, *chunk};
+    tm_parallel(request->threads, *chunks, measure_chunk, &m);
+    return TM_OK;
+}
+
+void tm_jens_statistics_join(tm_jens_statistics *statistics,
+                             const tm_jens_statistics *chunk, size_t chunks,
+                             const tm_jens_request *request)
+{
+    clear(statistics, request);
+    for (size_t i = 0; i < chunks; i++)
+        add(statistics, &chunk[i]);
+    const size_t elements = statistics->elements;
+    finish(&statistics->jens.all, elements);
+    finish(&statistics->scaled_jacobian.all, elements);
+    finish(&statistics->aspect_ratio, elements);
+    finish(&statistics->verdict_scaled_jacobian, elements);
+    finish(&statistics->verdict_shape, elements);
+}
+
 tm_status tm_jens_statistics_measure(tm_jens_statistics *statistics,
                                      const tm_elements *elements,
                                      const tm_jens_request *request, tm_error *error)
 {
-    const size_t chunks = elements->count / CHUNK + (elements->count % CHUNK != 0);
-    tm_jens_statistics *chunk = tm_new(chunks, sizeof *chunk);
-    if (!chunk)
-        return tm_fail_memory(error);
-    measuring m = {elements, request, chunk};
-    tm_parallel(request->threads, chunks, measure_chunk, &m);
-    clear(statistics, request);
-    for (size_t i = 0; i < chunks; i++)
-        add(statistics, &chunk[i]);
+    tm_jens_statistics *chunk;
+    size_t chunks;
+    const tm_status status =
+        tm_jens_statistics_chunks(&chunk, &chunks, elements, request, error);
+    if (status == TM_OK)
+        tm_jens_statistics_join(statistics, chunk, chunks, request);
     free(chunk);
-    finish(&statistics->jens.all, elements->count);
-    finish(&statistics->scaled_jacobian.all, elements->count);
-    finish(&statistics->aspect_ratio, elements->count);
-    finish(&statistics->verdict_scaled_jacobian, elements->count);
-    finish(&statistics->verdict_shape, elements->count);
-    return TM_OK;
+    return status;
 }

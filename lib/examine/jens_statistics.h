@@ -69,6 +69,7 @@ typedef struct tm_jens_request {
     bool others; /* the aspect ratio and those of verdict.h */
     bool certify;
     unsigned threads;
+    size_t before; /* number of the first element, where others are elsewhere */
 } tm_jens_request;
 
 typedef struct tm_jens_statistics {
@@ -88,6 +89,17 @@ typedef struct tm_jens_statistics {
 tm_status tm_jens_statistics_measure(tm_jens_statistics *statistics,
                                      const tm_elements *elements,
                                      const tm_jens_request *request, tm_error *error);
+
+/* Its parts, for who has the elements in several places: the statistics of each
+ * TM_JENS_CHUNK of them, *chunk, to be freed; and all of these, in their order, as one.
+ */
+enum { TM_JENS_CHUNK = 8192 };
+tm_status tm_jens_statistics_chunks(tm_jens_statistics **chunk, size_t *chunks,
+                                    const tm_elements *elements,
+                                    const tm_jens_request *request, tm_error *error);
+void tm_jens_statistics_join(tm_jens_statistics *statistics,
+                             const tm_jens_statistics *chunk, size_t chunks,
+                             const tm_jens_request *request);
 
 /* Writes the histogram to read: the line "negative: N", a line "<EDGE : N" for each
  * bucket, then the number of elements, the worst and the average. */

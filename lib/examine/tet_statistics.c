@@ -8,9 +8,9 @@
 
 #include <stdlib.h>
 
-/* Tetrahedra that one thread measures at a time. The sum of volumes is rounded chunk by
- * chunk, so that its last digits depend on this number, but not on the threads. */
-enum { CHUNK = 8192 };
+/* The sum of volumes is rounded chunk by chunk, so that its last digits depend on their
+ * size, but not on the threads. */
+enum { CHUNK = TM_STATISTICS_CHUNK };
 
 const double tm_large_limit[TM_LARGE_LIMITS] = {150, 160, 170, 175};
 
@@ -92,25 +92,44 @@ static void add(tm_tet_statistics *sum, const tm_tet_statistics *s)
         sum->volume_quality[i] += s->volume_quality[i];
 }
 
+tm_status tm_tet_statistics_chunks(tm_tet_statistics **chunk, size_t *chunks,
+                                   const double (*xyz)[3], const uint32_t (*tet)[4],
+                                   size_t tets, double limit, unsigned threads,
+                                   tm_error *error)
+{
+    *chunks = tm_parallel_chunks(tets, CHUNK);
+    *chunk = tm_new(*chunks, sizeof **chunk);
+    if (!*chunk)
+        return tm_fail_memory(error);
+    measuring m = {xyz, tet, tets, tm_bad_sine2(limit), *chunk};
+    tm_parallel(threads, *chunks, measure_chunk, &m);
+    return TM_OK;
+}
+
+void tm_tet_statistics_join(tm_tet_statistics *statistics, const tm_tet_statistics *chunk,
+                            size_t chunks, size_t nodes, double limit)
+{
+    clear(statistics);
+    for (size_t i = 0; i < chunks; i++)
+        add(statistics, &chunk[i]);
+    if (chunks == 0)
+        statistics->min_dihedral = 0;
+    statistics->nodes = nodes;
+    statistics->limit = limit;
+}
+
 tm_status tm_tet_statistics_measure(tm_tet_statistics *statistics, const double (*xyz)[3],
                                     size_t nodes, const uint32_t (*tet)[4], size_t tets,
                                     double limit, unsigned threads, tm_error *error)
 {
-    const size_t chunks = tets / CHUNK + (tets % CHUNK != 0);
-    tm_tet_statistics *chunk = tm_new(chunks, sizeof *chunk);
-    if (!chunk)
-        return tm_fail_memory(error);
-    measuring m = {xyz, tet, tets, tm_bad_sine2(limit), chunk};
-    tm_parallel(threads, chunks, measure_chunk, &m);
-    clear(statistics);
-    for (size_t i = 0; i < chunks; i++)
-        add(statistics, &chunk[i]);
+    tm_tet_statistics *chunk;
+    size_t chunks;
+    const tm_status status =
+        tm_tet_statistics_chunks(&chunk, &chunks, xyz, tet, tets, limit, threads, error);
+    if (status == TM_OK)
+        tm_tet_statistics_join(statistics, chunk, chunks, nodes, limit);
     free(chunk);
-    if (tets == 0)
-        statistics->min_dihedral = 0;
-    statistics->nodes = nodes;
-    statistics->limit = limit;
-    return TM_OK;
+    return status;
 }
 
 size_t tm_count_through(const size_t *histogram, size_t bin)

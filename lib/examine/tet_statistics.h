@@ -49,6 +49,17 @@ tm_status tm_tet_statistics_measure(tm_tet_statistics *statistics, const double 
                                     size_t nodes, const uint32_t (*tet)[4], size_t tets,
                                     double limit, unsigned threads, tm_error *error);
 
+/* Its parts, for who has the tetrahedra in several places: the statistics of each
+ * TM_STATISTICS_CHUNK of them, *chunk, to be freed; and all of these, in their order, as
+ * one. */
+enum { TM_STATISTICS_CHUNK = 8192 };
+tm_status tm_tet_statistics_chunks(tm_tet_statistics **chunk, size_t *chunks,
+                                   const double (*xyz)[3], const uint32_t (*tet)[4],
+                                   size_t tets, double limit, unsigned threads,
+                                   tm_error *error);
+void tm_tet_statistics_join(tm_tet_statistics *statistics, const tm_tet_statistics *chunk,
+                            size_t chunks, size_t nodes, double limit);
+
 /* How many of the values lie below the upper end of a bin. */
 size_t tm_count_through(const size_t *histogram, size_t bin);
 

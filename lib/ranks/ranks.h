@@ -41,6 +41,9 @@ tm_status tm_ranks_start(tm_error *error);
 unsigned tm_rank(void);
 unsigned tm_ranks_count(void);
 
+/* From here on this rank is alone, with the number 0; the others are to end. */
+void tm_ranks_leave(void);
+
 /* Ends all ranks at once with that exit status, whatever the others do. */
 _Noreturn void tm_ranks_end(int status);
 

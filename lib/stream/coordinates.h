@@ -25,6 +25,13 @@ tm_status tm_coordinates_check(const double (*xyz)[3], size_t count, unsigned ba
  * the error names the block. */
 tm_status tm_stream_check_coordinates(const tm_stream *stream, tm_error *error);
 
+/* Its parts, of one block .node or .root, whose first row has that number: the error of a
+ * coordinate that is not finite or too large; *largest grows to the largest there is. And
+ * the error where that is too small. */
+tm_status tm_block_check_coordinates(const tm_block *block, size_t first, double *largest,
+                                     tm_error *error);
+tm_status tm_largest_coordinate_check(double largest, const char *block, tm_error *error);
+
 TM_EXTERN_C_END
 
 #endif

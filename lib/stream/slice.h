@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which rows a rank has of a block of which each rank has a slice. The slices are as the
- * ranks and as even as multiples of TM_CHUNK rows can be, so that what is done by chunks
- * of them is done by the same chunks for every number of ranks. Rank 0 has all of few. */
+/* Which rows a rank has of a block of which each rank has a slice. The slices are as even
+ * as multiples of TM_SLICE_ROWS rows can be: what is rounded chunk by chunk is rounded
+ * alike for every number of ranks, where its chunks divide these. Rank 0 has all of few.
+ */
 #ifndef TM_STREAM_SLICE_H
 #define TM_STREAM_SLICE_H
 
@@ -9,6 +10,8 @@
 #include "../base/parallel.h"
 
 TM_EXTERN_C_BEGIN
+
+enum { TM_SLICE_ROWS = 8192 };
 
 /* This rank's rows of a block have so many before them on other ranks; all ranks have
  * `total`. */
@@ -20,15 +23,16 @@ typedef struct tm_slice {
  * 2^64. */
 static inline size_t tm_slice_first(size_t total, unsigned ranks, unsigned rank)
 {
-    const size_t chunks = tm_parallel_chunks(total, TM_CHUNK);
-    const size_t first = (size_t)TM_CHUNK * ((chunks * rank + ranks - 1) / ranks);
+    const size_t chunks = tm_parallel_chunks(total, TM_SLICE_ROWS);
+    const size_t first = (size_t)TM_SLICE_ROWS * ((chunks * rank + ranks - 1) / ranks);
     return first < total ? first : total;
 }
 
 /* The rank that has a row, which is below total. */
 static inline unsigned tm_slice_owner(size_t total, unsigned ranks, size_t row)
 {
-    return (unsigned)(row / TM_CHUNK * ranks / tm_parallel_chunks(total, TM_CHUNK));
+    return (unsigned)(row / TM_SLICE_ROWS * ranks /
+                      tm_parallel_chunks(total, TM_SLICE_ROWS));
 }
 
 TM_EXTERN_C_END

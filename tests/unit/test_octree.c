@@ -700,7 +700,9 @@ static void test_stream(void **state)
     tm_block *node = tm_stream_add(&stream, ".node");
     assert_non_null(node);
     assert_ok(tm_block_allocate(node, 1, 0, &error), &error);
-    assert_ok(tm_octree_to_stream(&octree, none, &stream, &error), &error);
+    assert_ok(
+        tm_octree_to_stream(&octree, tm_octree_deepest(&octree), none, &stream, &error),
+        &error);
     write_and_read(&stream, &again);
     uint32_t *order = NULL;
     assert_ok(tm_octree_read_blocks(&back, &again, &surface, &order, &error), &error);

@@ -253,6 +253,7 @@ int filter_finish(filter *f, int status)
 {
     tm_error error;
     require_report(f);
+    filter_verbose_ranks(f);
     progress_end(f->progress);
     if (output_files_finish(f->files, &error) != TM_OK)
         filter_fail(f, &error);

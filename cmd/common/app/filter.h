@@ -121,6 +121,10 @@ bool filter_together(const filter *f, bool can);
  * any; else one of them says why, all end, and the launcher has its status. */
 void filter_agree(const filter *f, tm_status status, tm_error *error);
 
+/* What ranks that work together have sent to each other, and how evenly they have worked,
+ * as filter_verbose() says it. */
+void filter_verbose_ranks(const filter *f);
+
 /* Whether this rank is the one that says something. */
 bool filter_speaks(void);
 
@@ -230,6 +234,10 @@ void filter_write(filter *f, tm_stream *stream, const char *summary, ...)
 void filter_read_slices(const filter *f, tm_slices *slices);
 void filter_write_slices(filter *f, tm_slices *slices, const char *summary, ...)
     __attribute__((format(printf, 3, 4)));
+
+/* filter_write_text() of what all ranks have, in their order, which are together a text.
+ */
+void filter_write_texts(filter *f, const tm_text *text);
 
 /* Writes a text (a table, a foreign file) to the output, after the report as well. */
 void filter_write_text(filter *f, const tm_text *text);

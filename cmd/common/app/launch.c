@@ -10,6 +10,7 @@
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 /* The program of that name that is linked with MPI: ../libexec/termesh/mpi/NAME. */
@@ -64,6 +65,44 @@ bool filter_together(const filter *f, bool can)
     if (tm_ranks_start(&error) != TM_OK)
         filter_fail(f, &error);
     return tm_ranks_count() > 1;
+}
+
+/* The processor time of this rank, in milliseconds, and the memory that it had at most,
+ * in kB. */
+static void find_usage(size_t *time, size_t *memory)
+{
+    enum { THOUSAND = 1000 };
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    const time_t seconds = usage.ru_utime.tv_sec + usage.ru_stime.tv_sec;
+    const suseconds_t rest = usage.ru_utime.tv_usec + usage.ru_stime.tv_usec;
+    *time = THOUSAND * (size_t)seconds + (size_t)rest / THOUSAND;
+    *memory = (size_t)usage.ru_maxrss;
+}
+
+void filter_verbose_ranks(const filter *f)
+{
+    enum { BYTES, MESSAGES, TIME, MEMORY, FIGURES };
+    const double thousand = 1e3, million = 1e6;
+    const unsigned ranks = tm_ranks_count();
+    if (ranks == 1)
+        return;
+    const tm_ranks_traffic sent = tm_ranks_sent();
+    size_t sum[FIGURES] = {[BYTES] = sent.bytes, [MESSAGES] = sent.messages};
+    double most[FIGURES];
+    find_usage(&sum[TIME], &sum[MEMORY]);
+    for (int i = 0; i < FIGURES; i++)
+        most[i] = (double)sum[i];
+    tm_ranks_sum(sum, FIGURES);
+    tm_ranks_largest(most, FIGURES);
+    filter_verbose(f,
+                   "%u ranks: %.1f MB sent by each, %.1f MB at most, in %.0f messages, "
+                   "%.0f at most; %.2f s of CPU, %.2f s at most; %.1f MB of memory, "
+                   "%.1f MB at most",
+                   ranks, (double)sum[BYTES] / ranks / million, most[BYTES] / million,
+                   (double)sum[MESSAGES] / ranks, most[MESSAGES],
+                   (double)sum[TIME] / ranks / thousand, most[TIME] / thousand,
+                   (double)sum[MEMORY] / ranks / thousand, most[MEMORY] / thousand);
 }
 
 bool filter_speaks(void)

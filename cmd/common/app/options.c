@@ -4,6 +4,7 @@
 #include "wrong_option.h"
 
 #include "../../../lib/number/number.h"
+#include "../../../lib/ranks/ranks.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -260,7 +261,8 @@ void filter_operands(filter *f)
         filter_usage(f, stderr);
         exit(EXIT_USAGE);
     }
-    if (f->binary && !f->output && !f->forced && isatty(STDOUT_FILENO))
+    /* a launcher may give its programs a terminal and write to a file itself */
+    if (f->binary && !f->output && !f->forced && !tm_launched() && isatty(STDOUT_FILENO))
         filter_usage_error(f, "the output is binary and would go to a terminal (-o FILE "
                               "or a pipe would be right; -o - forces it)");
 }

@@ -15,7 +15,6 @@ typedef struct matching {
     uint32_t *second; /* [facets]: the next one that does */
     uint8_t *listed;  /* [facets]: how often, 3 for more */
     uint32_t *parent; /* [cells]: a tree for each component */
-    uint32_t *stamp;  /* [nodes]: the last that met it; TM_NONE */
 } matching;
 
 static size_t corners(const tm_poly_arrays *mesh, size_t f)
@@ -65,7 +64,6 @@ static void match(matching *m)
 {
     const tm_poly_arrays *mesh = m->mesh;
     list_facets(m);
-    m->found->components = mesh->cells;
     for (uint32_t c = 0; c < mesh->cells; c++)
         m->parent[c] = c;
     for (uint32_t f = 0; f < mesh->facets; f++) {
@@ -74,21 +72,19 @@ static void match(matching *m)
         m->found->boundary_faces += mesh->side[f][1] == TM_NONE;
         if (m->listed[f] < 2)
             continue;
-        const uint32_t c = tm_set_root(m->parent, m->first[f]);
-        const uint32_t d = tm_set_root(m->parent, m->second[f]);
-        m->parent[c > d ? c : d] = c < d ? c : d;
-        m->found->components -= c != d;
+        tm_set_unite(m->parent, m->first[f], m->second[f]);
     }
 }
 
-static void look_for_nodes_twice(matching *m)
+/* stamp[nodes] is TM_NONE, then the last facet that met the node. */
+static void look_for_nodes_twice(matching *m, uint32_t *stamp)
 {
     for (uint32_t f = 0; f < m->mesh->facets; f++) {
         const uint32_t *node = nodes_of(m->mesh, f);
         for (size_t i = 0; i < corners(m->mesh, f); i++) {
-            if (m->stamp[node[i]] == f)
+            if (stamp[node[i]] == f)
                 add_defect(m, TM_DEGENERATE, f, node[i], 1);
-            m->stamp[node[i]] = f;
+            stamp[node[i]] = f;
         }
     }
 }
@@ -137,14 +133,16 @@ static bool equal(const ring *r, const ring *s)
     return true;
 }
 
-static bool look_for_repeated(matching *m)
+static bool look_for_repeated(tm_examination *found, const tm_poly_arrays *mesh,
+                              uint32_t first, uint32_t past)
 {
-    const tm_poly_arrays *mesh = m->mesh;
     tm_hash_table table;
     if (!tm_hash_make(&table, mesh->facets))
         return false;
     for (uint32_t f = 0; f < mesh->facets; f++) {
         const ring r = ring_of(mesh, f);
+        if (at(&r, 0) < first || at(&r, 0) >= past)
+            continue;
         uint32_t *slot = tm_hash_slot(&table, hash(&r));
         for (; *slot != TM_HASH_FREE; slot = tm_hash_next(&table, slot)) {
             const ring earlier = ring_of(mesh, *slot);
@@ -154,26 +152,14 @@ static bool look_for_repeated(matching *m)
         if (*slot == TM_HASH_FREE)
             *slot = f;
         else
-            add_defect(m, TM_REPEATED_FACE, f, *slot, 0);
+            tm_defect_add(&found->defect[TM_REPEATED_FACE],
+                          (uint32_t[TM_DEFECT_NUMBERS]){f, *slot});
     }
     tm_hash_free(&table);
     return true;
 }
 
-/* Euler number ---------------------------------------------------------------------- */
-
-static void count_used_nodes(matching *m)
-{
-    const tm_poly_arrays *mesh = m->mesh;
-    memset(m->stamp, UINT8_MAX, mesh->nodes * sizeof *m->stamp);
-    m->found->unused_nodes = mesh->nodes;
-    for (size_t f = 0; f < mesh->facets; f++)
-        for (size_t i = 0; i < corners(mesh, f); i++) {
-            uint32_t *stamp = &m->stamp[nodes_of(mesh, f)[i]];
-            m->found->unused_nodes -= *stamp == TM_NONE;
-            *stamp = 0;
-        }
-}
+/* Edges ----------------------------------------------------------------------------- */
 
 /* Of the edge from corner i on: its smaller node; *larger the other one. */
 static uint32_t smaller(const uint32_t *node, size_t count, size_t i, uint32_t *larger)
@@ -183,15 +169,17 @@ static uint32_t smaller(const uint32_t *node, size_t count, size_t i, uint32_t *
     return a < b ? a : b;
 }
 
-/* Counts the edges at the smaller one of their nodes. False where memory is out. */
-static bool count_edges(matching *m, size_t *edges)
+/* Counts the edges at the smaller one of their nodes, which is first … past-1. False
+ * where memory is out. */
+static bool count_edges(const tm_poly_arrays *mesh, uint32_t first, uint32_t past,
+                        size_t *edges)
 {
-    const tm_poly_arrays *mesh = m->mesh;
     const size_t all = mesh->facets > 0 ? mesh->facet_start[mesh->facets] : 0;
     size_t *start = calloc(mesh->nodes + 2, sizeof *start);
+    uint32_t *stamp = tm_new(mesh->nodes, sizeof *stamp);
     uint32_t *end = tm_new(all, sizeof *end), larger;
     *edges = 0;
-    if (start && end) {
+    if (start && end && stamp) {
         /* start[v + 2] counts, then start[v + 1] is where the next edge of v goes. */
         size_t *next = start + 1;
         for (size_t f = 0; f < mesh->facets; f++)
@@ -205,51 +193,47 @@ static bool count_edges(matching *m, size_t *edges)
                     smaller(nodes_of(mesh, f), corners(mesh, f), i, &larger);
                 end[next[v]++] = larger;
             }
-        memset(m->stamp, UINT8_MAX, mesh->nodes * sizeof *m->stamp);
-        for (uint32_t v = 0; v < mesh->nodes; v++)
+        memset(stamp, UINT8_MAX, mesh->nodes * sizeof *stamp);
+        for (uint32_t v = first; v < past; v++)
             for (size_t i = start[v]; i < start[v + 1]; i++) {
-                *edges += m->stamp[end[i]] != v;
-                m->stamp[end[i]] = v;
+                *edges += stamp[end[i]] != v;
+                stamp[end[i]] = v;
             }
     }
-    const bool enough = start && end;
+    const bool enough = start && end && stamp;
     free(start);
     free(end);
+    free(stamp);
     return enough;
 }
 
-static bool allocate(matching *m)
+tm_status tm_poly_match_edges(tm_examination *found, const tm_poly_arrays *mesh,
+                              uint32_t first, uint32_t past, size_t *edges,
+                              tm_error *error)
 {
-    const tm_poly_arrays *mesh = m->mesh;
-    m->first = tm_new(mesh->facets, sizeof *m->first);
-    m->second = tm_new(mesh->facets, sizeof *m->second);
-    m->listed = calloc(mesh->facets + 1, sizeof *m->listed);
-    m->parent = tm_new(mesh->cells, sizeof *m->parent);
-    m->stamp = tm_new(mesh->nodes, sizeof *m->stamp);
-    if (!m->first || !m->second || !m->listed || !m->parent || !m->stamp)
-        return false;
-    memset(m->stamp, UINT8_MAX, mesh->nodes * sizeof *m->stamp);
-    return true;
+    return count_edges(mesh, first, past, edges) &&
+                   look_for_repeated(found, mesh, first, past)
+               ? TM_OK
+               : tm_fail_memory(error);
 }
 
-tm_status tm_poly_examine_facets(tm_examination *found, const tm_poly_arrays *mesh,
-                                 tm_error *error)
+tm_status tm_poly_match_facets(tm_examination *found, const tm_poly_arrays *mesh,
+                               uint32_t *parent, tm_error *error)
 {
-    matching m = {.mesh = mesh, .found = found};
-    size_t edges = 0;
-    bool enough = allocate(&m);
+    matching m = {.mesh = mesh, .found = found, .parent = parent};
+    uint32_t *stamp = tm_new(mesh->nodes, sizeof *stamp);
+    m.first = tm_new(mesh->facets, sizeof *m.first);
+    m.second = tm_new(mesh->facets, sizeof *m.second);
+    m.listed = calloc(mesh->facets + 1, sizeof *m.listed);
+    const bool enough = m.first && m.second && m.listed && stamp;
     if (enough) {
+        memset(stamp, UINT8_MAX, mesh->nodes * sizeof *stamp);
         match(&m);
-        look_for_nodes_twice(&m);
-        count_used_nodes(&m);
+        look_for_nodes_twice(&m, stamp);
     }
-    enough = enough && count_edges(&m, &edges) && look_for_repeated(&m);
-    found->euler = (int64_t)(mesh->nodes - found->unused_nodes) - (int64_t)edges +
-                   (int64_t)mesh->facets - (int64_t)mesh->cells;
     free(m.first);
     free(m.second);
     free(m.listed);
-    free(m.parent);
-    free(m.stamp);
+    free(stamp);
     return enough ? TM_OK : tm_fail_memory(error);
 }

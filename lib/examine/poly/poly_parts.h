@@ -5,18 +5,51 @@
 
 #include "poly_examine.h"
 #include "poly_boundary.h"
+#include "../../base/sum.h"
 #include "../../geom/kernel.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 
-/* poly_examine_facets.c: how facets and cells fit together; a part of tm_poly_examine().
- */
+/* poly_examine.c, parts of tm_poly_examine(). */
 
-/* Finds in *found: unmatched and repeated facets, those with a node twice, components,
- * unused nodes, Euler number. Expected O(nodes + corners). */
+/* The beginning of an examination: what is looked at. */
+tm_examination tm_poly_examination(size_t nodes, size_t cells);
+
+/* Polyhedra whose volumes are added up at a time. */
+enum { TM_POLY_CHUNK = 1024 };
+
+/* Finds in *found: inverted and degenerate polyhedra, unclosed and unoriented edges.
+ * volume[chunks] are those of chunks of TM_POLY_CHUNK. */
+tm_status tm_poly_examine_cells(tm_examination *found, const tm_poly_arrays *mesh,
+                                tm_sum *volume, unsigned threads, tm_error *error);
+
+/* Finds in *found: open and non-manifold edges, non-manifold vertices of the facets that
+ * name only one cell, those at the nodes first … past-1, an edge at its smaller node. */
+tm_status tm_poly_examine_boundary(tm_examination *found, const tm_poly_arrays *mesh,
+                                   uint32_t first, uint32_t past, tm_error *error);
+
+/* Adds the areas of these facets. */
+void tm_poly_add_boundary_area(tm_sum *sum, const tm_poly_arrays *mesh);
+
+/* Finds in *found how facets and cells fit together: unmatched and repeated facets, those
+ * with a node twice, components, unused nodes, Euler number. Expected O(nodes + corners).
+ */
 tm_status tm_poly_examine_facets(tm_examination *found, const tm_poly_arrays *mesh,
                                  tm_error *error);
+
+/* poly_examine_facets.c: its parts. */
+
+/* Finds in *found: unmatched facets, those with a node twice, boundary faces.
+ * parent[cells] gets a tree for each component (disjoint_sets.h). O(nodes + corners). */
+tm_status tm_poly_match_facets(tm_examination *found, const tm_poly_arrays *mesh,
+                               uint32_t *parent, tm_error *error);
+
+/* Finds in *found: repeated facets, of those whose smallest node is first … past-1;
+ * *edges is how many edges have such a smaller node. Expected O(nodes + corners). */
+tm_status tm_poly_match_edges(tm_examination *found, const tm_poly_arrays *mesh,
+                              uint32_t first, uint32_t past, size_t *edges,
+                              tm_error *error);
 
 /* poly_measure.c: volume and areas of a polyhedron by its boundary. */
 

@@ -40,10 +40,9 @@ static tm_status roots_to_stream(const tm_octree *octree, unsigned finest,
     return status;
 }
 
-tm_status tm_octree_to_stream(const tm_octree *octree, const uint32_t *element,
-                              tm_stream *stream, tm_error *error)
+tm_status tm_octree_to_stream(const tm_octree *octree, unsigned finest,
+                              const uint32_t *element, tm_stream *stream, tm_error *error)
 {
-    const unsigned finest = tm_octree_deepest(octree);
     tm_status status = roots_to_stream(octree, finest, stream, error);
     if (status != TM_OK)
         return status;

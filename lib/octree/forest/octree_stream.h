@@ -8,10 +8,11 @@
 
 /* Adds .root and .octant, which must not be there yet. Leaf i, which is row i, has the
  * elements element[i] up to, but not including, element[i + 1] of .mix; [leaves + 1].
- * Anchors are in units of the deepest level that a leaf has, which is the finest of
- * .root. O(leaves). */
-tm_status tm_octree_to_stream(const tm_octree *octree, const uint32_t *element,
-                              tm_stream *stream, tm_error *error);
+ * Anchors are in units of the level `finest`, the deepest that a leaf has
+ * (tm_octree_deepest()), which is that of .root. O(leaves). */
+tm_status tm_octree_to_stream(const tm_octree *octree, unsigned finest,
+                              const uint32_t *element, tm_stream *stream,
+                              tm_error *error);
 
 /* The octree of the blocks .root and .octant; *octree is overwritten. Leaf i is row
  * order[i], TM_NONE where no octant is there (tm_octree_from_leaves); order is malloc'ed,

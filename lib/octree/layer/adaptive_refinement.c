@@ -11,9 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of a mesh with more elements nothing is tried: it would be made twice again. */
-static const size_t most_to_try = 5000000;
-
 /* How deep leaves may be, the deepest that is asked for, and how walls are treated. */
 typedef struct {
     unsigned level, deepest;
@@ -81,7 +78,6 @@ static void find_behind(void *context, size_t first, size_t past)
 /* Marks those of the leaves where many touch. */
 static bool mark_many(const behind_finder *f, uint8_t *split)
 {
-    const uint32_t many = 8;
     const tm_octree *octree = f->octree;
     uint32_t *parent = tm_new(octree->nodes, sizeof *parent);
     uint32_t *count = calloc(octree->nodes + 1, sizeof *count);
@@ -99,11 +95,20 @@ static bool mark_many(const behind_finder *f, uint8_t *split)
             if (round == 0)
                 ++*of;
             else
-                split[l] |= *of >= many;
+                split[l] |= *of >= TM_BEHIND_MANY;
         }
     free(parent);
     free(count);
     return ok;
+}
+
+bool tm_interior_find_behind(const tm_interior *interior, const tm_octree *octree,
+                             unsigned level, bool *behind)
+{
+    behind_finder f = {
+        .interior = interior, .octree = octree, .level = level, .behind = behind};
+    tm_parallel_runs(octree->threads, octree->leaves, TM_CHUNK, find_behind, &f);
+    return f.any;
 }
 
 /* Marks such leaves where many touch, as along a plane: the boundary has large faces
@@ -117,9 +122,7 @@ static tm_status mark_behind_boundary(const tm_interior *interior,
                        .level = level,
                        .behind = tm_new(octree->leaves, sizeof *f.behind)};
     bool ok = f.behind != NULL;
-    if (ok)
-        tm_parallel_runs(octree->threads, octree->leaves, TM_CHUNK, find_behind, &f);
-    if (ok && f.any)
+    if (ok && tm_interior_find_behind(interior, octree, level, f.behind))
         ok = mark_many(&f, split);
     free(f.behind);
     return ok ? TM_OK : tm_fail_memory(error);
@@ -184,10 +187,8 @@ static uint8_t *mark_off_surface(const tm_octree_mesh *mesh, const tm_octree *oc
     return any ? split : NULL;
 }
 
-/* By how much pieces and Euler number of the boundary differ from the surface's. */
-static uint64_t topology_missing(const tm_octree_mesh *mesh, const tm_surface *surface)
+uint64_t tm_topology_missing(const tm_octree_mesh_report *r, const tm_surface *surface)
 {
-    const tm_octree_mesh_report *r = &mesh->report;
     const int64_t pieces = (int64_t)r->components - (int64_t)surface->components;
     const int64_t euler = r->euler - surface->euler;
     if (surface->by_winding)
@@ -220,7 +221,7 @@ static tm_status try_split(tm_octree_mesh *mesh, tm_octree *octree, tm_surface *
                            const tm_progress *progress, tm_error *error)
 {
     const size_t off_surface = mesh->report.off_surface;
-    const uint64_t missing = topology_missing(mesh, surface);
+    const uint64_t missing = tm_topology_missing(&mesh->report, surface);
     tm_octree finer;
     tm_octree_mesh_free(mesh);
     tm_progress_stage(progress, splitting);
@@ -230,7 +231,7 @@ static tm_status try_split(tm_octree_mesh *mesh, tm_octree *octree, tm_surface *
     if (status == TM_OK)
         status = make_without_loss(mesh, &finer, surface, to, progress, error);
     *better = status == TM_OK && mesh->report.off_surface < off_surface &&
-              topology_missing(mesh, surface) <= missing;
+              tm_topology_missing(&mesh->report, surface) <= missing;
     if (*better) {
         tm_octree_free(octree);
         *octree = finer;
@@ -259,8 +260,8 @@ tm_status tm_octree_mesh_refine_lost(tm_octree_mesh *mesh, tm_octree *octree,
         return status;
     status = make_without_loss(mesh, octree, surface, &to, progress, error);
     for (bool better = levels > 0; status == TM_OK && better;) {
-        const bool tries =
-            mesh->report.off_surface > 0 && mesh->assembly.mesh.elements <= most_to_try;
+        const bool tries = mesh->report.off_surface > 0 &&
+                           mesh->assembly.mesh.elements <= TM_MOST_TO_SPLIT;
         uint8_t *split = tries ? mark_off_surface(mesh, octree, to.deepest) : NULL;
         if (!split)
             break;
@@ -269,6 +270,6 @@ tm_status tm_octree_mesh_refine_lost(tm_octree_mesh *mesh, tm_octree *octree,
     }
     tm_progress_stage(progress, "looking for losses");
     return status == TM_OK
-               ? tm_octree_mesh_find_losses(mesh, octree, surface, level, error)
+               ? tm_octree_mesh_find_losses(mesh, octree, surface, level, NULL, 0, error)
                : status;
 }

@@ -201,16 +201,17 @@ static bool is_same(const finder *f, const tm_leaf *a, const tm_leaf *b)
     return a->level > f->level && b->level > f->level;
 }
 
-/* Of the leaves without boundary close by, those whose surface is missed. */
-static tm_status count_leaves(finder *f, const uint8_t *lost, tm_error *error)
+/* Of these leaves, without boundary close by, those whose surface is missed. */
+static tm_status count_leaves(finder *f, const tm_leaf *lost, size_t count,
+                              tm_error *error)
 {
     tm_octree_mesh_report *r = &f->mesh->report;
     const tm_leaf *last = NULL;
     uint32_t guess = TM_NONE;
     tm_surface_point at = {.triangle = TM_NONE};
-    for (size_t l = 0; l < f->octree->leaves; l++) {
-        const tm_leaf *leaf = &f->octree->leaf[l];
-        if (!lost[l] || (last && is_same(f, last, leaf)))
+    for (size_t l = 0; l < count; l++) {
+        const tm_leaf *leaf = &lost[l];
+        if (last && is_same(f, last, leaf))
             continue;
         double centre[3], distance;
         tm_leaf_centre(f->octree, leaf, centre);
@@ -227,13 +228,29 @@ static tm_status count_leaves(finder *f, const uint8_t *lost, tm_error *error)
     return TM_OK;
 }
 
+tm_leaf *tm_octree_mesh_lost_leaves(const tm_interior *interior, const tm_octree *octree,
+                                    const tm_surface *surface, size_t first, size_t past,
+                                    size_t *count)
+{
+    uint8_t *lost = tm_new(octree->leaves, sizeof *lost);
+    tm_leaf *list = lost ? tm_new(tm_interior_find_lost(interior, octree, surface, lost),
+                                  sizeof *list)
+                         : NULL;
+    *count = 0;
+    for (size_t l = first; list && l < past; l++)
+        if (lost[l])
+            list[(*count)++] = octree->leaf[l];
+    free(lost);
+    return list;
+}
+
 static tm_status find_lost(finder *f, tm_error *error)
 {
-    uint8_t *lost = tm_new(f->octree->leaves, sizeof *lost);
-    if (!lost)
-        return tm_fail_memory(error);
-    tm_interior_find_lost(f->mesh->part, f->octree, f->surface, lost);
-    const tm_status status = count_leaves(f, lost, error);
+    size_t count;
+    tm_leaf *lost = tm_octree_mesh_lost_leaves(f->mesh->part, f->octree, f->surface, 0,
+                                               f->octree->leaves, &count);
+    const tm_status status =
+        lost ? count_leaves(f, lost, count, error) : tm_fail_memory(error);
     free(lost);
     return status;
 }
@@ -261,7 +278,7 @@ static tm_status find_dropped(finder *f, tm_error *error)
 
 tm_status tm_octree_mesh_find_losses(tm_octree_mesh *mesh, const tm_octree *octree,
                                      const tm_surface *surface, unsigned level,
-                                     tm_error *error)
+                                     const tm_leaf *lost, size_t losts, tm_error *error)
 {
     finder f = {.mesh = mesh,
                 .octree = octree,
@@ -277,7 +294,8 @@ tm_status tm_octree_mesh_find_losses(tm_octree_mesh *mesh, const tm_octree *octr
         if (status == TM_OK)
             status = count_rounded(&f, error);
         if (status == TM_OK)
-            status = find_lost(&f, error);
+            status =
+                mesh->part ? find_lost(&f, error) : count_leaves(&f, lost, losts, error);
     }
     tm_surface_free(&f.boundary);
     free(f.hint);

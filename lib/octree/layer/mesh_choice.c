@@ -20,15 +20,13 @@ void tm_mesh_plan_set_levels(tm_mesh_plan *plan, unsigned levels)
             plan->deeper && plan->rule[r].kind == TM_RULE_SURFACE ? levels : 0;
 }
 
-/* The deepest level of an octree that rules ask for, without what `deeper` adds. */
-static unsigned level_of(const tm_mesh_plan *plan, const tm_octree *octree,
-                         const tm_surface *surface)
+unsigned tm_mesh_plan_level(const tm_mesh_plan *plan, unsigned deepest, double side,
+                            const tm_surface *surface)
 {
-    const unsigned deepest = tm_octree_deepest(octree);
     unsigned asked = 0;
     for (size_t r = 0; r < plan->rules; r++) {
         const tm_octree_rule *rule = &plan->rule[r];
-        const unsigned level = tm_octree_rule_level(rule, octree->side);
+        const unsigned level = tm_octree_rule_level(rule, side);
         if (level > asked && tm_octree_rule_reaches(rule, surface))
             asked = level;
     }
@@ -43,11 +41,12 @@ static tm_status make(tm_octree_mesh *mesh, tm_octree *octree, tm_surface *surfa
     tm_progress_stage(plan->progress, "splitting octants");
     const tm_status status =
         tm_octree_build(octree, surface, plan->rule, plan->rules, error);
-    return status == TM_OK
-               ? tm_octree_mesh_refine_lost(mesh, octree, surface,
-                                            level_of(plan, octree, surface), plan->levels,
-                                            plan->laid_out, plan->progress, error)
-               : status;
+    if (status != TM_OK)
+        return status;
+    const unsigned level =
+        tm_mesh_plan_level(plan, tm_octree_deepest(octree), octree->side, surface);
+    return tm_octree_mesh_refine_lost(mesh, octree, surface, level, plan->levels,
+                                      plan->laid_out, plan->progress, error);
 }
 
 /* In how many places a mesh is not where the surface is. */

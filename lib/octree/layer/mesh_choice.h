@@ -20,6 +20,11 @@ typedef struct tm_mesh_plan {
 /* Sets plan->levels, and what the rules for the surface say of it. */
 void tm_mesh_plan_set_levels(tm_mesh_plan *plan, unsigned levels);
 
+/* The deepest level that rules ask for, without what `deeper` adds, of an octree with
+ * roots of that side and leaves of that level. */
+unsigned tm_mesh_plan_level(const tm_mesh_plan *plan, unsigned deepest, double side,
+                            const tm_surface *surface);
+
 /* Makes octree and mesh by the plan. Where walls meet and nodes are off the surface it is
  * tried with fewer levels, and, if walls are sharp (wall_sectors.h), for each without
  * laying them out, as long as nodes are: a mesh is better that has fewer of them if

@@ -2,7 +2,6 @@
 #include "mesh_ghosts.h"
 
 #include "../../base/array.h"
-#include "../../base/disjoint_sets.h"
 #include "../../ranks/ranks.h"
 
 #include <stdlib.h>
@@ -147,43 +146,4 @@ tm_status tm_mesh_ghosts_mark(const tm_mesh_ghosts *g, bool *mark, tm_error *err
         mark[g->sent[i]] |= ((const bool *)got)[i];
     free(got);
     return status == TM_OK ? tm_mesh_ghosts_fill(g, mark, sizeof *mark, error) : status;
-}
-
-/* Makes the numbers of things the least of those that ranks have for them. */
-static tm_status find_least(const tm_mesh_ghosts *g, uint32_t *value, tm_error *error)
-{
-    void *got;
-    const tm_status status = exchange(g->ranks, g->receives, g->received,
-                                      (const char *)value, sizeof *value, &got, error);
-    for (size_t i = 0; status == TM_OK && i < g->sends[g->ranks]; i++) {
-        const uint32_t other = ((const uint32_t *)got)[i];
-        if (other < value[g->sent[i]])
-            value[g->sent[i]] = other;
-    }
-    free(got);
-    return status == TM_OK ? tm_mesh_ghosts_fill(g, value, sizeof *value, error) : status;
-}
-
-tm_status tm_mesh_ghosts_join(const tm_mesh_ghosts *g, const uint32_t *number,
-                              uint32_t *parent, size_t things, uint32_t *label,
-                              tm_error *error)
-{
-    uint32_t *least = tm_new(things, sizeof *least); /* at roots */
-    tm_status status = tm_ranks_agree(least ? TM_OK : tm_fail_memory(error), error);
-    for (uint32_t i = 0; status == TM_OK && i < things; i++)
-        least[i] = number[i]; /* a root is the first of its set */
-    for (bool more = true; more && status == TM_OK;) {
-        for (uint32_t i = 0; i < things; i++)
-            label[i] = least[tm_set_root(parent, i)];
-        status = find_least(g, label, error);
-        more = false;
-        for (uint32_t i = 0; status == TM_OK && i < things; i++) {
-            const uint32_t root = tm_set_root(parent, i);
-            more |= label[i] < least[root];
-            least[root] = label[i] < least[root] ? label[i] : least[root];
-        }
-        more = tm_ranks_any(more);
-    }
-    free(least);
-    return status;
 }

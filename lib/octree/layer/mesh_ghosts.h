@@ -34,11 +34,4 @@ tm_status tm_mesh_ghosts_fill(const tm_mesh_ghosts *ghosts, void *value, size_t 
 /* Marks everywhere what any rank has marked. */
 tm_status tm_mesh_ghosts_mark(const tm_mesh_ghosts *ghosts, bool *mark, tm_error *error);
 
-/* Joins the sets of things that ranks have found (disjoint_sets.h): label[thing] becomes
- * the least number of its set on all ranks. number[things] is ascending, and the same on
- * all ranks. As many rounds as ranks that a set goes through in a row. */
-tm_status tm_mesh_ghosts_join(const tm_mesh_ghosts *ghosts, const uint32_t *number,
-                              uint32_t *parent, size_t things, uint32_t *label,
-                              tm_error *error);
-
 #endif

@@ -59,11 +59,19 @@ tm_status tm_lattice_points(const tm_assembly *assembly, const tm_octree *octree
 /* Fills lost, rounded and dropped of the report, which are 0 before: by the distance to
  * the boundary of the mesh, in sides of the leaves there, of which those below `level`
  * are taken for such of it. Only `dropped` where the inside is by the winding number:
- * there surface may be within the mesh. TM_ERROR_SYSTEM where memory is out. O(n log n).
+ * there surface may be within the mesh. `lost` are so many leaves without boundary close
+ * by, which a mesh that has no interior must be told. TM_ERROR_SYSTEM where memory is
+ * out. O(n log n).
  */
 tm_status tm_octree_mesh_find_losses(tm_octree_mesh *mesh, const tm_octree *octree,
                                      const tm_surface *surface, unsigned level,
-                                     tm_error *error);
+                                     const tm_leaf *lost, size_t losts, tm_error *error);
+
+/* Of leaves [first, past) those without boundary close by (tm_interior_find_lost()), to
+ * be freed; NULL where memory is out. */
+tm_leaf *tm_octree_mesh_lost_leaves(const tm_interior *interior, const tm_octree *octree,
+                                    const tm_surface *surface, size_t first, size_t past,
+                                    size_t *count);
 
 /* untangling.c: the last step of the mesh: no element is inverted. */
 
@@ -90,5 +98,20 @@ tm_status tm_octree_mesh_complete_report(tm_octree_mesh *mesh, const tm_octree *
 tm_status tm_octree_mesh_find_closest_on_ranks(tm_octree_mesh *mesh, tm_own_range own,
                                                const tm_surface *surface,
                                                tm_error *error);
+
+/* adaptive_refinement.c: what adaptive_ranks.c does, too. */
+
+/* Of a mesh with more elements nothing is tried: it would be made twice again. So many
+ * leaves behind a boundary that touch are many. */
+enum { TM_MOST_TO_SPLIT = 5000000, TM_BEHIND_MANY = 8 };
+
+/* Finds the leaves whose boundary is that of smaller ones, of those above a level, and
+ * whether there are any. */
+bool tm_interior_find_behind(const tm_interior *interior, const tm_octree *octree,
+                             unsigned level, bool *behind);
+
+/* By how much pieces and Euler number of the boundary differ from the surface's. */
+uint64_t tm_topology_missing(const tm_octree_mesh_report *report,
+                             const tm_surface *surface);
 
 #endif

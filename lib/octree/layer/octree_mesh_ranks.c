@@ -50,7 +50,7 @@ static size_t list_pieces(const maker *m, const uint32_t *label, piece *list)
     for (size_t f = m->boundary.faces.first; f < m->boundary.faces.past; f++) {
         const uint32_t *face = b->face[f];
         piece *p = &list[count++];
-        *p = (piece){label[face[0]], cone(b, face[0], face[1], face[2])};
+        *p = (piece){label[b->grid_node[face[0]]], cone(b, face[0], face[1], face[2])};
         if (tm_boundary_face_corners(b, f) == 4)
             p->volume += cone(b, face[0], face[2], face[3]);
     }
@@ -96,32 +96,30 @@ static tm_status measure_boundary(const maker *m, bool *hollow, tm_error *error)
     const tm_interior_boundary *b = &m->mesh->boundary;
     const tm_boundary_share *s = &m->boundary;
     tm_octree_mesh_report *r = &m->mesh->report;
-    uint32_t *parent = tm_new(b->nodes, sizeof *parent);
-    uint32_t *label = tm_new(b->nodes, sizeof *label);
+    const size_t nodes = m->share->octree.nodes;
+    uint32_t *parent = tm_new(nodes, sizeof *parent);
     size_t sums[2] = {0, 0}; /* half edges, pieces */
-    tm_status status =
-        tm_ranks_agree(parent && label ? TM_OK : tm_fail_memory(error), error);
-    for (size_t i = 0; status == TM_OK && i < b->nodes; i++)
+    tm_status status = tm_ranks_agree(parent ? TM_OK : tm_fail_memory(error), error);
+    for (size_t i = 0; status == TM_OK && i < nodes; i++)
         parent[i] = (uint32_t)i;
     for (size_t f = s->faces.first; status == TM_OK && f < s->faces.past; f++) {
         const unsigned k = tm_boundary_face_corners(b, f);
         sums[0] += k;
         for (unsigned i = 1; i < k; i++)
-            tm_set_unite(parent, b->face[f][0], b->face[f][i]);
+            tm_set_unite(parent, b->grid_node[b->face[f][0]],
+                         b->grid_node[b->face[f][i]]);
     }
     if (status == TM_OK)
-        status =
-            tm_mesh_ghosts_join(&s->ghosts, s->number, parent, b->nodes, label, error);
+        status = tm_share_join_sets(m->share, parent, error);
     for (size_t i = s->nodes.first; status == TM_OK && i < s->nodes.past; i++)
-        sums[1] += label[i] == s->number[i];
+        sums[1] += parent[b->grid_node[i]] == m->share->node_number[b->grid_node[i]];
     tm_ranks_sum(sums, 2);
     if (status == TM_OK)
-        status = find_hollows(m, label, hollow, error);
+        status = find_hollows(m, parent, hollow, error);
     r->components = r->outer_components = sums[1];
     r->euler = r->outer_euler =
         (int64_t)(s->nodes.all + s->faces.all) - (int64_t)(sums[0] / 2);
     free(parent);
-    free(label);
     return status;
 }
 
@@ -224,13 +222,8 @@ static tm_status make_elements(const maker *m, const tm_progress *progress,
 
 static tm_status make(maker *m, const tm_progress *progress, bool *alone, tm_error *error)
 {
-    const tm_interior *part = m->mesh->part;
-    size_t chosen = 0;
-    for (size_t l = m->share->own_first; l < m->share->own_past; l++)
-        chosen += part->chosen[l];
-    tm_ranks_sum(&chosen, 1);
     *alone = false;
-    if (chosen == 0)
+    if (m->mesh->part->count == 0)
         return tm_octree_mesh_fail_empty(error);
     tm_progress_stage(progress, "finding the interior boundary");
     tm_status status = find_boundary(m, alone, error);

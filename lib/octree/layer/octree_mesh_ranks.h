@@ -15,4 +15,12 @@ tm_status tm_octree_mesh_make_on_ranks(tm_octree_mesh *mesh, const tm_octree_sha
                                        const tm_progress *progress, bool *alone,
                                        tm_error *error);
 
+/* As tm_octree_mesh_choose() of a surface without walls, and rules without lists. */
+tm_status tm_octree_mesh_choose_on_ranks(tm_octree_mesh *mesh, tm_octree_share *share,
+                                         tm_surface *surface, const tm_mesh_plan *plan,
+                                         bool *alone, tm_error *error);
+
+/* The deepest level of a leaf of any rank. */
+unsigned tm_octree_share_deepest(const tm_octree_share *share);
+
 #endif

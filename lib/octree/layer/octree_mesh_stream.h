@@ -5,6 +5,8 @@
 
 #include "../../base/extern_c.h"
 #include "../../stream/stream.h"
+#include "../../stream/ranks/slices.h"
+#include "../share/octree_share.h"
 #include "octree_mesh.h"
 
 TM_EXTERN_C_BEGIN
@@ -27,6 +29,20 @@ typedef enum tm_node_class {
 tm_status tm_octree_mesh_to_stream(tm_octree_mesh *mesh, const tm_octree *octree,
                                    tm_surface *surface, bool levels, tm_stream *stream,
                                    tm_error *error);
+
+/* The same of a mesh that ranks have parts of; `finest` is the deepest level of all.
+ * slices->stream must be empty; *slices is to be freed, after an error too. All
+ * ranks call it. */
+tm_status tm_octree_mesh_to_slices(tm_octree_mesh *mesh, const tm_octree_share *share,
+                                   unsigned finest, tm_surface *surface, bool levels,
+                                   tm_slices *slices, tm_error *error);
+
+/* For these: the attributes of nodes, to be freed, NULL where memory is out; and the rows
+ * of what is a rank's own, but for those of nodes. */
+double *tm_octree_mesh_classes(const tm_octree_mesh *mesh);
+tm_status tm_octree_mesh_rows(tm_octree_mesh *mesh, const tm_octree_share *share,
+                              unsigned finest, tm_surface *surface, bool levels,
+                              tm_stream *stream, tm_error *error);
 
 TM_EXTERN_C_END
 

@@ -200,7 +200,8 @@ static tm_status give_octants(const tm_repair_state *state, tm_stream *stream,
         first[l + 1] += first[l];
     tm_stream_remove(stream, tm_stream_find(stream, ".octant"));
     tm_stream_remove(stream, tm_stream_find(stream, ".root"));
-    const tm_status status = tm_octree_to_stream(&state->octree, first, stream, error);
+    const tm_status status = tm_octree_to_stream(
+        &state->octree, tm_octree_deepest(&state->octree), first, stream, error);
     free(first);
     return status;
 }

@@ -59,7 +59,8 @@ static tm_status copy_octants(const tm_repair_state *state, tm_stream *stream,
     uint32_t *none = calloc(octree->leaves + 1, sizeof *none);
     if (!none)
         return tm_fail_memory(error);
-    const tm_status status = tm_octree_to_stream(octree, none, stream, error);
+    const tm_status status =
+        tm_octree_to_stream(octree, tm_octree_deepest(octree), none, stream, error);
     free(none);
     tm_block *octant = tm_stream_find(stream, ".octant");
     if (status != TM_OK)

@@ -68,3 +68,37 @@ tm_status tm_share_fill_nodes(const tm_octree_share *share, void *value, size_t 
     return fill(share, &share->nodes_sent, value, size, share->own_node_first,
                 share->own_node_past, share->octree.nodes, error);
 }
+
+/* A copy of `count` items. */
+static void *copy_of(const void *items, size_t count, size_t size)
+{
+    void *copy = tm_new(count, size);
+    if (copy && count > 0)
+        memcpy(copy, items, count * size);
+    return copy;
+}
+
+tm_status tm_octree_share_copy(tm_octree_share *copy, const tm_octree_share *share,
+                               tm_error *error)
+{
+    const size_t ranks = (size_t)share->ranks + 1;
+    const tm_share_list *lists[] = {&share->leaves_sent, &share->nodes_sent};
+    tm_share_list *to[] = {&copy->leaves_sent, &copy->nodes_sent};
+    bool done = true;
+    *copy = *share;
+    copy->leaf_number =
+        copy_of(share->leaf_number, share->octree.leaves, sizeof *copy->leaf_number);
+    copy->node_number =
+        copy_of(share->node_number, share->octree.nodes, sizeof *copy->node_number);
+    copy->first = copy_of(share->first, ranks, sizeof *copy->first);
+    copy->first_node = copy_of(share->first_node, ranks, sizeof *copy->first_node);
+    for (int i = 0; i < 2; i++) {
+        to[i]->start = copy_of(lists[i]->start, ranks, sizeof *to[i]->start);
+        to[i]->item =
+            copy_of(lists[i]->item, lists[i]->start[share->ranks], sizeof *to[i]->item);
+        done &= to[i]->start && to[i]->item;
+    }
+    const tm_status status = tm_octree_copy(&copy->octree, &share->octree, error);
+    done &= copy->leaf_number && copy->node_number && copy->first && copy->first_node;
+    return done ? status : tm_fail_memory(error);
+}

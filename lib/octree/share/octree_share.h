@@ -59,6 +59,11 @@ tm_status tm_octree_share_build(tm_octree_share *share, const tm_surface *surfac
 tm_status tm_octree_share_refine(tm_octree_share *share, const tm_surface *surface,
                                  const uint8_t *split, unsigned rings, tm_error *error);
 
+/* The same share again, with arrays of its own. TM_ERROR_SYSTEM where memory is out; the
+ * copy is to be freed all the same. */
+tm_status tm_octree_share_copy(tm_octree_share *copy, const tm_octree_share *share,
+                               tm_error *error);
+
 /* Frees all; a share of zeros is an empty one. */
 void tm_octree_share_free(tm_octree_share *share);
 

@@ -41,6 +41,12 @@ unsigned tm_ranks_count(void)
     return (unsigned)world.count;
 }
 
+void tm_ranks_leave(void)
+{
+    world.rank = 0;
+    world.count = 1;
+}
+
 void tm_ranks_end(int status)
 {
     if (world.count == 1)
@@ -52,6 +58,8 @@ void tm_ranks_end(int status)
 tm_status tm_ranks_agree(tm_status status, tm_error *error)
 {
     int first = status == TM_OK ? world.count : world.rank;
+    if (world.count == 1)
+        return status;
     MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
     if (first == world.count)
         return TM_OK;
@@ -68,7 +76,8 @@ tm_status tm_ranks_agree(tm_status status, tm_error *error)
 
 static void reduce(void *value, size_t count, MPI_Datatype type, MPI_Op op)
 {
-    MPI_Allreduce(MPI_IN_PLACE, value, (int)count, type, op, MPI_COMM_WORLD);
+    if (world.count > 1)
+        MPI_Allreduce(MPI_IN_PLACE, value, (int)count, type, op, MPI_COMM_WORLD);
 }
 
 void tm_ranks_sum(size_t *value, size_t count)
@@ -96,6 +105,10 @@ bool tm_ranks_any(bool value)
 size_t tm_ranks_before(size_t value, size_t *all)
 {
     size_t sum = value;
+    if (all)
+        *all = value;
+    if (world.count == 1)
+        return 0;
     MPI_Scan(&value, &sum, 1, MPI_UNSIGNED_LONG, MPI_SUM, MPI_COMM_WORLD);
     if (all) {
         *all = sum;
@@ -106,7 +119,7 @@ size_t tm_ranks_before(size_t value, size_t *all)
 
 void tm_ranks_broadcast(void *bytes, size_t size)
 {
-    for (size_t at = 0; at < size; at += PIECE)
+    for (size_t at = 0; at < size && world.count > 1; at += PIECE)
         MPI_Bcast((char *)bytes + at, (int)(size - at < PIECE ? size - at : PIECE),
                   MPI_BYTE, 0, MPI_COMM_WORLD);
 }
@@ -181,7 +194,10 @@ tm_status tm_ranks_exchange(const void *send, const size_t *send_count, size_t s
     }
     size_t *from = to + count, items = 0, pieces = 0;
     memcpy(to, send_count, count * sizeof *to);
-    MPI_Alltoall(to, 1, MPI_UNSIGNED_LONG, from, 1, MPI_UNSIGNED_LONG, MPI_COMM_WORLD);
+    from[0] = to[0];
+    if (count > 1)
+        MPI_Alltoall(to, 1, MPI_UNSIGNED_LONG, from, 1, MPI_UNSIGNED_LONG,
+                     MPI_COMM_WORLD);
     for (unsigned r = 0; r < count; r++) {
         items += from[r];
         pieces += pieces_of(to[r] * size) + pieces_of(from[r] * size);
@@ -216,8 +232,10 @@ static tm_status collect(const void *mine, size_t count, size_t size, bool share
         free(m.request);
         return tm_fail_memory(error);
     }
-    MPI_Allgather(&count, 1, MPI_UNSIGNED_LONG, counts, 1, MPI_UNSIGNED_LONG,
-                  MPI_COMM_WORLD);
+    counts[0] = count;
+    if (ranks > 1)
+        MPI_Allgather(&count, 1, MPI_UNSIGNED_LONG, counts, 1, MPI_UNSIGNED_LONG,
+                      MPI_COMM_WORLD);
     size_t pieces = 0;
     for (unsigned r = 0; r < ranks; r++) {
         sum += counts[r];

@@ -3,6 +3,7 @@
 
 #include "../../base/array.h"
 #include "../../ranks/ranks.h"
+#include "../coordinates.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -82,4 +83,38 @@ tm_status tm_slices_localize(uint32_t *item, size_t items, uint32_t **number,
     *number = fitting ? fitting : sorted;
     *numbers = unique;
     return TM_OK;
+}
+
+tm_status tm_slices_take_nodes(const tm_slices *slices, uint32_t *item, size_t items,
+                               uint32_t **number, size_t *numbers, double (**xyz)[3],
+                               tm_error *error)
+{
+    tm_slice slice = {0, 0};
+    const tm_block *node = tm_slices_find(slices, ".node", &slice);
+    tm_status status = tm_slices_localize(item, items, number, numbers, error);
+    *xyz = status == TM_OK ? tm_new(*numbers, sizeof **xyz) : NULL;
+    if (status == TM_OK && !*xyz)
+        status = tm_fail_memory(error);
+    status = tm_ranks_agree(status, error);
+    return status == TM_OK ? tm_slices_fetch(node ? node->real : NULL, slice.total,
+                                             sizeof **xyz, *number, *numbers, *xyz, error)
+                           : status;
+}
+
+tm_status tm_slices_check_coordinates(const tm_slices *slices, tm_error *error)
+{
+    tm_status status = TM_OK;
+    for (size_t b = 0; b < slices->stream.blocks && status == TM_OK; b++) {
+        const tm_block *block = &slices->stream.block[b];
+        double largest = 0;
+        if (block->kind != TM_NODE && block->kind != TM_ROOT)
+            continue;
+        status = tm_block_check_coordinates(
+            block, slices->slice[b].before + slices->stream.base, &largest, error);
+        status = tm_ranks_agree(status, error);
+        tm_ranks_largest(&largest, 1);
+        if (status == TM_OK)
+            status = tm_largest_coordinate_check(largest, block->name, error);
+    }
+    return status;
 }

@@ -51,10 +51,22 @@ tm_status tm_slices_fetch(const void *own, size_t total, size_t size,
 tm_status tm_slices_localize(uint32_t *item, size_t items, uint32_t **number,
                              size_t *numbers, tm_error *error);
 
+/* Both for what names the nodes of .node: the list then names *xyz, which are as many as
+ * *number has, both to be freed. */
+tm_status tm_slices_take_nodes(const tm_slices *slices, uint32_t *item, size_t items,
+                               uint32_t **number, size_t *numbers, double (**xyz)[3],
+                               tm_error *error);
+
+/* As tm_stream_check_coordinates(). */
+tm_status tm_slices_check_coordinates(const tm_slices *slices, tm_error *error);
+
 /* What each rank has of blocks of arbitrary slices, as slices are: makes block b of the
  * stream, of which this rank has rows `before` on, one of slices. For who has made a
  * stream. */
 tm_status tm_slices_even(tm_slices *slices, size_t b, tm_error *error);
+
+/* Makes rank 0's stream that of all rows; the others' blocks are empty then. */
+tm_status tm_slices_gather(tm_slices *slices, tm_error *error);
 
 TM_EXTERN_C_END
 

@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Ranks of a launcher: streams in slices, statistics, what only rank 0 does, what becomes of
+# errors and of a rank that is killed.
+
+bats_require_minimum_version 1.5.0
+load helpers
+load ranks
+
+setup_file() {
+    cd "$BATS_FILE_TMPDIR" || exit
+    awk 'BEGIN { print 12000, 3; for (i = 1; i <= 12000; i++) print i, rand(), rand(), rand() }' |
+        tetgen-mesh -o tets.tm
+    surface sphere off | octree-mesh -s 6 -u -o mixed.tm
+    octree-mesh --polyhedra -s 5 -o cells.tm <<<"$(surface sphere off)"
+    cubes >small.tm
+    awk 'BEGIN { print 20, 3; for (i = 1; i <= 20; i++) print i, rand(), rand(), rand() }' |
+        tetgen-mesh -o small-tets.tm
+}
+
+setup() {
+    need_mpirun
+    cd "$BATS_TEST_TMPDIR" || exit
+    meshes=$BATS_FILE_TMPDIR
+    copy=$TM_BUILD/ranks/slices_copy
+}
+
+@test "a stream in slices is written as it was, from and to files and pipes" {
+    for mesh in tets mixed cells small; do
+        cp "$meshes/$mesh.tm" in.tm
+        for n in 1 2 3 4 7; do
+            : >out.tm
+            on_ranks $n "$copy" in.tm out.tm
+            cmp in.tm out.tm
+        done
+        on_ranks 3 "$copy" in.tm - | cmp - in.tm
+        on_ranks 2 "$copy" - - <in.tm | cmp - in.tm
+        : >out.tm
+        cat in.tm | on_ranks 7 "$copy" - out.tm
+        cmp in.tm out.tm
+    done
+    gzip -k in.tm
+    on_ranks 2 "$copy" in.tm.gz - | cmp - in.tm
+}
+
+# Ways to spoil a line of a stream: sed programs for line L.
+spoiled() {
+    cat <<END
+${1}d
+${1}s/\$/ 7 7/
+${1}s/.*/hello/
+${1},\$d
+${1}p
+${1}s/[0-9]*\$/99999999/
+${1}s/ .*/ x y/
+${1}s/^/# a comment\n\n/
+END
+}
+
+@test "what is wrong is said as by one process, the first of several in the file" {
+    lines=$(wc -l <"$meshes/tets.tm")
+    for line in 900 $((lines / 3)) $((lines - 2000)); do
+        spoiled $line | while read -r program; do
+            sed "$program" "$meshes/tets.tm" >in.tm
+            status=0 other=0 piped=0
+            "$copy" in.tm - >one.out 2>one.err || status=$?
+            on_ranks 3 "$copy" in.tm - >several.out 2>several.err || other=$?
+            on_ranks 2 "$copy" - - <in.tm >piped.out 2>piped.err || piped=$?
+            [ $status -eq $other ] && [ $status -eq $piped ]
+            grep '^in.tm' several.err | cmp - one.err
+            sed -n 's/^-:/in.tm:/p' piped.err | cmp - one.err
+            [ $status -ne 0 ] || cmp one.out several.out
+        done
+    done
+}
+
+@test "tet-stats and jens-stats: the same for any number of ranks" {
+    ranks_agree "$meshes/tets.tm" tet-stats
+    RANKS=3 ranks_agree "$meshes/tets.tm" tet-stats "$meshes/small-tets.tm"
+    RANKS=7 ranks_agree "$meshes/small-tets.tm" tet-stats
+    RANKS=3 ranks_agree "$meshes/tets.tm" tet-stats --list
+    ranks_agree "$meshes/mixed.tm" jens-stats
+    for option in -s -j -a -l --verdict "--certify --fail-below 0.9"; do
+        # shellcheck disable=SC2086 # some are two words
+        RANKS=3 ranks_agree "$meshes/mixed.tm" jens-stats $option
+    done
+    RANKS="2 7" ranks_agree "$meshes/tets.tm" jens-stats -j
+    tet-stats <"$meshes/tets.tm" >one.out
+    on_ranks 4 tet-stats <"$meshes/tets.tm" | cmp - one.out
+    on_ranks 2 jens-stats -o several.out --plot several.svg "$meshes/mixed.tm"
+    jens-stats -o one.out --plot one.svg "$meshes/mixed.tm"
+    cmp one.out several.out
+    cmp one.svg several.svg
+}
+
+@test "left-handed tetrahedra and coordinates too large are found on any rank" {
+    sed '/^\.ele/,/^\.face/ s/^\([0-9]*\) \([0-9]*\) \([0-9]*\) \([0-9]*\) \([0-9]*\)$/\1 \3 \2 \4 \5/' \
+        "$meshes/tets.tm" >turned.tm
+    ranks_agree turned.tm tet-stats
+    grep -q 'were left-handed' several.err
+    sed '/^\.ele/,$!s/^11000 [^ ]*/11000 1e60/' "$meshes/tets.tm" >large.tm
+    run -3 on_ranks 3 tet-stats large.tm
+    [ "$(grep -c '^tet-stats: large.tm: .node: node 11000 at' <<<"$output")" -eq 1 ]
+}
+
+@test "filters that do not work on ranks do so on rank 0 alone" {
+    on_ranks 3 vtu-export <"$meshes/small.tm" | cmp - <(vtu-export "$meshes/small.tm")
+    on_ranks 2 tetgen-mesh -o several.tm <<<"$(surface cube off)"
+    tetgen-mesh -o one.tm <<<"$(surface cube off)"
+    cmp one.tm several.tm
+    [ "$(on_ranks 3 tet-stats --version | wc -l)" -eq 1 ]
+    [ "$(on_ranks 3 tet-stats --help)" = "$(tet-stats --help)" ]
+}
+
+@test "errors: one message, the exit status" {
+    run -2 on_ranks 3 tet-stats --no-such-option
+    [ "$(grep -c 'unknown option' <<<"$output")" -eq 1 ]
+    run -4 on_ranks 3 tet-stats no-such-file.tm
+    [ "$(grep -c 'cannot open' <<<"$output")" -eq 1 ]
+    : >empty.tm
+    run -3 on_ranks 3 jens-stats empty.tm
+    [ "$(grep -c '^jens-stats: empty.tm' <<<"$output")" -eq 1 ]
+    run -1 on_ranks 3 jens-stats --fail-below 0.99 "$meshes/tets.tm"
+    run -4 on_ranks 2 tet-stats -o no-such-folder/out "$meshes/tets.tm"
+    run -4 on_ranks 2 tet-stats -o /dev/full "$meshes/tets.tm"
+}
+
+@test "a rank that is killed ends all, and no file is there" {
+    for which in 0 1; do
+        mkfifo pipe.$which
+        timeout 60 mpirun --allow-run-as-root --oversubscribe -n 3 \
+            tet-stats -o out.txt --json out.json <pipe.$which >several.out 2>several.err &
+        job=$!
+        { head -c 100000 "$meshes/tets.tm"; sleep 60; } >pipe.$which &
+        writer=$!
+        until [ "$(pgrep -P "$(pgrep -P $job | head -n 1)" -c)" -ge 3 ] 2>/dev/null; do
+            sleep 0.2
+        done
+        sleep 1
+        for pid in $(pgrep -P "$(pgrep -P $job | head -n 1)"); do
+            grep -qz "^OMPI_COMM_WORLD_RANK=$which$" "/proc/$pid/environ" && kill -KILL "$pid"
+        done
+        status=0
+        wait $job || status=$?
+        kill $writer
+        [ $status -ne 0 ] && [ $status -ne 124 ]
+        [ ! -e out.txt ] && [ ! -e out.json ]
+        [ -z "$(pgrep -f "tet-stats -o out.txt" || true)" ]
+    done
+}
