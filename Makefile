@@ -248,11 +248,7 @@ $(scripts): $(BUILD)/bin/%: cmd/%.sh
 $(completions): $(BUILD)/completion/bash/%: $(BUILD)/bin/% cmd/completion.sh
 	sh cmd/completion.sh $< $(BUILD)/completion
 
-$(filter-out $(rank_tests),$(unit_tests)): $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(common) $(library)
-	@mkdir -p $(@D)
-	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lcmocka $(LDLIBS)
-$(filter $(rank_tests),$(unit_tests)): $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(ranks_object) \
-		$(common) $(library)
+$(unit_tests): $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(common) $(library)
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lcmocka $(LDLIBS)
 
@@ -309,7 +305,7 @@ $(solver): $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/solve/*.c)) $(library)
 # Programs that mpirun starts.
 $(rank_tests): $(BUILD)/ranks/%: $(BUILD)/tests/ranks/%.o $(ranks_object) $(library)
 	@mkdir -p $(@D)
-	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) $(LDLIBS)
+	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lcmocka $(LDLIBS)
 
 # What the tests run.
 tests: all $(rank_tests) $(unit_tests) $(oracles) $(fuzzer) $(replays) $(faults) $(solver) \
