@@ -54,6 +54,21 @@ tm_status tm_fail_as(tm_error *error, const tm_error *cause)
     return cause->status;
 }
 
+tm_error tm_error_of(const tm_error *error, tm_status status)
+{
+    tm_error said = {.status = status};
+    if (error && status != TM_OK)
+        said = *error;
+    said.status = status;
+    return said;
+}
+
+void tm_error_add_lines(tm_error *error, size_t lines)
+{
+    if (error && error->line > 0)
+        error->line += lines;
+}
+
 tm_status tm_fail_memory(tm_error *error)
 {
     return tm_fail(error, TM_ERROR_SYSTEM, "out of memory");

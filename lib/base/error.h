@@ -45,6 +45,12 @@ tm_status tm_fail_at_list(tm_error *error, tm_status status, const char *file,
 /* The same as *cause, which was got of another function. Returns its status. */
 tm_status tm_fail_as(tm_error *error, const tm_error *cause);
 
+/* What an error, which may be NULL, says; with that status. */
+tm_error tm_error_of(const tm_error *error, tm_status status);
+
+/* So many lines are before the text in which the error, which may be NULL, has its line. */
+void tm_error_add_lines(tm_error *error, size_t lines);
+
 /* "out of memory", as TM_ERROR_SYSTEM. */
 tm_status tm_fail_memory(tm_error *error);
 

@@ -65,14 +65,11 @@ tm_status tm_ranks_agree(tm_status status, tm_error *error)
     if (first == world.count)
         return TM_OK;
     int of_all = (int)status;
-    tm_error cause = {.status = status};
-    if (error && first == world.rank)
-        cause = *error;
+    tm_error cause = tm_error_of(error, status);
     MPI_Bcast(&of_all, 1, MPI_INT, first, MPI_COMM_WORLD);
     MPI_Bcast(&cause, (int)sizeof cause, MPI_BYTE, first, MPI_COMM_WORLD);
-    if (error)
-        *error = cause;
-    return (tm_status)of_all;
+    cause.status = (tm_status)of_all;
+    return tm_fail_as(error, &cause);
 }
 
 static void reduce(void *value, size_t count, MPI_Datatype type, MPI_Op op)

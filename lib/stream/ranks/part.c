@@ -196,11 +196,10 @@ static tm_status read_from(part *p)
     if (status != TM_OK)
         return status;
     const size_t most = p->rows > p->before ? p->rows - p->before : 0;
-    tm_error *error = r->error;
     status = tm_reader_read_part(r, p->block, p->before, most, p->limit);
     p->lines = r->lines.line - 1;
-    if (status != TM_OK && error->line > 0)
-        error->line += lines_before(&p->look, p->begin);
+    if (status != TM_OK)
+        tm_error_add_lines(r->error, lines_before(&p->look, p->begin));
     tm_lines_close(&r->lines);
     return status;
 }
