@@ -54,7 +54,7 @@ tm_status tm_fail_as(tm_error *error, const tm_error *cause)
     return cause->status;
 }
 
-tm_error tm_error_of(const tm_error *error, tm_status status)
+tm_error tm_error_of(tm_status status, const tm_error *error)
 {
     tm_error said = {.status = status};
     if (error && status != TM_OK)
@@ -63,7 +63,7 @@ tm_error tm_error_of(const tm_error *error, tm_status status)
     return said;
 }
 
-void tm_error_add_lines(tm_error *error, size_t lines)
+void tm_error_add_lines(size_t lines, tm_error *error)
 {
     if (error && error->line > 0)
         error->line += lines;

@@ -46,10 +46,10 @@ tm_status tm_fail_at_list(tm_error *error, tm_status status, const char *file,
 tm_status tm_fail_as(tm_error *error, const tm_error *cause);
 
 /* What an error, which may be NULL, says; with that status. */
-tm_error tm_error_of(const tm_error *error, tm_status status);
+tm_error tm_error_of(tm_status status, const tm_error *error);
 
 /* So many lines are before the text in which the error, which may be NULL, has its line. */
-void tm_error_add_lines(tm_error *error, size_t lines);
+void tm_error_add_lines(size_t lines, tm_error *error);
 
 /* "out of memory", as TM_ERROR_SYSTEM. */
 tm_status tm_fail_memory(tm_error *error);

@@ -65,7 +65,7 @@ tm_status tm_ranks_agree(tm_status status, tm_error *error)
     if (first == world.count)
         return TM_OK;
     int of_all = (int)status;
-    tm_error cause = tm_error_of(error, status);
+    tm_error cause = tm_error_of(status, error);
     MPI_Bcast(&of_all, 1, MPI_INT, first, MPI_COMM_WORLD);
     MPI_Bcast(&cause, (int)sizeof cause, MPI_BYTE, first, MPI_COMM_WORLD);
     cause.status = (tm_status)of_all;

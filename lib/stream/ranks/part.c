@@ -199,7 +199,7 @@ static tm_status read_from(part *p)
     status = tm_reader_read_part(r, p->block, p->before, most, p->limit);
     p->lines = r->lines.line - 1;
     if (status != TM_OK)
-        tm_error_add_lines(r->error, lines_before(&p->look, p->begin));
+        tm_error_add_lines(lines_before(&p->look, p->begin), r->error);
     tm_lines_close(&r->lines);
     return status;
 }
