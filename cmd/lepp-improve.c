@@ -3,12 +3,13 @@
 #include "common/app/filter.h"
 #include "common/input/tet_input.h"
 #include "common/input/tet_set.h"
+#include "common/input/tet_share.h"
 #include "common/plot/plot.h"
 
 #include "../lib/examine/tet_statistics.h"
 #include "../lib/surface/surface.h"
 #include "../lib/tet/improve/improve.h"
-#include "../lib/tet/improve/improve_forced.h"
+#include "../lib/tet/improve/improve_ranks.h"
 #include "../lib/tet/lepp/lepp.h"
 #include "../lib/tet/mesh_set.h"
 
@@ -555,6 +556,72 @@ static void write_plot(const filter *f, const settings *o, const result *r)
     plot_write(f, &script, o->plot);
 }
 
+/* Whether ranks can do it together: what improve() may do in parts. */
+static bool is_for_ranks(const filter *f, const settings *o)
+{
+    return o->is_improve && o->set.rules == 0 && !f->json &&
+           tm_improve_cuts(&o->improve, TM_TETS_MAX, TM_TETS_MAX);
+}
+
+/* Improves the mesh that ranks share; false, with nothing done, where that is better done
+ * by one. */
+static bool improve_share(filter *f, const settings *o, tm_slices *slices, result *r)
+{
+    const tm_improve_cut *cut = &tm_improve_usual_cut;
+    const tm_improve_options *how = &o->improve;
+    tm_tet_share share;
+    tm_share_notes notes;
+    tm_error error;
+    size_t inner_faces;
+    if (!tet_share_from_slices(f, slices, cut->size, &share, &notes))
+        return false;
+    bool worse = !tm_improve_cuts(how, share.all_tets,
+                                  tm_improve_ranks_count_bad(&share, how->angle));
+    if (!worse) {
+        filter_agree(
+            f,
+            tm_improve_ranks(&share, how, cut, &r->improve, &worse, &inner_faces, &error),
+            &error);
+    }
+    if (worse) {
+        tm_tet_share_free(&share);
+        return false;
+    }
+    tet_share_note(f, &notes);
+    filter_agree(f, tm_improve_ranks_forced(&share, how->angle, &r->forced, &error),
+                 &error);
+    r->changes = tm_improve_operations(&r->improve);
+    filter_agree(f, tm_tet_share_give(&share, inner_faces, slices, &error), &error);
+    return true;
+}
+
+/* The work of ranks together, to its end; or *stream is what rank 0 goes on with alone.
+ */
+static bool work_together(filter *f, const settings *o, tm_stream *stream, int *status)
+{
+    tm_slices slices;
+    tm_slice tets = {0, 0};
+    result r = {0};
+    char summary[512];
+    filter_read_slices(f, &slices);
+    tm_slices_find(&slices, ".ele", &tets);
+    if (!tm_improve_cuts(&o->improve, tets.total, tets.total) ||
+        !improve_share(f, o, &slices, &r)) {
+        tet_share_leave(f, &slices, stream);
+        return false;
+    }
+    if (r.changes > 0)
+        tet_share_drop_unknown(f, &slices, "the tetrahedra have other numbers now");
+    tm_slices_find(&slices, ".ele", &tets);
+    summarise(o, &r, tets.total, summary, sizeof summary);
+    filter_note(f, "%s", summary);
+    filter_write_slices(f, &slices, "%s", summary);
+    tm_forced_free(&r.forced);
+    tm_slices_free(&slices);
+    *status = filter_finish(f, EXIT_SUCCESS);
+    return true;
+}
+
 int main(int argc, char **argv)
 {
     filter f = {.name = "lepp-improve",
@@ -564,13 +631,18 @@ int main(int argc, char **argv)
                 .help = own_help,
                 .options = options,
                 .words = option_words,
-                .letters = "a:m:t:Q:s:" FILTER_LETTERS};
+                .letters = "a:m:t:Q:s:" FILTER_LETTERS,
+                .ranks = true};
     filter_start(&f, argc, argv);
     settings o = read_options(&f);
     filter_operands(&f);
     filter_other_file(&f, "--plot", o.plot);
     tm_stream stream;
-    filter_read(&f, &stream);
+    int status;
+    if (!filter_together(&f, is_for_ranks(&f, &o)))
+        filter_read(&f, &stream);
+    else if (work_together(&f, &o, &stream, &status))
+        return status;
 
     result r = {0};
     improve(&f, &stream, &o, &r);

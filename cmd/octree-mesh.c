@@ -478,6 +478,9 @@ static bool make_together(filter *f, settings *o, tm_surface *surface, tm_slices
         *r = write_together(f, o, surface, &share, &mesh, slices);
     tm_octree_mesh_free(&mesh);
     tm_octree_share_free(&share);
+    if (alone)
+        filter_verbose(f, "the octants have hollows, or pieces that the surface has not: "
+                          "rank 0 goes on alone");
     if (alone && tm_rank() > 0)
         exit(EXIT_SUCCESS);
     if (alone)

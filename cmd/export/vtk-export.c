@@ -4,9 +4,11 @@
 
 int main(int argc, char **argv)
 {
-    return vtk_export(
-        argc, argv, "vtk-export",
-        "Writes points, triangles, tetrahedra, mixed elements or polyhedra as an\n"
-        "unstructured grid in a legacy text file of VTK (.vtk).",
-        false, tm_vtk_write);
+    const vtk_exporter exporter = {
+        .name = "vtk-export",
+        .purpose =
+            "Writes points, triangles, tetrahedra, mixed elements or polyhedra as an\n"
+            "unstructured grid in a legacy text file of VTK (.vtk).",
+        .write = tm_vtk_write};
+    return vtk_export(argc, argv, &exporter);
 }

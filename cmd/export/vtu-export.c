@@ -4,9 +4,14 @@
 
 int main(int argc, char **argv)
 {
-    return vtk_export(
-        argc, argv, "vtu-export",
-        "Writes points, triangles, tetrahedra, mixed elements or polyhedra as\n"
-        "an unstructured grid of VTK (.vtu), which ParaView shows.",
-        true, tm_vtu_write);
+    const vtk_exporter exporter = {
+        .name = "vtu-export",
+        .purpose =
+            "Writes points, triangles, tetrahedra, mixed elements or polyhedra as\n"
+            "an unstructured grid of VTK (.vtu), which ParaView shows; to FILE.pvtu\n"
+            "in pieces, one for each rank of a launcher.",
+        .binary = true,
+        .ranks = true,
+        .write = tm_vtu_write};
+    return vtk_export(argc, argv, &exporter);
 }

@@ -11,18 +11,31 @@
 /* Cells of a side; so many points are a thread's work at a time. */
 enum { CELLS = 1024, CHUNK = 32768 };
 
-tm_space tm_space_around(const double (*xyz)[3], size_t count)
+void tm_box_extend(double low[3], double high[3], const double p[3])
 {
-    tm_space space = {{HUGE_VAL, HUGE_VAL, HUGE_VAL}, 0};
+    for (int k = 0; k < 3; k++) {
+        low[k] = fmin(low[k], p[k]);
+        high[k] = fmax(high[k], p[k]);
+    }
+}
+
+tm_space tm_space_of_box(const double low[3], const double high[3])
+{
+    tm_space space = {{low[0], low[1], low[2]}, 0};
     double side = 0;
-    for (size_t v = 0; v < count; v++)
-        for (int k = 0; k < 3; k++)
-            space.low[k] = fmin(space.low[k], xyz[v][k]);
-    for (size_t v = 0; v < count; v++)
-        for (int k = 0; k < 3; k++)
-            side = fmax(side, xyz[v][k] - space.low[k]);
+    for (int k = 0; k < 3; k++)
+        side = fmax(side, high[k] - low[k]);
     space.cells = side > 0 ? CELLS / side : 0;
     return space;
+}
+
+tm_space tm_space_around(const double (*xyz)[3], size_t count)
+{
+    double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL};
+    double high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+    for (size_t v = 0; v < count; v++)
+        tm_box_extend(low, high, xyz[v]);
+    return tm_space_of_box(low, high);
 }
 
 /* Bit i of ten goes to bit 3i. */

@@ -22,6 +22,12 @@ typedef struct tm_curve_point {
 
 tm_space tm_space_around(const double (*xyz)[3], size_t count);
 
+/* The same around the points of a box; around none where low is above high. */
+tm_space tm_space_of_box(const double low[3], const double high[3]);
+
+/* Makes a box larger by points; NaN counts for nothing. */
+void tm_box_extend(double low[3], double high[3], const double p[3]);
+
 /* The position of a point on the curve; the nearest end for points outside. */
 uint32_t tm_space_position(const tm_space *space, const double p[3]);
 

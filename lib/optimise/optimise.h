@@ -64,11 +64,18 @@ typedef struct tm_optimise_options {
                         usual, 0 half as slow where much remains */
     size_t most_measured; /* no more is begun once so many elements were measured in all;
                              0: no limit */
-    const uint32_t *number; /* [elements]: theirs in the mesh that this one is of, by which
-                               what is done at random is chosen; NULL: these here */
+    const uint32_t *number; /* [elements]: theirs in the mesh that this one is of, by
+                               which what is done at random is chosen; NULL: these here */
+    unsigned pass;          /* only this one is made, counted from 1; 0: all */
     const tm_progress *progress;
     const tm_stop *stop;
 } tm_optimise_options;
+
+/* How many passes go over what is bad, and how many rings of elements around it a pass,
+ * counted from 1, moves nodes of: bad elements that are farther from each other than such
+ * rings of both have nothing to do with each other in it. */
+unsigned tm_optimise_passes(unsigned effort);
+unsigned tm_optimise_rings(unsigned pass);
 
 typedef struct tm_optimise_report {
     size_t bad_before, bad_after;

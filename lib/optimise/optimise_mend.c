@@ -214,13 +214,29 @@ static tm_status make_pass(tm_optimise_work *w, const pass *how, uint64_t round,
     return status;
 }
 
+unsigned tm_optimise_passes(unsigned effort)
+{
+    return PASSES + effort * LAST_PASSES;
+}
+
+/* The pass of that number, from 0. */
+static const pass *pass_of(unsigned p)
+{
+    return p < PASSES ? &passes[p] : &last_passes[(p - PASSES) % LAST_PASSES];
+}
+
+unsigned tm_optimise_rings(unsigned p)
+{
+    return pass_of(p - 1)->rings;
+}
+
 tm_status tm_optimise_mend(tm_optimise_work *w, unsigned effort, tm_error *error)
 {
+    const unsigned only = w->options->pass;
+    const unsigned past = only > 0 ? only : tm_optimise_passes(effort);
     tm_status status = TM_OK;
-    for (size_t p = 0; p < PASSES && status == TM_OK && w->bads > 0; p++)
-        status = make_pass(w, &passes[p], 0, error);
-    const size_t more = (size_t)effort * LAST_PASSES;
-    for (size_t p = 0; p < more && status == TM_OK && w->bads > 0; p++)
-        status = make_pass(w, &last_passes[p % LAST_PASSES], p + 1, error);
+    for (unsigned p = only > 0 ? only - 1 : 0; p < past && status == TM_OK && w->bads > 0;
+         p++)
+        status = make_pass(w, pass_of(p), p < PASSES ? 0 : p - PASSES + 1, error);
     return status == TM_OK ? rank_bad(w, error) : status;
 }

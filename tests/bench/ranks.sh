@@ -47,7 +47,7 @@ strong() {
     done
     cmp -s "$work/out.1" "$work/out.2" && same=yes || same=NO
     awk -v name="$name" -v a="$(wall "$work/time.1")" -v b="$(wall "$work/time.2")" \
-        -v m="$(memory_of "$work/log.1")" -v k="$(memory_of "$work/log.2")" -v same=$same 'BEGIN {
+        -v m="$(memory_of "$work/log.1")" -v k="$(memory_of "$work/log.2")" -v same="$same" 'BEGIN {
         printf "%-24s %8.1f %8.1f %6.2f %9.0f %9.0f %6.2f  %s\n", name, a, b, b / a, m, k, k / m, same
     }'
     rm -f "$work"/out.*

@@ -102,6 +102,64 @@ END
     [ "$(grep -c '^tet-stats: large.tm: .node: node 11000 at' <<<"$output")" -eq 1 ]
 }
 
+# What VTK reads of two files, cell by cell: points, their data, the cell's data.
+same_cells() {
+    /usr/bin/python3 - "$@" <<'END'
+import sys, vtk
+from vtk.util.numpy_support import vtk_to_numpy as rows
+
+def cells_of(file):
+    reader = vtk.vtkXMLPUnstructuredGridReader() if file.endswith('.pvtu') else vtk.vtkXMLUnstructuredGridReader()
+    reader.SetFileName(file)
+    reader.Update()
+    grid = reader.GetOutput()
+    data = lambda of: [rows(of.GetArray(i)) for i in range(of.GetNumberOfArrays())]
+    xyz, of_points, of_cells, ids = rows(grid.GetPoints().GetData()), data(grid.GetPointData()), data(grid.GetCellData()), vtk.vtkIdList()
+    cells = []
+    for c in range(grid.GetNumberOfCells()):
+        grid.GetCellPoints(c, ids)
+        points = [ids.GetId(i) for i in range(ids.GetNumberOfIds())]
+        cells.append((grid.GetCellType(c), [tuple(xyz[p]) for p in points],
+                      [tuple(a[p] for a in of_points) for p in points], [float(a[c]) for a in of_cells]))
+    return sorted(cells)
+
+one, pieces = map(cells_of, sys.argv[1:])
+assert one == pieces and len(one) > 0, (len(one), len(pieces))
+END
+}
+
+@test "vtu-export -o FILE.pvtu: pieces that VTK reads as the whole" {
+    octree-mesh -s 5 -u -o marked.tm <<<"$(surface cube smesh)"
+    tetgen-mesh -q -a 0.0001 -o faces.tm <<<"$(surface cube off)"
+    for mesh in marked faces; do
+        vtu-export -o one.vtu $mesh.tm
+        for n in 1 3 7; do
+            rm -f x*
+            on_ranks $n vtu-export -o x.pvtu $mesh.tm
+            same_cells one.vtu x.pvtu
+        done
+    done
+    sed '/^\.ele/,/^\.face/{/^\.face/!d}' faces.tm >surface.tm
+    on_ranks 3 vtu-export -o x.pvtu <surface.tm
+    vtu-export -o one.vtu surface.tm
+    same_cells one.vtu x.pvtu
+    on_ranks 2 vtu-export -o x.pvtu "$meshes/small.tm"
+    vtu-export -o one.vtu "$meshes/small.tm"
+    same_cells one.vtu x.pvtu
+    sed '/^\.ele/,$d' "$meshes/tets.tm" | sed '$a .end' >points.tm
+    on_ranks 2 vtu-export -o x.pvtu points.tm
+    vtu-export -o one.vtu points.tm
+    same_cells one.vtu x.pvtu
+    mkdir 'a&b'
+    vtu-export -o 'a&b/a&b.pvtu' "$meshes/small-tets.tm"
+    vtu-export -o one.vtu "$meshes/small-tets.tm"
+    same_cells one.vtu 'a&b/a&b.pvtu'
+    run -4 on_ranks 2 vtu-export -o no-such-folder/x.pvtu "$meshes/tets.tm"
+    sed 's/^\.end/.notes\nsome\n.end/' "$meshes/tets.tm" >notes.tm
+    run -3 on_ranks 2 vtu-export -o y.pvtu --strict notes.tm
+    [ ! -e y.pvtu ]
+}
+
 @test "filters that do not work on ranks do so on rank 0 alone" {
     on_ranks 3 vtu-export <"$meshes/small.tm" | cmp - <(vtu-export "$meshes/small.tm")
     on_ranks 2 tetgen-mesh -o several.tm <<<"$(surface cube off)"

@@ -3,6 +3,7 @@
 #include "filter.h"
 
 #include "../../../lib/ranks/ranks.h"
+#include "../../../lib/stream/ranks/pass.h"
 #include "../../../lib/text/file.h"
 #include "kinds.h"
 
@@ -92,42 +93,19 @@ void filter_write_slices(filter *f, tm_slices *slices, const char *summary, ...)
     filter_agree(f, status, &error);
 }
 
-enum { MESSAGE = 1 << 16 };
-
-static void send_text(const tm_text *text)
-{
-    for (size_t at = 0; at < text->size; at += MESSAGE)
-        tm_ranks_send(0, text->byte + at,
-                      text->size - at < MESSAGE ? text->size - at : MESSAGE);
-    tm_ranks_send(0, NULL, 0);
-}
-
-/* What a rank sends, to the end; after an error it is lost. */
-static tm_status pass_on(unsigned from, int fd, tm_status before, tm_error *error)
-{
-    char message[MESSAGE];
-    tm_status status = before;
-    for (size_t size = 1; size > 0;) {
-        tm_ranks_receive(from, message, sizeof message, &size);
-        if (status == TM_OK && size > 0)
-            status = tm_write_all(fd, message, size, error);
-    }
-    return status;
-}
-
 void filter_write_texts(filter *f, const tm_text *text)
 {
     tm_error error;
     tm_status status = TM_OK;
     filter_agree(f, text->failed ? tm_fail_memory(&error) : TM_OK, &error);
     if (tm_rank() > 0) {
-        send_text(text);
+        tm_pass_text(text->byte, text->size);
+        tm_pass_end();
     } else {
         const int fd = filter_open_output(f);
         filter_stage(f, "writing");
         status = tm_write_text(fd, text, &error);
-        for (unsigned from = 1; from < tm_ranks_count(); from++)
-            status = pass_on(from, fd, status, &error);
+        status = tm_pass_on(fd, status, &error);
     }
     if (status != TM_OK && f->output)
         snprintf(error.file, sizeof error.file, "%s", f->output);

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tet_input.h"
 
-/* What the reading of the mesh found worth saying. */
-static void note_input(const filter *f, const tm_tet_mesh *mesh)
+void tet_mesh_note(const filter *f, const tm_tet_mesh *mesh)
 {
     if (mesh->turned)
         filter_note(f, "%zu tetrahedra were left-handed and are turned", mesh->turned);
@@ -27,7 +26,7 @@ void tet_mesh_from_stream(const filter *f, tm_stream *stream, tm_tet_mesh *mesh)
         snprintf(error.file, sizeof error.file, "%s", filter_input_name(f));
         filter_fail(f, &error);
     }
-    note_input(f, mesh);
+    tet_mesh_note(f, mesh);
 }
 
 static bool is_unknown(const tm_block *block, const void *context)

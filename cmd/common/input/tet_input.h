@@ -10,6 +10,9 @@
  * worth one. Exits where the tetrahedra are no mesh. */
 void tet_mesh_from_stream(const filter *f, tm_stream *stream, tm_tet_mesh *mesh);
 
+/* The notes alone. */
+void tet_mesh_note(const filter *f, const tm_tet_mesh *mesh);
+
 /* Drops the main mesh's blocks that are not known, with a note that says why: they may
  * refer to the tetrahedra, which are others now. */
 void drop_unknown_blocks(const filter *f, tm_stream *stream, const char *why);

@@ -5,12 +5,17 @@
 
 #include "../../../lib/format/vtk/vtk.h"
 
-typedef tm_status vtk_writer(tm_text *text, const tm_stream *stream,
-                             const tm_vtk_options *options, unsigned threads,
-                             tm_error *error);
+#include <stdbool.h>
 
-/* For main() to return; `binary`: the file is no text. */
-int vtk_export(int argc, char **argv, const char *name, const char *purpose, bool binary,
-               vtk_writer *write);
+typedef struct vtk_exporter {
+    const char *name, *purpose;
+    bool binary; /* the file is no text */
+    bool ranks;  /* FILE.pvtu is a file of pieces, one for each rank */
+    tm_status (*write)(tm_text *text, const tm_stream *stream,
+                       const tm_vtk_options *options, unsigned threads, tm_error *error);
+} vtk_exporter;
+
+/* For main() to return. */
+int vtk_export(int argc, char **argv, const vtk_exporter *exporter);
 
 #endif

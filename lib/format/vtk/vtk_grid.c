@@ -94,25 +94,13 @@ static tm_status find_rows_at(rows_at *at, const tm_vtk_grid *grid, tm_error *er
     return TM_OK;
 }
 
-static bool has_all(const uint32_t *node, size_t k, const uint32_t *wanted, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        size_t j = 0;
-        while (j < k && node[j] != wanted[i])
-            j++;
-        if (j == k)
-            return false;
-    }
-    return true;
-}
-
 static uint32_t owner_of(const rows_at *at, const uint32_t *wanted, size_t count)
 {
     for (size_t i = at->start[*wanted]; i < at->start[*wanted + 1]; i++) {
         const uint32_t r = at->row[i];
         size_t k;
         const uint32_t *node = tm_row_nodes(at->block, r, &k);
-        if (has_all(node, k, wanted, count))
+        if (tm_vtk_has_all(node, k, wanted, count))
             return at->block->kind == TM_FACET ? at->block->integer[2 * r] : r;
     }
     return TM_NONE;

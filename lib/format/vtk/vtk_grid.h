@@ -56,6 +56,20 @@ static inline const uint32_t *tm_vtk_marked_nodes(const tm_vtk_grid *grid, size_
     return tm_row_nodes(grid->part[tm_vtk_part(grid, i)], grid->row[i], k);
 }
 
+/* Whether all of `wanted` are among the k nodes. */
+static inline bool tm_vtk_has_all(const uint32_t *node, size_t k, const uint32_t *wanted,
+                                  size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        size_t j = 0;
+        while (j < k && node[j] != wanted[i])
+            j++;
+        if (j == k)
+            return false;
+    }
+    return true;
+}
+
 /* VTK's number of cell c. */
 uint8_t tm_vtk_type(const tm_vtk_grid *grid, size_t c);
 

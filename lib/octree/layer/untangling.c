@@ -215,8 +215,7 @@ static tm_status improve(tm_octree_mesh *m, tm_node_rule *rule,
             .most_measured = at_least[g] + each[g] * tm_octree_mesh_elements(m),
             .progress = progress};
         tm_optimise_report report;
-        status = tm_shared_optimise(&m->assembly, m->share, rule, boundary, &options,
-                                    &report, error);
+        status = tm_shared_optimise(m, rule, boundary, &options, &report, error);
         *worst = report.worst_after;
     }
     return status;

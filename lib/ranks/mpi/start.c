@@ -42,7 +42,7 @@ static void ignore_leaks(bool ignore)
 #endif
 }
 
-static void finish(void)
+void tm_mpi_finish(void)
 {
     int ended = 0;
     MPI_Finalized(&ended);
@@ -76,7 +76,7 @@ tm_status tm_mpi_init(tm_error *error)
     ignore_leaks(false);
     if (status != MPI_SUCCESS)
         return tm_fail(error, TM_ERROR_SYSTEM, "MPI does not start");
-    if (tm_launched() && atexit(finish) != 0)
+    if (tm_launched() && atexit(tm_mpi_finish) != 0)
         return tm_fail_memory(error);
     return TM_OK;
 }

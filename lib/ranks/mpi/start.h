@@ -14,6 +14,9 @@ TM_EXTERN_C_BEGIN
  * the program. */
 tm_status tm_mpi_init(tm_error *error);
 
+/* Ends MPI, if it runs: once. */
+void tm_mpi_finish(void);
+
 TM_EXTERN_C_END
 
 #endif

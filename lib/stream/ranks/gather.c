@@ -7,7 +7,8 @@
 
 #include <stdlib.h>
 
-/* Puts all rows of a flat array in its place, of which each has `width` numbers. */
+/* Of all ranks' arrays of `width` numbers for each row, all for rank 0; none of width 0.
+ */
 static tm_status gather(void **array, size_t rows, size_t width, size_t size,
                         tm_error *error)
 {
@@ -16,55 +17,74 @@ static tm_status gather(void **array, size_t rows, size_t width, size_t size,
         return TM_OK;
     const tm_status status =
         tm_ranks_gather(*array, rows, width * size, &all, NULL, error);
+    if (status != TM_OK)
+        return status;
     free(*array);
     *array = all;
-    return status;
-}
-
-/* The lists: how long they are, then what is in them. */
-static tm_status gather_lists(tm_block *block, size_t total, tm_error *error)
-{
-    const size_t items = block->count > 0 ? block->start[block->count] : 0;
-    for (size_t r = 0; r < block->count; r++)
-        block->start[r] = block->start[r + 1] - block->start[r];
-    tm_status status =
-        gather((void **)&block->item, items, 1, sizeof *block->item, error);
-    if (status == TM_OK)
-        status =
-            gather((void **)&block->start, block->count, 1, sizeof *block->start, error);
-    if (status != TM_OK || tm_rank() > 0)
-        return status;
-    size_t *start = realloc(block->start, (total + 1) * sizeof *start), sum = 0;
-    if (!start)
-        return tm_fail_memory(error);
-    block->start = start;
-    for (size_t r = 0; r < total; r++) {
-        const size_t length = start[r];
-        start[r] = sum;
-        sum += length;
-    }
-    start[total] = sum;
     return TM_OK;
 }
 
-static tm_status gather_block(tm_block *block, size_t total, tm_error *error)
+/* How long the lists are, instead of where they begin; and back. */
+static void take_differences(size_t *start, size_t rows)
 {
-    const tm_block_shape *shape = tm_block_shape_of(block->kind);
+    for (size_t r = 0; r < rows; r++)
+        start[r] = start[r + 1] - start[r];
+}
+
+static size_t *add_up(size_t *length, size_t rows)
+{
+    size_t *start = realloc(length, (rows + 1) * sizeof *start);
+    size_t sum = 0;
+    for (size_t r = 0; r < rows && start; r++) {
+        const size_t next = sum + start[r];
+        start[r] = sum;
+        sum = next;
+    }
+    if (start)
+        start[rows] = sum;
+    return start;
+}
+
+static tm_status gather_lists(tm_block *block, size_t total, tm_error *error)
+{
+    const size_t items = block->start[block->count];
+    void *item = block->item, *length = block->start;
+    tm_status status = gather(&item, items, 1, sizeof(uint32_t), error);
+    block->item = item;
+    take_differences(block->start, block->count);
+    if (status == TM_OK)
+        status = gather(&length, block->count, 1, sizeof(size_t), error);
+    block->start = length;
+    if (status == TM_OK && length) {
+        size_t *start = add_up(length, total);
+        if (!start)
+            status = tm_fail_memory(error);
+        else
+            block->start = start;
+    }
+    return tm_ranks_agree(status, error);
+}
+
+static tm_status gather_rows(tm_block *block, size_t total, tm_error *error)
+{
+    void *real = block->real, *integer = block->integer, *attribute = block->attribute;
+    void *marker = block->marker;
     const size_t rows = block->count;
     tm_status status =
-        gather((void **)&block->real, rows, shape->reals, sizeof *block->real, error);
+        gather(&real, rows, tm_block_reals(block->kind), sizeof(double), error);
     if (status == TM_OK)
-        status = gather((void **)&block->integer, rows, shape->integers,
-                        sizeof *block->integer, error);
+        status = gather(&integer, rows, tm_block_integers(block->kind), sizeof(uint32_t),
+                        error);
     if (status == TM_OK)
-        status = gather((void **)&block->attribute, rows, block->attributes,
-                        sizeof *block->attribute, error);
+        status = gather(&attribute, rows, block->attributes, sizeof(double), error);
     if (status == TM_OK)
-        status = gather((void **)&block->marker, rows, block->markers,
-                        sizeof *block->marker, error);
-    if (status == TM_OK && shape->list)
-        status = tm_ranks_agree(gather_lists(block, total, error), error);
-    block->count = tm_rank() == 0 ? total : 0;
+        status = gather(&marker, rows, block->markers, sizeof(int32_t), error);
+    block->real = real;
+    block->integer = integer;
+    block->attribute = attribute;
+    block->marker = marker;
+    if (status == TM_OK && tm_block_shape_of(block->kind)->list)
+        status = gather_lists(block, total, error);
     return status;
 }
 
@@ -73,8 +93,12 @@ tm_status tm_slices_gather(tm_slices *slices, tm_error *error)
     tm_status status = TM_OK;
     for (size_t b = 0; b < slices->stream.blocks && status == TM_OK; b++) {
         tm_block *block = &slices->stream.block[b];
-        if (block->kind != TM_UNKNOWN && block->kind != TM_GROUP)
-            status = gather_block(block, slices->slice[b].total, error);
+        tm_slice *slice = &slices->slice[b];
+        if (block->kind == TM_GROUP || block->kind == TM_UNKNOWN)
+            continue;
+        status = gather_rows(block, slice->total, error);
+        block->count = tm_rank() == 0 ? slice->total : 0;
+        *slice = (tm_slice){tm_rank() == 0 ? 0 : slice->total, slice->total};
     }
     return status;
 }

@@ -4,50 +4,33 @@
 #include "../../base/array.h"
 #include "../../ranks/ranks.h"
 #include "../writer.h"
+#include "pass.h"
 
 #include <stdlib.h>
 
 /* In order, by rank 0 ------------------------------------------------------------------
  */
 
-enum { MESSAGE = 1 << 16 };
-
 static tm_status put_message(void *to, const char *bytes, size_t size, tm_error *error)
 {
     (void)to;
     (void)error;
-    for (size_t at = 0; at < size; at += MESSAGE)
-        tm_ranks_send(0, bytes + at, size - at < MESSAGE ? size - at : MESSAGE);
+    tm_pass_text(bytes, size);
     return TM_OK;
 }
 
-/* What a rank sends, to the end; after an error it is lost. */
-static tm_status pass_on(unsigned from, char *message, const tm_sink *sink,
-                         tm_status before, tm_error *error)
-{
-    tm_status status = before;
-    for (size_t size = 1; size > 0;) {
-        tm_ranks_receive(from, message, MESSAGE, &size);
-        if (status == TM_OK && size > 0)
-            status = sink->put(sink->to, message, size, error);
-    }
-    return status;
-}
-
 /* Those of rank 0, then of the others. */
-static tm_status collect_rows(const tm_slices *s, size_t b, unsigned threads,
-                              char *message, const tm_sink *sink, tm_writing *writing,
-                              tm_error *error)
+static tm_status collect_rows(const tm_slices *s, size_t b, int fd, unsigned threads,
+                              tm_writing *writing, tm_error *error)
 {
     const tm_block *block = &s->stream.block[b];
-    tm_status status = tm_put_name(block, sink, error);
+    const tm_sink sink = {tm_sink_put_fd, &fd};
+    tm_status status = tm_put_name(block, &sink, error);
     if (status == TM_OK)
-        status = tm_put_header(block, s->slice[b].total, sink, error);
+        status = tm_put_header(block, s->slice[b].total, &sink, error);
     if (status == TM_OK)
-        status = tm_put_rows(block, 0, s->stream.base, threads, sink, writing, error);
-    for (unsigned from = 1; from < tm_ranks_count(); from++)
-        status = pass_on(from, message, sink, status, error);
-    return status;
+        status = tm_put_rows(block, 0, s->stream.base, threads, &sink, writing, error);
+    return tm_pass_on(fd, status, error);
 }
 
 static tm_status send_rows(const tm_slices *s, size_t b, unsigned threads,
@@ -59,7 +42,7 @@ static tm_status send_rows(const tm_slices *s, size_t b, unsigned threads,
     if (block->count > 0)
         status = tm_put_rows(block, s->slice[b].before, s->stream.base, threads, &sink,
                              writing, error);
-    tm_ranks_send(0, NULL, 0);
+    tm_pass_end();
     return status;
 }
 
@@ -69,20 +52,17 @@ tm_status tm_slices_write(const tm_slices *slices, int fd, unsigned threads,
     const bool first = tm_rank() == 0;
     const tm_sink sink = {tm_sink_put_fd, &fd};
     tm_writing writing = {slices->stream.progress, {.what = "writing"}};
-    char *message = first ? malloc(MESSAGE) : NULL;
     tm_status status = TM_OK;
-    if (tm_ranks_any(first && !message))
-        return tm_fail_memory(error);
     if (first)
         status = tm_put_begin(&slices->stream, &sink, error);
+    status = tm_ranks_agree(status, error);
     for (size_t b = 0; b < slices->stream.blocks && status == TM_OK; b++) {
-        status = first ? collect_rows(slices, b, threads, message, &sink, &writing, error)
+        status = first ? collect_rows(slices, b, fd, threads, &writing, error)
                        : send_rows(slices, b, threads, &writing, error);
         status = tm_ranks_agree(status, error);
     }
     if (status == TM_OK && first)
         status = tm_put_end(&sink, error);
-    free(message);
     return tm_ranks_agree(status, error);
 }
 

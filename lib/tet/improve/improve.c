@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* When the improver tries what. */
 #include "improve_engine.h"
-#include "improve_parts.h"
+#include "improve_ranks.h"
 
 #include "../../base/array.h"
 #include "../mesh_set.h"
@@ -29,7 +29,7 @@ static const size_t tries_least = 3000;
 
 /* Tetrahedra of a part of a large mesh. In smaller ones more of all is near to other
  * parts, and waits; larger ones are slower, as their memory is further away. */
-static const size_t part_tets = 250000;
+enum { PART_TETS = 250000 };
 
 /* Where less is bad, taking parts out costs more than they save. */
 static const double part_bad = 0.01;
@@ -432,21 +432,30 @@ static tm_status improve_whole(tm_tet_mesh *mesh, const tm_improve_options *opti
     return status;
 }
 
+const tm_improve_cut tm_improve_usual_cut = {PART_TETS, improve_whole};
+
+bool tm_improve_cuts(const tm_improve_options *options, size_t tets, size_t bad)
+{
+    const bool shrinks = options->max_growth > 0 && options->max_growth < 1;
+    return tets >= 2 * (size_t)PART_TETS && options->surface.tolerance == 0 && !shrinks &&
+           (double)bad >= part_bad * (double)tets;
+}
+
 /* Whether a mesh is so large that it is cut. One whose surface may move is not, nor one
  * with a set, nor one that is to become smaller, nor one that is good nearly all over. */
 static bool is_for_parts(const tm_tet_mesh *mesh, const tm_improve_options *options)
 {
-    const bool shrinks = options->max_growth > 0 && options->max_growth < 1;
-    return mesh->tets >= 2 * part_tets && options->surface.tolerance == 0 &&
-           !mesh->has_set && !shrinks && mesh->dangling == 0 &&
-           (double)tm_improve_count_bad_angles(mesh, options->angle) >=
-               part_bad * (double)mesh->tets;
+    return !mesh->has_set && mesh->dangling == 0 &&
+           tm_improve_cuts(options, mesh->tets, mesh->tets) &&
+           tm_improve_cuts(options, mesh->tets,
+                           tm_improve_count_bad_angles(mesh, options->angle));
 }
 
 tm_status tm_improve(tm_tet_mesh *mesh, const tm_improve_options *options,
                      tm_improve_report *report, tm_error *error)
 {
+    const tm_improve_cut *cut = &tm_improve_usual_cut;
     if (is_for_parts(mesh, options))
-        return tm_improve_parts(mesh, options, part_tets, improve_whole, report, error);
+        return tm_improve_parts(mesh, options, cut->size, cut->engine, report, error);
     return improve_whole(mesh, options, report, error);
 }

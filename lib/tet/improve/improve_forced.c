@@ -114,15 +114,15 @@ static bool look_at(tm_forced *forced, const tm_tet_mesh *mesh, uint32_t t, doub
     return true;
 }
 
-tm_status tm_forced_find(tm_forced *forced, const tm_tet_mesh *mesh, double degrees,
-                         tm_error *error)
+tm_status tm_forced_find_in(tm_forced *forced, const tm_tet_mesh *mesh, const bool *own,
+                            double degrees, tm_error *error)
 {
     const double(*x)[3] = (const double(*)[3])mesh->xyz;
     double bad = tm_bad_sine2(degrees);
     *forced = (tm_forced){0};
     for (uint32_t t = 0; t < mesh->slots; t++) {
         const uint32_t *n = mesh->tet[t];
-        if (!tm_tet_lives(mesh, t) ||
+        if (!tm_tet_lives(mesh, t) || (own && !own[t]) ||
             tm_tet_sine2(x[n[0]], x[n[1]], x[n[2]], x[n[3]]) >= bad)
             continue;
         forced->bad++;
@@ -132,6 +132,12 @@ tm_status tm_forced_find(tm_forced *forced, const tm_tet_mesh *mesh, double degr
         }
     }
     return TM_OK;
+}
+
+tm_status tm_forced_find(tm_forced *forced, const tm_tet_mesh *mesh, double degrees,
+                         tm_error *error)
+{
+    return tm_forced_find_in(forced, mesh, NULL, degrees, error);
 }
 
 void tm_forced_json(tm_json *json, const tm_forced *forced)

@@ -34,6 +34,10 @@ void tm_forced_free(tm_forced *forced);
 tm_status tm_forced_find(tm_forced *forced, const tm_tet_mesh *mesh, double degrees,
                          tm_error *error);
 
+/* The same of some tetrahedra, own[slots], and the sectors whose lowest they are. */
+tm_status tm_forced_find_in(tm_forced *forced, const tm_tet_mesh *mesh, const bool *own,
+                            double degrees, tm_error *error);
+
 /* Adds the key `forced` of lepp-improve(1). */
 void tm_forced_json(tm_json *json, const tm_forced *forced);
 

@@ -16,8 +16,6 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 
-enum { ROUNDS = 5 };
-
 /* Of the nodes of a tetrahedron so many are due where it is. All four would leave out
  * what a bad one is improved with, one alone would try those again that were tried. */
 enum { MOST_OF_FOUR = 3 };
@@ -29,14 +27,10 @@ typedef struct one_part {
 } one_part;
 
 typedef struct round_of_parts {
-    tm_tet_parts parts;
-    const tm_tet_mesh *mesh;
-    tm_improve_options options;
-    tm_improve_engine *engine;
-    const bool *due;     /* [nodes]: tetrahedra of these are worked on, but for */
-    const bool *between; /* [nodes]: those that have one of these; NULL */
-    one_part *one;       /* [parts] */
-    pthread_t caller;    /* that is told of progress */
+    const tm_improve_round_of *what;
+    const tm_tet_parts *parts;
+    one_part *one;    /* [parts] */
+    pthread_t caller; /* that is told of progress */
     tm_progress_at at;
     atomic_size_t done;
 } round_of_parts;
@@ -44,7 +38,9 @@ typedef struct round_of_parts {
 /* Gives a part its set; false where that is empty, or memory is out. */
 static bool add_set(const round_of_parts *r, size_t p, one_part *one)
 {
-    tm_tet_part *part = &r->parts.part[p];
+    tm_tet_part *part = &r->parts->part[p];
+    const bool *between =
+        r->what->round + 1 < TM_IMPROVE_ROUNDS ? r->what->between : NULL;
     bool *in_set = tm_new(part->mesh.slots, sizeof *in_set), any = false;
     if (!in_set) {
         one->status = tm_fail_memory(&one->error);
@@ -54,8 +50,8 @@ static bool add_set(const round_of_parts *r, size_t p, one_part *one)
         int due = 0;
         bool is_between = false;
         for (int i = 0; i < 4; i++) {
-            due += r->due[part->node[part->mesh.tet[t][i]]];
-            is_between |= r->between && r->between[part->node[part->mesh.tet[t][i]]];
+            due += r->what->due[part->node[part->mesh.tet[t][i]]];
+            is_between |= between && between[part->node[part->mesh.tet[t][i]]];
         }
         in_set[t] = due >= MOST_OF_FOUR && !is_between;
         any |= in_set[t];
@@ -71,25 +67,25 @@ static void tell(round_of_parts *r)
     if (!pthread_equal(pthread_self(), r->caller))
         return;
     r->at.done = atomic_load(&r->done);
-    tm_progress_tell(r->options.progress, &r->at);
+    tm_progress_tell(r->what->options.progress, &r->at);
 }
 
 static void improve_part(void *context, size_t p)
 {
     round_of_parts *r = context;
     one_part *one = &r->one[p];
-    tm_tet_mesh *mesh = &r->parts.part[p].mesh;
-    tm_improve_options options = r->options;
+    tm_tet_mesh *mesh = &r->parts->part[p].mesh;
+    tm_improve_options options = r->what->options;
     options.progress = NULL;
     tell(r);
-    one->status = tm_tet_part_take(&r->parts, p, r->mesh, &one->error);
+    one->status = tm_tet_part_take(r->parts, p, r->what->mesh, &one->error);
     if (one->status == TM_OK && add_set(r, p, one))
-        one->status = r->engine(mesh, &options, &one->report, &one->error);
+        one->status = r->what->engine(mesh, &options, &one->report, &one->error);
     tm_tet_mesh_remove_set(mesh);
     atomic_fetch_add(&r->done, 1);
 }
 
-static void add_report(tm_improve_report *to, const tm_improve_report *more)
+void tm_improve_report_add(tm_improve_report *to, const tm_improve_report *more)
 {
     to->passes = more->passes > to->passes ? more->passes : to->passes;
     to->kicks += more->kicks;
@@ -101,9 +97,8 @@ static void add_report(tm_improve_report *to, const tm_improve_report *more)
     }
 }
 
-/* What was due and has a node between parts still is; what came since was not. */
-static bool find_due(const tm_tet_mesh *mesh, bool **due, const bool *between,
-                     size_t nodes)
+bool tm_improve_find_due(const tm_tet_mesh *mesh, bool **due, const bool *between,
+                         size_t nodes)
 {
     bool *now = calloc(mesh->nodes + 1, sizeof *now);
     for (uint32_t t = 0; t < mesh->slots && now; t++) {
@@ -121,36 +116,57 @@ static bool find_due(const tm_tet_mesh *mesh, bool **due, const bool *between,
     return now;
 }
 
-/* One round: improves what is due, and finds what is due then. */
-static tm_status improve_round(round_of_parts *r, tm_tet_mesh *mesh, size_t size,
-                               unsigned round, bool **due, tm_improve_report *report,
-                               tm_error *error)
+tm_status tm_improve_round(const tm_improve_round_of *what, const tm_tet_parts *parts,
+                           tm_improve_report *report, tm_error *error)
 {
-    const unsigned threads = r->options.threads > 1 ? r->options.threads : 1;
+    const unsigned threads = what->options.threads > 1 ? what->options.threads : 1;
+    round_of_parts r = {
+        .what = what,
+        .parts = parts,
+        .one = calloc(parts->count + 1, sizeof *r.one),
+        .caller = pthread_self(),
+        .at = {.what = "improving", .pass = what->round + 1, .of = parts->count}};
+    tm_status status = r.one ? TM_OK : tm_fail_memory(error);
+    atomic_init(&r.done, 0);
+    if (r.one)
+        tm_parallel(threads, parts->count, improve_part, &r);
+    for (size_t p = 0; status == TM_OK && p < parts->count; p++) {
+        if (r.one[p].status != TM_OK)
+            status = tm_fail_as(error, &r.one[p].error);
+        tm_improve_report_add(report, &r.one[p].report);
+    }
+    free(r.one);
+    return status;
+}
+
+void tm_improve_limit_growth(tm_improve_options *options, size_t most, size_t tets)
+{
+    if (options->max_growth > 0)
+        options->max_growth = fmax(1, (double)most / (double)tets);
+}
+
+/* One round: improves what is due, and finds what is due then. */
+static tm_status improve_round(tm_improve_round_of *what, tm_tet_mesh *mesh, size_t size,
+                               bool **due, tm_improve_report *report, tm_error *error)
+{
+    const unsigned threads = what->options.threads > 1 ? what->options.threads : 1;
     const size_t nodes = mesh->nodes;
-    tm_status status = tm_tet_parts_cut(&r->parts, mesh, size, round, error);
-    r->one = status == TM_OK ? calloc(r->parts.count, sizeof *r->one) : NULL;
+    tm_tet_parts parts;
+    tm_status status = tm_tet_parts_cut(&parts, mesh, size, what->round, error);
     bool *between = tm_new(nodes, sizeof *between);
-    if (status == TM_OK && (!r->one || !between))
+    if (status == TM_OK && !between)
         status = tm_fail_memory(error);
     if (status == TM_OK) {
-        tm_tet_parts_between(&r->parts, mesh, between);
-        r->due = *due;
-        r->between = round + 1 < ROUNDS ? between : NULL;
-        r->at.of = r->parts.count;
-        tm_parallel(threads, r->parts.count, improve_part, r);
-    }
-    for (size_t p = 0; status == TM_OK && p < r->parts.count; p++) {
-        if (r->one[p].status != TM_OK)
-            status = tm_fail_as(error, &r->one[p].error);
-        add_report(report, &r->one[p].report);
+        tm_tet_parts_between(&parts, mesh, between);
+        what->due = *due;
+        what->between = between;
+        status = tm_improve_round(what, &parts, report, error);
     }
     if (status == TM_OK)
-        status = tm_tet_parts_join(&r->parts, mesh, threads, error);
-    if (status == TM_OK && !find_due(mesh, due, between, nodes))
+        status = tm_tet_parts_join(&parts, mesh, threads, error);
+    if (status == TM_OK && !tm_improve_find_due(mesh, due, between, nodes))
         status = tm_fail_memory(error);
-    tm_tet_parts_free(&r->parts);
-    free(r->one);
+    tm_tet_parts_free(&parts);
     free(between);
     return status;
 }
@@ -165,16 +181,11 @@ static tm_status improve_rounds(tm_tet_mesh *mesh, const tm_improve_options *opt
     tm_status status = due ? TM_OK : tm_fail_memory(error);
     for (size_t v = 0; v < mesh->nodes && due; v++)
         due[v] = true;
-    for (unsigned round = 0; round < ROUNDS && status == TM_OK; round++) {
-        round_of_parts r = {.mesh = mesh,
-                            .options = *options,
-                            .engine = engine,
-                            .caller = pthread_self(),
-                            .at = {.what = "improving", .pass = round + 1}};
-        atomic_init(&r.done, 0);
-        if (options->max_growth > 0)
-            r.options.max_growth = fmax(1, (double)most / (double)mesh->tets);
-        status = improve_round(&r, mesh, size, round, &due, report, error);
+    for (unsigned round = 0; round < TM_IMPROVE_ROUNDS && status == TM_OK; round++) {
+        tm_improve_round_of what = {
+            .mesh = mesh, .options = *options, .engine = engine, .round = round};
+        tm_improve_limit_growth(&what.options, most, mesh->tets);
+        status = improve_round(&what, mesh, size, &due, report, error);
     }
     free(due);
     return status;
@@ -216,12 +227,11 @@ size_t tm_improve_count_bad_angles(const tm_tet_mesh *mesh, double degrees)
     return bad;
 }
 
-/* No part has become worse; that all are not, by the share that is bad, is looked at. */
-static bool is_worse(const tm_tet_mesh *mesh, const tm_improve_report *report)
+bool tm_improve_is_worse(const tm_improve_report *report, size_t tets)
 {
     const double before = (double)report->bad_before / (double)report->tets_before;
     return report->bad_after > report->bad_before ||
-           (double)report->bad_after > before * (double)mesh->tets;
+           (double)report->bad_after > before * (double)tets;
 }
 
 tm_status tm_improve_parts(tm_tet_mesh *mesh, const tm_improve_options *options,
@@ -238,7 +248,7 @@ tm_status tm_improve_parts(tm_tet_mesh *mesh, const tm_improve_options *options,
     if (status == TM_OK)
         status = improve_rounds(mesh, options, size, engine, report, error);
     report->bad_after = tm_improve_count_bad_angles(mesh, options->angle);
-    if (status == TM_OK && is_worse(mesh, report)) {
+    if (status == TM_OK && tm_improve_is_worse(report, mesh->tets)) {
         status = tm_tet_mesh_copy(mesh, &input, error);
         *report = nothing;
         report->bad_after = report->bad_before;

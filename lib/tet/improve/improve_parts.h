@@ -3,6 +3,7 @@
 #ifndef TM_IMPROVE_IMPROVE_PARTS_H
 #define TM_IMPROVE_IMPROVE_PARTS_H
 
+#include "../parts/parts.h"
 #include "improve.h"
 
 /* What improves one mesh as a whole. */
@@ -16,6 +17,37 @@ typedef tm_status tm_improve_engine(tm_tet_mesh *mesh, const tm_improve_options 
 tm_status tm_improve_parts(tm_tet_mesh *mesh, const tm_improve_options *options,
                            size_t size, tm_improve_engine *engine,
                            tm_improve_report *report, tm_error *error);
+
+/* What that is made of, for ranks that share a mesh (improve_ranks.c). */
+
+enum { TM_IMPROVE_ROUNDS = 5 };
+
+/* A round. */
+typedef struct tm_improve_round_of {
+    const tm_tet_mesh *mesh; /* of which the parts are */
+    tm_improve_options options;
+    tm_improve_engine *engine;
+    unsigned round;
+    const bool *due;     /* [nodes]: tetrahedra of these are worked on, but for */
+    const bool *between; /* [nodes]: those that have one of these, which wait */
+} tm_improve_round_of;
+
+/* Takes the parts and improves them; what was done is added to the report. */
+tm_status tm_improve_round(const tm_improve_round_of *what, const tm_tet_parts *parts,
+                           tm_improve_report *report, tm_error *error);
+
+void tm_improve_report_add(tm_improve_report *to, const tm_improve_report *more);
+
+/* Makes (*due)[nodes] what is due after a round: what was before it, when there were so
+ * many nodes, and has a node between parts; what came since was not. */
+bool tm_improve_find_due(const tm_tet_mesh *mesh, bool **due, const bool *between,
+                         size_t nodes);
+
+/* No more than `most` tetrahedra, if there is a limit, from so many on. */
+void tm_improve_limit_growth(tm_improve_options *options, size_t most, size_t tets);
+
+/* No part has become worse; that all are not, by the share that is bad, is looked at. */
+bool tm_improve_is_worse(const tm_improve_report *report, size_t tets);
 
 /* How many tetrahedra have a dihedral angle below so many degrees, or above 180 less
  * that. */

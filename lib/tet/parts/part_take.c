@@ -160,10 +160,11 @@ static bool connect(const taking *take)
     return true;
 }
 
+static const uint8_t end[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+
 /* Rows of .edge that are edges of tetrahedra of the part. */
 static bool add_edges(const taking *take)
 {
-    static const uint8_t end[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
     const uint8_t *has_edge = take->parts->has_edge;
     tm_tet_mesh *to = take->to;
     for (size_t k = 0; has_edge && k < 6 * to->slots; k++) {
@@ -187,21 +188,19 @@ static bool add_edges(const taking *take)
     return true;
 }
 
-/* Edges that are locked in the mesh. */
+/* Edges of tetrahedra of the part that are locked in the mesh. */
 static bool copy_locked(const taking *take)
 {
     const tm_edge_map *locked = &take->from->locked;
-    for (size_t s = 0; s < locked->room; s++) {
-        const uint64_t key = locked->slot[s].key;
-        if (key == 0)
+    tm_tet_mesh *to = take->to;
+    for (size_t k = 0; locked->count > 0 && k < 6 * to->slots; k++) {
+        const uint32_t *n = to->tet[k / 6];
+        const uint32_t a = n[end[k % 6][0]], b = n[end[k % 6][1]];
+        if (!tm_edge_map_get(locked, take->part->node[a], take->part->node[b]))
             continue;
-        const uint32_t a = *find_node(take, (uint32_t)(key >> 32));
-        const uint32_t b = *find_node(take, (uint32_t)key);
-        if (a == TM_HASH_FREE || b == TM_HASH_FREE)
-            continue;
-        if (!tm_edge_map_reserve(&take->to->locked, 1))
+        if (!tm_edge_map_reserve(&to->locked, 1))
             return false;
-        tm_edge_map_put(&take->to->locked, a, b, 0);
+        tm_edge_map_put(&to->locked, a, b, 0);
     }
     return true;
 }

@@ -9,9 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A point as the round's curve sees it: turned about three axes, another way in each
- * round, so that planes where parts end cross those of the round before. */
-static void turn(const double p[3], unsigned round, double q[3])
+void tm_tet_parts_turn(const double p[3], unsigned round, double q[3])
 {
     memcpy(q, p, 3 * sizeof *q);
     for (int axis = 0; axis < 3 && round > 0; axis++) {
@@ -30,7 +28,7 @@ static bool find_order(tm_tet_parts *parts, const tm_tet_mesh *mesh, unsigned ro
     tm_curve_point *placed = tm_new(mesh->tets, sizeof *placed);
     size_t count = 0;
     for (size_t v = 0; v < mesh->nodes && xyz; v++)
-        turn(mesh->xyz[v], round, xyz[v]);
+        tm_tet_parts_turn(mesh->xyz[v], round, xyz[v]);
     const tm_space space = xyz ? tm_space_around((const double(*)[3])xyz, mesh->nodes)
                                : (tm_space){.cells = 0};
     for (uint32_t t = 0; t < mesh->slots && placed && xyz; t++)
@@ -47,7 +45,7 @@ static bool find_order(tm_tet_parts *parts, const tm_tet_mesh *mesh, unsigned ro
     return done;
 }
 
-static bool note_edges(tm_tet_parts *parts, const tm_tet_mesh *mesh)
+bool tm_tet_parts_note_edges(tm_tet_parts *parts, const tm_tet_mesh *mesh)
 {
     if (mesh->edges == 0)
         return true;
@@ -59,16 +57,21 @@ static bool note_edges(tm_tet_parts *parts, const tm_tet_mesh *mesh)
     return parts->has_edge && parts->taken;
 }
 
+size_t tm_tet_parts_count(size_t tets, size_t size)
+{
+    return tets > size ? 4 * ((tets + 4 * size - 1) / (4 * size)) : 1;
+}
+
 tm_status tm_tet_parts_cut(tm_tet_parts *parts, const tm_tet_mesh *mesh, size_t size,
                            unsigned round, tm_error *error)
 {
-    const size_t tets = mesh->tets, fours = (tets + 4 * size - 1) / (4 * size);
-    *parts = (tm_tet_parts){.count = tets > size ? 4 * fours : 1};
+    const size_t tets = mesh->tets;
+    *parts = (tm_tet_parts){.count = tm_tet_parts_count(tets, size)};
     parts->order = tm_new(tets, sizeof *parts->order);
     parts->place = tm_new(mesh->slots, sizeof *parts->place);
     parts->part = calloc(parts->count, sizeof *parts->part);
     if (!parts->order || !parts->place || !parts->part ||
-        !find_order(parts, mesh, round) || !note_edges(parts, mesh))
+        !find_order(parts, mesh, round) || !tm_tet_parts_note_edges(parts, mesh))
         return tm_fail_memory(error);
     for (size_t p = 0; p < parts->count; p++) {
         parts->part[p].first = (uint32_t)(tets * p / parts->count);

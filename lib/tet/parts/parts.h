@@ -35,15 +35,25 @@ tm_status tm_tet_parts_cut(tm_tet_parts *parts, const tm_tet_mesh *mesh, size_t 
                            unsigned round, tm_error *error);
 void tm_tet_parts_free(tm_tet_parts *parts);
 
+/* What that is made of, for a mesh of which a process has only a share. How many parts: */
+size_t tm_tet_parts_count(size_t tets, size_t size);
+
+/* A point as the round's curve sees it: turned about three axes, another way in each
+ * round, so that planes where parts end cross those of the round before. */
+void tm_tet_parts_turn(const double p[3], unsigned round, double q[3]);
+
+/* Fills has_edge and taken; false where memory is out. */
+bool tm_tet_parts_note_edges(tm_tet_parts *parts, const tm_tet_mesh *mesh);
+
 /* Makes part p a mesh: tetrahedra in the order of the cut, each node with its attributes
  * and markers, faces and edges that it has. Different parts may be taken at a time.
- * Expected O(tetrahedra of the part + locked edges of the mesh). */
+ * Expected O(tetrahedra of the part). */
 tm_status tm_tet_part_take(const tm_tet_parts *parts, size_t p, const tm_tet_mesh *mesh,
                            tm_error *error);
 
 /* Makes *mesh what the parts have become, and empties them. Nodes keep their numbers, new
- * ones come behind; tetrahedra are in the order of the parts, without dead slots. The
- * mesh cannot be given back after an error, only freed. O(n). */
+ * ones come behind, part by part; tetrahedra are in the order of the parts, without dead
+ * slots. The mesh cannot be given back after an error, only freed. O(n). */
 tm_status tm_tet_parts_join(tm_tet_parts *parts, tm_tet_mesh *mesh, unsigned threads,
                             tm_error *error);
 

@@ -45,7 +45,7 @@ static bool join_nodes(joining *join, tm_tet_part *part)
             continue;
         }
         if (v >= part->nodes)
-            node[v] = tm_tet_mesh_new_node(join->mesh, from->xyz[v]);
+            node[v] = (uint32_t)join->mesh->nodes++;
         tm_tet_copy_node(join->mesh, node[v], from, v);
     }
     return true;
