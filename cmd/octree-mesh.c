@@ -481,10 +481,11 @@ static bool make_together(filter *f, settings *o, tm_surface *surface, tm_slices
     if (alone)
         filter_verbose(f, "the octants have hollows, or pieces that the surface has not: "
                           "rank 0 goes on alone");
-    if (alone && tm_rank() > 0)
-        exit(EXIT_SUCCESS);
+    const bool first = tm_rank() == 0;
     if (alone)
         tm_ranks_leave();
+    if (!first && alone)
+        exit(EXIT_SUCCESS);
     return !alone;
 }
 

@@ -41,12 +41,8 @@ tm_status tm_ranks_start(tm_error *error);
 unsigned tm_rank(void);
 unsigned tm_ranks_count(void);
 
-<<<<<<< HEAD
-/* From here on this rank is alone, with the number 0; the others are to end. */
-=======
 /* Ends what tm_ranks_start() began: each rank is alone then, rank 0 of 1, to go on or to
  * end as it likes. */
->>>>>>> 4b5fbd58435f35b2588f01d736bc636c57410d76
 void tm_ranks_leave(void);
 
 /* Ends all ranks at once with that exit status, whatever the others do. */

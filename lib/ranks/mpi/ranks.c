@@ -43,14 +43,9 @@ unsigned tm_ranks_count(void)
 
 void tm_ranks_leave(void)
 {
-<<<<<<< HEAD
-    world.rank = 0;
-    world.count = 1;
-=======
     tm_mpi_finish();
     world.count = 1;
     world.rank = 0;
->>>>>>> 4b5fbd58435f35b2588f01d736bc636c57410d76
 }
 
 void tm_ranks_end(int status)
