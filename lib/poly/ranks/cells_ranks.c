@@ -9,7 +9,7 @@
 #include <string.h>
 
 /* root[rows.count]: the root of the region of each of this rank's tetrahedra. */
-static tm_status find_roots(const tm_sorted_tets *s, const tm_tet_share *share,
+static tm_status find_roots(const tm_sorted_tets *s, const tm_poly_tets *share,
                             const tm_poly_options *options, uint32_t *root,
                             size_t *regions, tm_error *error)
 {
@@ -112,7 +112,7 @@ static tm_status send_spanning(const tm_sorted_tets *s, const uint32_t *root,
         for (size_t i = 0; i < 4; i++) {
             const size_t v = tm_number_set_below(&s->nodes.set, record[i]);
             if (last[v] != to)
-                tm_tet_share_ask(asking, s, v, to);
+                tm_poly_tets_ask(asking, s, v, to);
             last[v] = to;
         }
     }
@@ -135,7 +135,7 @@ static tm_status list_roots(regions_here *h, tm_error *error)
 
 /* Takes the regions apart; what each tetrahedron is in is named by the first one in it,
  * and told to who has it. */
-static tm_status take_apart(const regions_here *h, const tm_tet_share *share,
+static tm_status take_apart(const regions_here *h, const tm_poly_tets *share,
                             const tm_sorted_tets *s, const tm_poly_options *options,
                             tm_poly_report *report, uint32_t *name, tm_error *error)
 {
@@ -216,7 +216,7 @@ static void add_up(tm_poly_report *report, size_t tets, size_t regions, size_t c
 }
 
 /* Takes apart the regions of which this rank has all. */
-static tm_status take_own(const tm_sorted_tets *s, const tm_tet_share *share,
+static tm_status take_own(const tm_sorted_tets *s, const tm_poly_tets *share,
                           const uint32_t *root, const bool *spans,
                           const tm_poly_options *options, tm_poly_report *report,
                           uint32_t *name, tm_error *error)
@@ -239,14 +239,14 @@ static tm_status take_spanning(const tm_sorted_tets *s, const tm_homes *homes,
                                uint32_t *name, tm_error *error)
 {
     regions_here here = {0};
-    tm_tet_share share = {0};
+    tm_poly_tets share = {0};
     tm_post asking = {0};
     bool odd = false;
     tm_status status = send_spanning(s, root, spans, &here, &asking, error);
     if (status == TM_OK)
         status = list_roots(&here, error);
     if (status == TM_OK)
-        status = tm_tet_share_make(&share, &asking, homes, slices, &odd, options, error);
+        status = tm_poly_tets_make(&share, &asking, homes, slices, &odd, options, error);
     if (status == TM_OK && odd)
         status = tm_fail(error, TM_ERROR_INTERNAL, "what was a mesh is none");
     if (status == TM_OK) {
@@ -254,14 +254,14 @@ static tm_status take_spanning(const tm_sorted_tets *s, const tm_homes *homes,
             tm_ignore_markers(&share.mesh);
         status = take_apart(&here, &share, s, options, report, name, error);
     }
-    tm_tet_share_free(&share);
+    tm_poly_tets_free(&share);
     free_regions(&here);
     return status;
 }
 
 tm_status tm_rank_cells_make(tm_rank_cells *cells, const tm_sorted_tets *sorted,
                              const tm_homes *homes, const tm_tet_slices *slices,
-                             const tm_tet_share *share, const tm_poly_options *options,
+                             const tm_poly_tets *share, const tm_poly_options *options,
                              bool ignore_markers, tm_poly_report *report, tm_error *error)
 {
     const size_t count = sorted->rows.count;

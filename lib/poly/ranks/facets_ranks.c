@@ -13,7 +13,7 @@ enum { CELL, OTHER, NODES, MARKER = NODES + 3, WORDS };
 
 typedef struct making {
     const tm_sorted_tets *sorted;
-    const tm_tet_share *share;
+    const tm_poly_tets *share;
     const uint32_t *cell; /* [share->mesh.slots] */
     tm_rows cells;
     size_t lost;
@@ -142,7 +142,7 @@ static tm_status count_tets(const tm_rank_cells *cells, const tm_sorted_tets *s,
 }
 
 tm_status tm_rank_facets(const tm_rank_cells *cells, const tm_sorted_tets *sorted,
-                         const tm_tet_slices *slices, const tm_tet_share *share,
+                         const tm_tet_slices *slices, const tm_poly_tets *share,
                          tm_block *facet, tm_block *cell, size_t *before, size_t *facets,
                          size_t *lost, tm_error *error)
 {

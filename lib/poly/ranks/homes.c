@@ -189,7 +189,7 @@ static tm_status answer(const tm_homes *h, const tm_at_home *at, const uint32_t 
     return status;
 }
 
-void tm_tet_share_ask(tm_post *asking, const tm_sorted_tets *sorted, size_t node,
+void tm_poly_tets_ask(tm_post *asking, const tm_sorted_tets *sorted, size_t node,
                       unsigned rank)
 {
     tm_post_put(asking, sorted->home[node],
@@ -213,7 +213,7 @@ static bool put_in_order(uint32_t **item, size_t items, size_t words, tm_number_
     return made;
 }
 
-static tm_status fill_tets(tm_tet_share *share, const uint32_t *item, size_t words,
+static tm_status fill_tets(tm_poly_tets *share, const uint32_t *item, size_t words,
                            const tm_tet_slices *slices, tm_number_set *nodes,
                            tm_error *error)
 {
@@ -247,7 +247,7 @@ static tm_status fill_tets(tm_tet_share *share, const uint32_t *item, size_t wor
 }
 
 /* The rows of .face that name only nodes which are here. */
-static bool fill_faces(tm_tet_share *share, const uint32_t *item, size_t items,
+static bool fill_faces(tm_poly_tets *share, const uint32_t *item, size_t items,
                        const tm_number_set *nodes)
 {
     tm_tet_mesh *mesh = &share->mesh;
@@ -268,14 +268,14 @@ static bool fill_faces(tm_tet_share *share, const uint32_t *item, size_t items,
     return true;
 }
 
-tm_status tm_tet_share_make(tm_tet_share *share, tm_post *asking, const tm_homes *homes,
+tm_status tm_poly_tets_make(tm_poly_tets *share, tm_post *asking, const tm_homes *homes,
                             const tm_tet_slices *slices, bool *odd,
                             const tm_poly_options *options, tm_error *error)
 {
     uint32_t *asked = NULL, *tet = NULL, *face = NULL;
     size_t words = 0, tets = 0, faces = 0;
     tm_number_set here = {0}, rows = {0};
-    *share = (tm_tet_share){.mesh = {.first_dead = TM_NONE}};
+    *share = (tm_poly_tets){.mesh = {.first_dead = TM_NONE}};
     tm_status status = tm_post_deliver(asking, &asked, &words, error);
     if (status == TM_OK)
         status = answer(homes, &homes->tet, asked, words / 2, &tet, &tets, error);
@@ -304,7 +304,7 @@ tm_status tm_tet_share_make(tm_tet_share *share, tm_post *asking, const tm_homes
     return status;
 }
 
-void tm_tet_share_free(tm_tet_share *share)
+void tm_poly_tets_free(tm_poly_tets *share)
 {
     tm_tet_mesh_free(&share->mesh);
     tm_number_set_free(&share->tet);

@@ -62,21 +62,21 @@ tm_status tm_homes_make(tm_homes *homes, const tm_sorted_tets *sorted,
 void tm_homes_free(tm_homes *homes);
 
 /* A mesh of all tetrahedra that have some nodes: in the order and with neighbours. */
-typedef struct tm_tet_share {
+typedef struct tm_poly_tets {
     tm_tet_mesh mesh;
     tm_number_set tet; /* which ones they are */
     uint32_t *node;    /* [mesh.nodes]: their numbers */
-} tm_tet_share;
+} tm_poly_tets;
 
 /* Asks for what is at a node, of the tetrahedra that this rank has, for a rank. */
-void tm_tet_share_ask(tm_post *asking, const tm_sorted_tets *sorted, size_t node,
+void tm_poly_tets_ask(tm_post *asking, const tm_sorted_tets *sorted, size_t node,
                       unsigned rank);
 
 /* Of all nodes that were asked for. *odd is set where they are no mesh. */
-tm_status tm_tet_share_make(tm_tet_share *share, tm_post *asking, const tm_homes *homes,
+tm_status tm_poly_tets_make(tm_poly_tets *share, tm_post *asking, const tm_homes *homes,
                             const tm_tet_slices *slices, bool *odd,
                             const tm_poly_options *options, tm_error *error);
-void tm_tet_share_free(tm_tet_share *share);
+void tm_poly_tets_free(tm_poly_tets *share);
 
 /* cells_ranks.c: cell[sorted->rows.count] are the numbers of the cells of this rank's
  * tetrahedra; *first[…], to be freed, whether one is the first of its cell. `share` has
@@ -89,7 +89,7 @@ typedef struct tm_rank_cells {
 
 tm_status tm_rank_cells_make(tm_rank_cells *cells, const tm_sorted_tets *sorted,
                              const tm_homes *homes, const tm_tet_slices *slices,
-                             const tm_tet_share *share, const tm_poly_options *options,
+                             const tm_poly_tets *share, const tm_poly_options *options,
                              bool ignore_markers, tm_poly_report *report,
                              tm_error *error);
 
@@ -97,7 +97,7 @@ tm_status tm_rank_cells_make(tm_rank_cells *cells, const tm_sorted_tets *sorted,
  * rank's cells, from *before on, and .cell, whose are slices. *facets and *lost of all.
  */
 tm_status tm_rank_facets(const tm_rank_cells *cells, const tm_sorted_tets *sorted,
-                         const tm_tet_slices *slices, const tm_tet_share *share,
+                         const tm_tet_slices *slices, const tm_poly_tets *share,
                          tm_block *facet, tm_block *cell, size_t *before, size_t *facets,
                          size_t *lost, tm_error *error);
 

@@ -59,18 +59,18 @@ static tm_status check_edges(const tm_tet_slices *slices, bool *odd, tm_error *e
 }
 
 /* What is at the tetrahedra that this rank has. */
-static tm_status take_share(tm_tet_share *share, const tm_sorted_tets *s,
+static tm_status take_share(tm_poly_tets *share, const tm_sorted_tets *s,
                             const tm_homes *homes, const tm_tet_slices *slices,
                             const tm_poly_options *options, bool *odd, tm_error *error)
 {
     tm_post asking = {0};
     for (size_t v = 0; v < s->nodes.set.count; v++)
-        tm_tet_share_ask(&asking, s, v, tm_rank());
-    return tm_tet_share_make(share, &asking, homes, slices, odd, options, error);
+        tm_poly_tets_ask(&asking, s, v, tm_rank());
+    return tm_poly_tets_make(share, &asking, homes, slices, odd, options, error);
 }
 
 /* Whether an edge of this rank's tetrahedra is locked; those of others may seem to be. */
-static bool touches_itself(const tm_tet_share *share, uint32_t own, size_t count)
+static bool touches_itself(const tm_poly_tets *share, uint32_t own, size_t count)
 {
     const tm_tet_mesh *mesh = &share->mesh;
     if (mesh->locked.count == 0)
@@ -84,7 +84,7 @@ static bool touches_itself(const tm_tet_share *share, uint32_t own, size_t count
 }
 
 /* Whether something is odd: each row of .face is to be a face that stays. */
-static bool is_odd(const tm_tet_share *share, const tm_sorted_tets *s, size_t faces)
+static bool is_odd(const tm_poly_tets *share, const tm_sorted_tets *s, size_t faces)
 {
     const tm_tet_mesh *mesh = &share->mesh;
     const uint32_t own = tm_number_set_below(&share->tet, (uint32_t)s->rows.first);
@@ -129,7 +129,7 @@ static tm_status put_blocks(tm_slices *slices, tm_block made[2], size_t before,
 typedef struct working {
     tm_sorted_tets sorted;
     tm_homes homes;
-    tm_tet_share share;
+    tm_poly_tets share;
     tm_rank_cells cells;
 } working;
 
@@ -180,7 +180,7 @@ tm_status tm_polyhedra_ranks(tm_slices *slices, const tm_poly_options *options,
         status = tm_rank_facets(&w.cells, &w.sorted, &blocks, &w.share, &made[0],
                                 &made[1], &before, &report->facets, &report->lost, error);
     tm_sorted_tets_free(&w.sorted);
-    tm_tet_share_free(&w.share);
+    tm_poly_tets_free(&w.share);
     free(w.cells.cell);
     free(w.cells.first);
     if (status == TM_OK && !*odd)
