@@ -479,12 +479,13 @@ static bool make_together(filter *f, settings *o, tm_surface *surface, tm_slices
     tm_octree_mesh_free(&mesh);
     tm_octree_share_free(&share);
     if (alone)
-        filter_verbose(f, "the octants have hollows, or pieces that the surface has not: "
+        filter_verbose(f, "the octants have hollows, which may be regions: "
                           "rank 0 goes on alone");
-    if (alone && tm_rank() > 0)
-        exit(EXIT_SUCCESS);
+    const bool first = tm_rank() == 0;
     if (alone)
         tm_ranks_leave();
+    if (!first && alone)
+        exit(EXIT_SUCCESS);
     return !alone;
 }
 

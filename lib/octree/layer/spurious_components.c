@@ -38,7 +38,7 @@ static tm_status share_list(const tm_boundary_view *view, void **list, size_t *c
         free(*list);
         *list = all;
     }
-    if (status == TM_OK && *count > 0)
+    if (status == TM_OK && *list && *count > 0)
         qsort(*list, *count, size, compare);
     return status;
 }
