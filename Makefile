@@ -56,7 +56,7 @@ else
 left_out := octree-mesh octree-repair lib/ranks/mpi/start.c \
 	$(wildcard $(addsuffix /*.c,$(addprefix lib/octree/,share interior feature layer repair))) \
 	$(shell grep -lE '^.include.*(p[48]est|brick\.h|octree_estimate|mpi_start)' lib/octree/forest/*.c) \
-	$(basename $(notdir $(shell grep -lE 'octree_build|octree/(share|interior|feature|layer|repair)|(octree|repair)_fixture' \
+	$(basename $(notdir $(shell grep -lE 'octree_build|octree/(share|interior|feature|layer|repair)|(mend|octree|repair)_fixture' \
 		tests/unit/test_*.c tests/fuzz/targets/*.c)))
 endif
 

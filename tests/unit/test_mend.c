@@ -3,6 +3,79 @@
 #include "mend_fixture.h"
 
 #include <malloc.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Nodes get their number as marker and a linear function of their place as attribute,
+ * triangles one of a few markers. */
+enum { MARKERS = 3 };
+
+static double field(const double p[3])
+{
+    return p[0] + 2 * p[1] - p[2];
+}
+
+static void mark(tm_stream *stream)
+{
+    tm_block *node = tm_stream_find(stream, ".node");
+    tm_block *face = tm_stream_find(stream, ".face");
+    double *value = malloc((node->count + 1) * sizeof *value);
+    node->marker = malloc((node->count + 1) * sizeof *node->marker);
+    node->markers = true;
+    face->marker = malloc((face->count + 1) * sizeof *face->marker);
+    face->markers = true;
+    for (size_t v = 0; v < node->count; v++) {
+        node->marker[v] = (int32_t)v;
+        value[v] = field(node->real + 3 * v);
+    }
+    for (size_t t = 0; t < face->count; t++)
+        face->marker[t] = 1 + (int32_t)random_below(MARKERS);
+    assert_int_equal(tm_block_add_attribute(node, value, NULL), TM_OK);
+    free(value);
+}
+
+/* No node is another one or elsewhere, and what it has came with it; triangles that were
+ * made have the marker of one that was there. */
+static void check_marks(const tm_stream *stream, const double *place)
+{
+    const tm_block *node = tm_stream_find(stream, ".node");
+    const tm_block *face = tm_stream_find(stream, ".face");
+    for (size_t v = 0; v < node->count; v++) {
+        const double *p = node->real + 3 * v;
+        assert_memory_equal(p, place + 3 * node->marker[v], 3 * sizeof *p);
+        assert_true(node->attribute[v] == field(p));
+        assert_true(v == 0 || node->marker[v] > node->marker[v - 1]);
+    }
+    for (size_t t = 0; t < face->count; t++)
+        assert_in_range(face->marker[t], 1, MARKERS);
+}
+
+static void test_marks(void **state)
+{
+    (void)state;
+    enum { ROUNDS = 1000 };
+    for (int round = 0; round < ROUNDS; round++) {
+        tm_polygon_surface p;
+        tm_stream stream;
+        tm_mend_report report;
+        tm_error error;
+        tm_polygon_surface_init(&p);
+        add_random_cubes(&p);
+        assert_true(take_triangles(&stream, &p));
+        change_corners(&stream);
+        mark(&stream);
+        const tm_block *node = tm_stream_find(&stream, ".node");
+        const size_t size = 3 * node->count * sizeof *node->real;
+        double *place = malloc(size);
+        memcpy(place, node->real, size);
+        const tm_mend_options options = random_mend_options();
+        assert_ok(tm_mend(&stream, &options, &report, &error), &error);
+        check_mended(&stream, &report);
+        check_marks(&stream, place);
+        free(place);
+        tm_stream_free(&stream);
+    }
+}
 
 static void test_random(void **state)
 {
@@ -69,6 +142,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_random),
         cmocka_unit_test(test_fins),
+        cmocka_unit_test(test_marks),
     };
     random_start();
     mallopt(M_PERTURB, 1); /* memory that was not set has no 0 */

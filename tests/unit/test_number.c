@@ -218,9 +218,21 @@ static void nine_digits_are_enough_for_a_float(void **state)
     }
 }
 
+/* What is halfway goes to the even digit, whichever the digit is. */
+static void ties_go_to_even(void **state)
+{
+    (void)state;
+    for (int tens = 1; tens < 100; tens++) {
+        char text[TM_DOUBLE_CHARS + 1];
+        *tm_write_rounded(text, tens + 0.5, tens < 10 ? 1 : 2) = '\0';
+        assert_true(strtod(text, NULL) == tens + tens % 2);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(ties_go_to_even),
         cmocka_unit_test(writes_the_shorter_form),
         cmocka_unit_test(every_exponent),
         cmocka_unit_test(random_values),

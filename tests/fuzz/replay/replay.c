@@ -9,25 +9,37 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 
-/* The bytes are where reading one more is an error that a sanitizer sees. */
+/* The whole of a file; NULL with errno where it cannot be read. The bytes are where
+ * reading one more is an error that a sanitizer sees. */
+static uint8_t *read_file(FILE *file, size_t *size)
+{
+    if (fseek(file, 0, SEEK_END) != 0)
+        return NULL;
+    const long end = ftell(file);
+    if (end < 0 || fseek(file, 0, SEEK_SET) != 0)
+        return NULL;
+    *size = (size_t)end;
+    uint8_t *bytes = malloc(*size + !*size);
+    if (bytes && fread(bytes, 1, *size, file) != *size) {
+        free(bytes);
+        return NULL;
+    }
+    return bytes;
+}
+
 static int replay(const char *name)
 {
     FILE *file = fopen(name, "rb");
-    long size = -1;
-    uint8_t *bytes = NULL;
-    if (file && fseek(file, 0, SEEK_END) == 0)
-        size = ftell(file);
-    if (size >= 0)
-        bytes = malloc((size_t)size + !size);
-    if (!bytes || fseek(file, 0, SEEK_SET) != 0 ||
-        fread(bytes, 1, (size_t)size, file) != (size_t)size) {
+    size_t size = 0;
+    uint8_t *bytes = file ? read_file(file, &size) : NULL;
+    if (!bytes)
         perror(name);
-        free(bytes);
+    if (file)
+        fclose(file);
+    if (!bytes)
         return EXIT_FAILURE;
-    }
-    fclose(file);
     fprintf(stderr, "%s\n", name);
-    LLVMFuzzerTestOneInput(bytes, (size_t)size);
+    LLVMFuzzerTestOneInput(bytes, size);
     free(bytes);
     return EXIT_SUCCESS;
 }
