@@ -8,6 +8,8 @@
 #                        in build/san; SAN=thread: under the one for threads, in
 #                        build/san-thread; TM_SEED repeats the random ones
 #   make fuzz            damaged input for every filter; FUZZ_CASES of it, TM_SEED
+#   make limits          in a build in which few things can be numbered, what is more is
+#                        refused
 #   make bench           all of tests/bench
 #   make lint            what the compiler does not see; make format mends its part
 #   make warnings        compiles all with all compilers and levels of optimisation
@@ -139,7 +141,7 @@ pages := $(wildcard man/*.[157])
 sources := $(wildcard lib/*.h lib/*/*.[ch] lib/*/*/*.[ch] lib/*/*/*/*.[ch] \
 	$(filter_sources) cmd/common/*/*.[ch] tests/*/*.[ch] tests/*/*.cc examples/*.c examples/*.cc)
 
-.PHONY: all filters tests check benchers bench fuzz lint warnings format install uninstall clean
+.PHONY: all filters tests check benchers bench fuzz lint warnings limits format install uninstall clean
 .SECONDARY:
 
 all: $(bin) $(rank_bin) $(scripts) $(completions) $(library) $(shared)
@@ -296,6 +298,10 @@ lint: $(generated) $(BUILD)/generated/null_error.h
 
 warnings:
 	sh tests/warnings.sh $(BUILD)
+
+limits: all $(shapes)
+	$(MAKE) BUILD=$(BUILD)/limits CPPFLAGS="$(CPPFLAGS) -DTM_IDS=16000u" filters
+	sh tests/limits.sh $(BUILD) $(BUILD)/limits
 
 format:
 	clang-format -i $(sources)

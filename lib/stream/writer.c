@@ -6,6 +6,7 @@
 #include "../number/digits.h"
 #include "../text/file.h"
 #include "../number/number.h"
+#include "../base/ids.h"
 #include "../base/parallel.h"
 #include "block.h"
 #include "group_names.h"
@@ -222,6 +223,9 @@ static tm_status write_block(const tm_block *block, unsigned base, int fd,
 {
     if (block->kind == TM_UNKNOWN)
         return tm_write_text(fd, &block->text, error);
+    if (block->count >= TM_IDS)
+        return tm_fail_at(error, TM_ERROR_SYSTEM, NULL, 0, block->name,
+                          "%zu rows, more than 32 bits can number", block->count);
     tm_text *text = calloc(threads, sizeof *text);
     if (!text)
         return tm_fail_memory(error);
