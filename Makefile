@@ -298,7 +298,7 @@ lint: $(generated) $(BUILD)/generated/null_error.h
 warnings:
 	sh tests/warnings.sh $(BUILD)
 
-limits: all $(shapes)
+limits: all
 	$(MAKE) BUILD=$(BUILD)/limits CPPFLAGS="$(CPPFLAGS) -DTM_IDS=16000u" filters
 	sh tests/limits.sh $(BUILD) $(BUILD)/limits
 

@@ -49,12 +49,13 @@ run() {
 }
 
 in=$work/in
-shapes gear >gear.off
-for volume in 0.003 0.0007 0.0002; do
-    tetgen-mesh --quiet -q1.4 -a "$volume" gear.off >tets.tm
+printf '%s\n' OFF '8 6 0' '0 0 0' '1 0 0' '0 1 0' '1 1 0' '0 0 1' '1 0 1' '0 1 1' '1 1 1' \
+    '4 0 2 3 1' '4 4 5 7 6' '4 0 1 5 4' '4 2 6 7 3' '4 0 4 6 2' '4 1 3 7 5' >cube.off
+for volume in 0.01 0.001 0.0004; do
+    tetgen-mesh --quiet -q1.4 -a "$volume" cube.off >tets.tm
     off-export --quiet tets.tm >skin.off
     polylla3d --quiet tets.tm >cells.tm
-    run tetgen-mesh -q1.4 -a "$volume" "$in/gear.off"
+    run tetgen-mesh -q1.4 -a "$volume" "$in/cube.off"
     for filter in tet-stats jens-stats mesh-check mesh-view lepp-improve polylla3d poly-dual \
         abaqus-export medit-export vtk-export vtu-export visf-export off-export; do
         run "$filter" "$in/tets.tm"
@@ -72,10 +73,10 @@ for volume in 0.003 0.0007 0.0002; do
     done
 done
 if command -v octree-mesh >/dev/null; then
-    for level in 3 4 5; do
-        octree-mesh --quiet -s "$level" gear.off >mixed.tm || continue
-        run octree-mesh -s "$level" "$in/gear.off"
-        run octree-mesh -s "$level" --polyhedra "$in/gear.off"
+    for level in 2 3 4; do
+        octree-mesh --quiet -a "$level" cube.off >mixed.tm || continue
+        run octree-mesh -a "$level" "$in/cube.off"
+        run octree-mesh -a "$level" --polyhedra "$in/cube.off"
         for filter in octree-repair mesh-check jens-stats polylla3d oct-export vtk-export \
             m3d-export visf-export; do
             run "$filter" "$in/mixed.tm"
