@@ -11,6 +11,8 @@
 #   make fuzz            damaged input for every filter, FUZZ_CASES of it, TM_SEED; then
 #                        tests/fuzz/targets by libFuzzer, which clang has: each for
 #                        FUZZ_SECONDS, FUZZ_TARGETS: only those
+#   make limits          in a build in which few things can be numbered, what is more is
+#                        refused
 #   make bench           all of tests/bench
 #   make lint            what the compiler does not see; make format mends its part
 #   make warnings        compiles all with all compilers and levels of optimisation
@@ -162,8 +164,8 @@ pages := $(wildcard man/*.[157])
 sources := $(wildcard lib/*.h lib/*/*.[ch] lib/*/*/*.[ch] lib/*/*/*/*.[ch] \
 	$(filter_sources) cmd/common/*/*.[ch] tests/*/*.[ch] tests/*/*/*.[ch] tests/*/*.cc examples/*.c examples/*.cc)
 
-.PHONY: all filters tests check coverage benchers bench fuzz lint warnings format install \
-	uninstall clean
+.PHONY: all filters tests check coverage benchers bench fuzz lint warnings limits format \
+	install uninstall clean
 .SECONDARY:
 
 all: $(bin) $(rank_bin) $(scripts) $(completions) $(library) $(shared)
@@ -311,7 +313,6 @@ $(rank_tests): $(BUILD)/ranks/%: $(BUILD)/tests/ranks/%.o $(ranks_object) $(libr
 tests: all $(rank_tests) $(unit_tests) $(oracles) $(fuzzer) $(replays) $(faults) $(solver) \
 		$(shapes)
 
-check: export FAULTS := $(filter-out 0,$(FAULTS))
 check: tests
 	sh tests/run.sh $(BUILD) $(ONLY)
 
@@ -352,6 +353,10 @@ lint: $(generated) $(BUILD)/generated/null_error.h
 
 warnings:
 	sh tests/warnings.sh $(BUILD)
+
+limits: all
+	$(MAKE) BUILD=$(BUILD)/limits CPPFLAGS="$(CPPFLAGS) -DTM_IDS=16000u" filters
+	sh tests/limits.sh $(BUILD) $(BUILD)/limits
 
 format:
 	clang-format -i $(sources)

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/extern_c.h"
 #include "base/hash.h"
+#include "base/ids.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/stop.h"

@@ -2,6 +2,7 @@
 #include "mesh_format.h"
 
 #include "../base/array.h"
+#include "../base/ids.h"
 #include "../element/shape.h"
 #include "../mesh/cell_faces.h"
 #include "scan.h"
@@ -46,7 +47,7 @@ typedef struct reader {
 
 static tm_status read_node(reader *r)
 {
-    if (r->nodes >= UINT32_MAX)
+    if (r->nodes >= TM_IDS)
         return tm_scan_fail(&r->scan, r->error, "more nodes than 32 bits can number");
     void *grown = tm_grow(r->xyz, &r->node_room, r->nodes + 1, sizeof *r->xyz);
     if (!grown)
@@ -130,7 +131,7 @@ static tm_status read_element(reader *r)
 
 static tm_status read_elements(reader *r, int64_t count)
 {
-    if (count >= UINT32_MAX)
+    if (count >= TM_IDS)
         return tm_scan_fail(&r->scan, r->error, "more elements than 32 bits can number");
     tm_status status = TM_OK;
     for (int64_t e = 0; e < count && status == TM_OK; e++)

@@ -3,6 +3,7 @@
 #include "oct.h"
 
 #include "../base/array.h"
+#include "../base/ids.h"
 #include "../element/shape.h"
 #include "octant_triangles.h"
 #include "../surface/point_table.h"
@@ -148,7 +149,7 @@ static tm_status add_point(writer *w, const double place[3], uint32_t *id)
     if (!grown)
         return tm_fail_memory(w->error);
     w->grid = grown;
-    if (w->points >= UINT32_MAX)
+    if (w->points >= TM_IDS)
         return tm_fail(w->error, TM_ERROR_SYSTEM, "more points than 32 bits can number");
     for (int i = 0; i < 3; i++)
         w->grid[w->points][i] = place[i];
@@ -205,7 +206,7 @@ static tm_status add_edge(writer *w, uint32_t a, uint32_t b)
     w->middle = moved ? moved : w->middle;
     if (!grown || !moved)
         return tm_fail_memory(w->error);
-    if (w->edges >= UINT32_MAX)
+    if (w->edges >= TM_IDS)
         return tm_fail(w->error, TM_ERROR_SYSTEM, "more edges than 32 bits can number");
     const uint32_t e = (uint32_t)w->edges;
     uint32_t first;

@@ -2,6 +2,7 @@
 #include "tetgen.h"
 
 #include "../base/array.h"
+#include "../base/ids.h"
 #include "../geom/predicates.h"
 #include "../stream/group.h"
 #include "row_order.h"
@@ -71,7 +72,7 @@ static tm_status check_claim(reader *r, int64_t count)
         (double)(1 + tm_block_reals(block->kind) + tm_block_integers(block->kind) +
                  block->attributes + block->markers + r->middles);
     double left = (double)(r->scan->end - r->scan->at);
-    if ((double)count * columns * 2 > left + 2 || count >= UINT32_MAX)
+    if ((double)count * columns * 2 > left + 2 || count >= TM_IDS)
         return tm_scan_fail(r->scan, r->error,
                             "the header claims %lld rows, more than the rest of the file "
                             "can hold",

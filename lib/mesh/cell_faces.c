@@ -2,6 +2,7 @@
 #include "cell_faces.h"
 
 #include "../base/array.h"
+#include "../base/ids.h"
 #include "../geom/predicates.h"
 #include "../geom/vector.h"
 #include "../element/shape.h"
@@ -90,7 +91,7 @@ static int sign_of(const finder *find, size_t e)
 static tm_status make_room(finder *find, size_t facets, size_t nodes, tm_error *error)
 {
     tm_cell_faces *faces = find->faces;
-    if (facets >= UINT32_MAX)
+    if (facets >= TM_IDS)
         return tm_fail(error, TM_ERROR_SYSTEM, "more facets than 32 bits can number");
     void *side = tm_grow(faces->side, &find->side_room, facets, sizeof *faces->side);
     faces->side = side ? side : faces->side;

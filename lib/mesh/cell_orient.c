@@ -2,6 +2,7 @@
 #include "cell_orient.h"
 
 #include "../base/array.h"
+#include "../base/ids.h"
 #include "../geom/vector.h"
 #include "polygon_edges.h"
 
@@ -248,7 +249,7 @@ static tm_status check_sides(const orienter *o, tm_error *error)
 tm_status tm_cells_orient(const tm_polygon_cells *mesh, bool *inward, tm_error *error)
 {
     orienter o = {.mesh = mesh, .faces = mesh->cell_start[mesh->cells], .inward = inward};
-    if (o.faces >= UINT32_MAX)
+    if (o.faces >= TM_IDS)
         return tm_fail(error, TM_ERROR_SYSTEM, "more faces than 32 bits can number");
     tm_status status = orienter_new(&o) ? make_faces(&o, error) : tm_fail_memory(error);
     if (status == TM_OK)

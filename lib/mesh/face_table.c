@@ -6,6 +6,7 @@
 #include "face_table.h"
 
 #include "../base/array.h"
+#include "../base/ids.h"
 #include "../base/parallel.h"
 
 #include <stdlib.h>
@@ -14,7 +15,7 @@
 enum { TRIANGLE = 3, QUADRILATERAL = 4, TET_SHIFT = 2, MIXED_SHIFT = 3 };
 
 #define ROW          ((uint32_t)1 << 31)
-#define MOST_MEMBERS ((size_t)ROW)
+#define MOST_MEMBERS TM_IDS_HALF
 
 static inline uint32_t lesser(uint32_t a, uint32_t b)
 {

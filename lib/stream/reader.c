@@ -3,6 +3,8 @@
  * one block to another is checked by references.c when all is read. */
 #include "stream.h"
 
+#include "../base/ids.h"
+
 #include "../number/number.h"
 #include "block.h"
 #include "reader.h"
@@ -142,9 +144,9 @@ static tm_status read_header(reader *r, tm_block *block, size_t *rows)
             return FAIL(r, block->name, "the header is not %zu whole numbers",
                         shape->headers + 1);
         int is = i == 0 ? 0 : shape->header[i - 1];
-        if (i == 0 && (number < 0 || number >= TM_NONE))
+        if (i == 0 && (number < 0 || number >= TM_IDS))
             return FAIL(r, block->name, "a count of %lld (0…%lld)", (long long)number,
-                        (long long)TM_NONE - 1);
+                        (long long)TM_IDS - 1);
         if (is == TM_HEADER_ATTRIBUTES && (number < 0 || number > TM_ATTRIBUTES_MAX))
             return FAIL(r, block->name, "%lld attributes (0…%d)", (long long)number,
                         TM_ATTRIBUTES_MAX);

@@ -6,6 +6,7 @@
 #include "../number/digits.h"
 #include "../text/file.h"
 #include "../number/number.h"
+#include "../base/ids.h"
 #include "../base/parallel.h"
 #include "block.h"
 #include "group_names.h"
@@ -254,6 +255,10 @@ tm_status tm_put_rows(const tm_block *block, size_t before, unsigned base,
         return put_text(sink, &block->text, error);
     if (block->kind == TM_GROUP)
         return put_groups(block, base, sink, error);
+    if (before + block->count >= TM_IDS)
+        return tm_fail_at(error, TM_ERROR_SYSTEM, NULL, 0, block->name,
+                          "%zu rows, more than 32 bits can number",
+                          before + block->count);
     batch b = {.block = block,
                .base = base,
                .before = before,

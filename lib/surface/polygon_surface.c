@@ -2,6 +2,7 @@
 #include "polygon_surface.h"
 
 #include "../base/array.h"
+#include "../base/ids.h"
 #include "../geom/ears.h"
 
 #include <stdio.h>
@@ -54,8 +55,8 @@ static void *room(tm_polygon_surface *surface, int which, void *array, size_t co
 tm_status tm_polygon_surface_add_node(tm_polygon_surface *surface, const double xyz[3],
                                       tm_error *error)
 {
-    if (surface->nodes >= UINT32_MAX - 1)
-        return tm_fail(error, TM_ERROR_INPUT, "more than %u nodes", UINT32_MAX - 1);
+    if (surface->nodes >= TM_IDS - 1)
+        return tm_fail(error, TM_ERROR_INPUT, "more than %u nodes", TM_IDS - 1);
     double(*grown)[3] =
         room(surface, XYZ, surface->xyz, surface->nodes, sizeof *surface->xyz);
     if (!grown)
@@ -263,7 +264,7 @@ tm_status tm_polygon_surface_to_stream(const tm_polygon_surface *surface,
         triangles += k > 2 ? k - 2 : 0;
         most = k > most ? k : most;
     }
-    if (triangles >= UINT32_MAX)
+    if (triangles >= TM_IDS)
         return tm_fail(error, TM_ERROR_SYSTEM, "more triangles than 32 bits can number");
     tm_block *face = add_block(stream, part, ".face");
     if (!face)

@@ -5,6 +5,7 @@
 
 #include "../base/array.h"
 #include "../base/disjoint_sets.h"
+#include "../base/ids.h"
 #include "../geom/vector.h"
 
 #include <math.h>
@@ -349,6 +350,10 @@ tm_status tm_surface_connect(tm_surface *surface, bool lenient, bool walls, unsi
 {
     edge_table table = {0};
     size_t before = surface->flat;
+    if (surface->triangles >= TM_IDS_THIRD)
+        return tm_fail(error, TM_ERROR_SYSTEM,
+                       "%zu triangles have more sides than 32 bits can number",
+                       surface->triangles);
     tm_status status = edge_table_make(&table, surface) ? TM_OK : tm_fail_memory(error);
     if (status == TM_OK)
         status = drop_needless(surface, &table, error);

@@ -2,6 +2,7 @@
 #include "mesh.h"
 
 #include "../base/array.h"
+#include "../base/ids.h"
 #include "../geom/vector.h"
 
 #include <stdlib.h>
@@ -38,8 +39,8 @@ static tm_status reserve_nodes(tm_tet_mesh *mesh, size_t needed, tm_error *error
     size_t grown = 0;
     if (needed <= mesh->node_room)
         return TM_OK;
-    if (needed >= TM_NONE)
-        return tm_fail(error, TM_ERROR_SYSTEM, "more than %u nodes", TM_NONE - 1);
+    if (needed >= TM_IDS)
+        return tm_fail(error, TM_ERROR_SYSTEM, "more than %u nodes", TM_IDS - 1);
     GROW(mesh->xyz, mesh->node_room, needed);
     if (mesh->node_marker)
         GROW(mesh->node_marker, mesh->node_room, needed);
@@ -80,8 +81,9 @@ tm_status tm_tet_mesh_reserve(tm_tet_mesh *mesh, size_t nodes, size_t tets, size
     if (status != TM_OK)
         return status;
     if (mesh->faces + faces > mesh->face_room) {
-        if (mesh->faces + faces >= TM_FACE_BIT)
-            return tm_fail(error, TM_ERROR_SYSTEM, "more than %u faces", TM_FACE_BIT - 1);
+        if (mesh->faces + faces >= TM_IDS_HALF)
+            return tm_fail(error, TM_ERROR_SYSTEM, "more than %zu faces",
+                           TM_IDS_HALF - 1);
         GROW(mesh->face, mesh->face_room, mesh->faces + faces);
         mesh->face_room = grown;
     }

@@ -10,6 +10,7 @@
 
 #include "../base/extern_c.h"
 #include "../base/error.h"
+#include "../base/ids.h"
 #include "../stream/stream.h"
 #include "../mesh/edge_map.h"
 
@@ -25,7 +26,7 @@ TM_EXTERN_C_BEGIN
  * without it, the half face on the other side. So a mesh has fewer than 2^29 tetrahedra.
  */
 #define TM_FACE_BIT ((uint32_t)1 << 31)
-#define TM_TETS_MAX ((size_t)1 << 29)
+#define TM_TETS_MAX TM_IDS_EIGHTH
 
 /* A face that has to stay: on the boundary, between two regions, or inside with a marker
  * that is not 0. */

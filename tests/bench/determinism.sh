@@ -108,7 +108,7 @@ commands() {
 tetgen-mesh -q1.2 -a 0.001 $in/gear.off
 tetgen-mesh $in/points.node
 lepp-improve --json report $in/random.tm
-lepp-improve --json report -t 40 $in/gear.tm
+lepp-improve --json report $in/gear.tm
 lepp-improve -a bisection -s 2 $in/random.tm
 lepp-improve -a centroid $in/random.tm
 lepp-improve -a delaunay $in/random.tm

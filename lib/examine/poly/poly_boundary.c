@@ -4,11 +4,12 @@
 #include "../../base/array.h"
 #include "../../base/disjoint_sets.h"
 #include "../../base/hash.h"
+#include "../../base/ids.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-static const size_t most_corners = (size_t)1 << 31;
+static const size_t most_corners = TM_IDS_HALF;
 
 enum { NODE, FANS, FACE_START, CORNER, FACE, EDGE, SLOT, PARENT };
 

@@ -2,6 +2,7 @@
 #include "openfoam_zones.h"
 
 #include "../../base/array.h"
+#include "../../base/ids.h"
 #include "../../mesh/elements_of_cells.h"
 
 #include <math.h>
@@ -79,7 +80,7 @@ static tm_status add_face(reader *r, tm_lists *faces, const tm_numbers *labels,
 /* Where each face begins in a list of all their labels, and that list. */
 static tm_status read_compact(reader *r, tm_foam *foam, tm_lists *faces)
 {
-    const size_t most = UINT32_MAX - 1;
+    const size_t most = TM_IDS - 1;
     tm_numbers start = {0}, labels = {0};
     tm_status status = tm_foam_labels(foam, "starts of faces", most, &start, r->error);
     if (status == TM_OK)

@@ -2,6 +2,7 @@
 #include "vtk_cells.h"
 
 #include "../../base/array.h"
+#include "../../base/ids.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -62,7 +63,7 @@ tm_status tm_vtk_begin_piece(tm_vtk_mesh *cells, tm_error *error)
 tm_status tm_vtk_add_points(tm_vtk_mesh *cells, const tm_numbers *xyz, tm_error *error)
 {
     const size_t count = xyz->count / COORDINATES, past = cells->points + count;
-    if (past >= UINT32_MAX)
+    if (past >= TM_IDS)
         return tm_fail_at(error, TM_ERROR_INPUT, cells->name, 0, NULL,
                           "more points than 32 bits can number");
     void *room = tm_grow(cells->xyz, &cells->point_room, past, sizeof *cells->xyz);
@@ -107,7 +108,7 @@ tm_status tm_vtk_add_node(tm_vtk_mesh *cells, const tm_numbers *numbers, size_t 
 tm_status tm_vtk_end_cell(tm_vtk_mesh *cells, uint8_t type, tm_error *error)
 {
     const size_t c = cells->cells;
-    if (c + 1 >= UINT32_MAX)
+    if (c + 1 >= TM_IDS)
         return tm_fail_at(error, TM_ERROR_INPUT, cells->name, 0, NULL,
                           "more cells than 32 bits can number");
     void *types = tm_grow(cells->type, &cells->type_room, c + 1, sizeof *cells->type);

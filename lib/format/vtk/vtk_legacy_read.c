@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "vtk_legacy_read.h"
 
+#include "../../base/ids.h"
+
 #include "../../element/shape.h"
 
 #include <string.h>
@@ -131,7 +133,7 @@ static tm_status take_points(reader *r)
     tm_status status = tm_vtk_take_count(&r->file, "the number of points", &count);
     if (status == TM_OK)
         status = tm_vtk_take_type(&r->file, &type);
-    if (status == TM_OK && (type.kind != TM_VTK_NUMBERS || count >= UINT32_MAX))
+    if (status == TM_OK && (type.kind != TM_VTK_NUMBERS || count >= TM_IDS))
         status = fail(r, "no points that can be read (numbers, fewer than 2^32)");
     if (status == TM_OK)
         status = tm_vtk_take_numbers(&r->file, &type, COORDINATES * count, "a coordinate",

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "vtk_cells.h"
+
+#include "../../base/ids.h"
 #include "vtu_xml.h"
 
 #include "../../element/shape.h"
@@ -231,7 +233,7 @@ static tm_status read_points(reader *r)
     if (entry->components != COORDINATES)
         return tm_vtu_fail(&r->file, entry, r->error,
                            "has %zu components (points have 3)", entry->components);
-    if (r->points >= UINT32_MAX)
+    if (r->points >= TM_IDS)
         return tm_fail_at(r->error, TM_ERROR_INPUT, r->file.name, 0, NULL,
                           "piece %zu: more points than 32 bits can number", r->piece);
     tm_status status = read_numbers(r, entry, COORDINATES * r->points, &xyz);

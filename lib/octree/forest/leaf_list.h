@@ -4,9 +4,10 @@
 #define TM_FOREST_LEAF_LIST_H
 
 #include "octree.h"
+#include "../../base/ids.h"
 
 /* p4est counts with 31 bits, and balance needs some of them. */
-#define TM_LEAVES_MAX ((size_t)1 << 30)
+#define TM_LEAVES_MAX ((size_t)TM_IDS / 4 + 1)
 
 typedef struct tm_leaf_list {
     size_t count;

@@ -13,6 +13,7 @@
 #include "octree_parts.h"
 
 #include "../../base/array.h"
+#include "../../base/ids.h"
 #include "../../base/parallel.h"
 #include "leaf_tree.h"
 
@@ -394,9 +395,9 @@ static tm_status order_nodes(numbering *n, tm_error *error)
 {
     tm_octree *octree = n->octree;
     count_nodes(n);
-    if (octree->nodes + n->between.nodes >= TM_NONE)
+    if (octree->nodes + n->between.nodes >= TM_IDS)
         return tm_fail(error, TM_ERROR_INPUT, "the octree has more than %u nodes",
-                       TM_NONE);
+                       TM_IDS);
     octree->grid = tm_new(octree->nodes, sizeof *octree->grid);
     n->number = tm_new(n->between.nodes, sizeof *n->number);
     n->failed = calloc(n->parts + 1, sizeof *n->failed);

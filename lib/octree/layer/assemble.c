@@ -2,6 +2,7 @@
 #include "assemble.h"
 
 #include "../../base/array.h"
+#include "../../base/ids.h"
 #include "../../base/parallel.h"
 
 #include <stdlib.h>
@@ -88,7 +89,7 @@ static tm_status allocate(const assembler *a, tm_error *error)
     mesh->nodes = to->core + a->boundary->nodes + a->middles;
     mesh->elements = a->elements;
     mesh->threads = a->octree->threads;
-    if (mesh->nodes >= TM_NONE || mesh->elements >= TM_NONE)
+    if (mesh->nodes >= TM_IDS || mesh->elements >= TM_IDS)
         return tm_fail(error, TM_ERROR_SYSTEM,
                        "the mesh would have %zu nodes and %zu elements, more than 32 "
                        "bits can number",

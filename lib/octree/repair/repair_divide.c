@@ -2,6 +2,7 @@
 #include "repair_steps.h"
 
 #include "../../base/array.h"
+#include "../../base/ids.h"
 #include "../../element/shape.h"
 #include "../../stream/stream.h"
 #include "../../mesh/mixed_boundary.h"
@@ -99,7 +100,7 @@ static tm_status apply(const divider *d, tm_repair_state *to, tm_error *error)
         to->mesh.elements += d->division[i].parts.parts;
         items += d->division[i].parts.start[d->division[i].parts.parts];
     }
-    if (to->mesh.nodes >= TM_NONE || to->mesh.elements >= TM_NONE)
+    if (to->mesh.nodes >= TM_IDS || to->mesh.elements >= TM_IDS)
         return tm_fail(error, TM_ERROR_SYSTEM, "the mesh has too many elements");
     const tm_status status = tm_repair_allocate(to, items, error);
     if (status != TM_OK)

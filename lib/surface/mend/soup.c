@@ -2,6 +2,7 @@
 #include "soup.h"
 
 #include "../../base/array.h"
+#include "../../base/ids.h"
 #include "../../geom/vector.h"
 
 #include <math.h>
@@ -19,6 +20,14 @@ void tm_soup_put_in_box(tm_soup_box *box, const double place[3])
 double tm_soup_box_diagonal(const tm_soup_box *box)
 {
     return sqrt(tm_distance2(box->low, box->high));
+}
+
+static tm_status check_count(size_t triangles, tm_error *error)
+{
+    if (triangles < TM_IDS_THIRD)
+        return TM_OK;
+    return tm_fail(error, TM_ERROR_SYSTEM,
+                   "%zu triangles have more sides than 32 bits can number", triangles);
 }
 
 tm_status tm_soup_take(tm_soup *soup, tm_stream *stream, tm_error *error)
@@ -39,7 +48,8 @@ tm_status tm_soup_take(tm_soup *soup, tm_stream *stream, tm_error *error)
     face->integer = NULL;
     face->marker = NULL;
     face->count = 0;
-    return tm_soup_find_edges(soup, error);
+    const tm_status status = check_count(soup->triangles, error);
+    return status == TM_OK ? tm_soup_find_edges(soup, error) : status;
 }
 
 void tm_soup_give(tm_soup *soup, tm_stream *stream)
@@ -105,6 +115,9 @@ tm_status tm_soup_find_edges(tm_soup *soup, tm_error *error)
 tm_status tm_soup_add(tm_soup *soup, const uint32_t node[3], int32_t marker,
                       tm_error *error)
 {
+    const tm_status status = check_count(soup->triangles + 1, error);
+    if (status != TM_OK)
+        return status;
     void *more =
         tm_grow(soup->triangle, &soup->room, soup->triangles + 1, sizeof *soup->triangle);
     if (!more)
