@@ -7,7 +7,10 @@
 #                        SAN=1: under the address and undefined-behaviour sanitizers,
 #                        in build/san; SAN=thread: under the one for threads, in
 #                        build/san-thread; TM_SEED repeats the random ones
-#   make fuzz            damaged input for every filter; FUZZ_CASES of it, TM_SEED
+#   make coverage        what of lib/ the tests run, by folder, in build/coverage
+#   make fuzz            damaged input for every filter, FUZZ_CASES of it, TM_SEED; then
+#                        tests/fuzz/targets by libFuzzer, which clang has: each for
+#                        FUZZ_SECONDS, FUZZ_TARGETS: only those
 #   make bench           all of tests/bench
 #   make lint            what the compiler does not see; make format mends its part
 #   make warnings        compiles all with all compilers and levels of optimisation
@@ -54,7 +57,7 @@ left_out := octree-mesh octree-repair lib/ranks/mpi/start.c \
 	$(wildcard $(addsuffix /*.c,$(addprefix lib/octree/,share interior feature layer repair))) \
 	$(shell grep -lE '^.include.*(p[48]est|brick\.h|octree_estimate|mpi_start)' lib/octree/forest/*.c) \
 	$(basename $(notdir $(shell grep -lE 'octree_build|octree/(share|interior|feature|layer|repair)|(octree|repair)_fixture' \
-		tests/unit/test_*.c)))
+		tests/unit/test_*.c tests/fuzz/targets/*.c)))
 endif
 
 # three.js, release 111 (Debian: libjs-three), which draws in the pages of mesh-view and is
@@ -75,12 +78,20 @@ left_out += $(gmsh_filters)
 endif
 
 FUZZ_CASES = 20000
+FUZZ_SECONDS = 60
+FUZZ_CC = clang
 BUILD = build
 
 ifeq ($(SAN),thread)
 override BUILD := $(BUILD)/san-thread
 SANITIZE = -fsanitize=thread -fno-omit-frame-pointer
 export TSAN_OPTIONS ?= exitcode=99
+else ifeq ($(SAN),fuzzer)
+override BUILD := $(BUILD)/san-fuzzer
+override CC := $(FUZZ_CC)
+# No pointer-overflow: it is for NULL + 0 in loops over nothing, which is NULL (C2y, N3322).
+SANITIZE = -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize=pointer-overflow \
+	-fno-sanitize-recover=all -fno-omit-frame-pointer
 else ifneq ($(filter-out 0,$(SAN)),)
 override BUILD := $(BUILD)/san
 SANITIZE = -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
@@ -88,6 +99,14 @@ SANITIZE = -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-fram
 export ASAN_OPTIONS ?= exitcode=99:allocator_may_return_null=1
 export UBSAN_OPTIONS ?= exitcode=99:print_stacktrace=1
 export LSAN_OPTIONS ?= exitcode=99
+endif
+
+# Counts which lines and branches are run; each test's counts go to a folder of its own.
+ifneq ($(filter-out 0,$(COVERAGE)),)
+override BUILD := $(BUILD)/coverage
+SANITIZE = --coverage
+CFLAGS = -O1 -g
+coverage_counts := $(abspath $(BUILD))/counts
 endif
 
 # -ffp-contract=off: the same bytes on every machine. -fPIC: one set of objects for both
@@ -124,11 +143,13 @@ headers := $(call in_library,.h)
 public_headers := lib/termesh.h $(shell sed -n 's|^.include "\(.*\)"|lib/\1|p' lib/termesh.h)
 unit_tests := $(addprefix $(BUILD)/tests/,$(filter-out $(left_out),\
 	$(basename $(notdir $(wildcard tests/unit/test_*.c)))))
-# These can be run by a launcher, too.
-rank_tests := $(addprefix $(BUILD)/tests/,test_octree_share)
 oracles := $(patsubst tests/oracle/%.cc,$(BUILD)/tests/%,$(wildcard tests/oracle/*.cc))
 rank_tests := $(if $(has_p4est),$(patsubst tests/ranks/%.c,$(BUILD)/ranks/%,$(wildcard tests/ranks/*.c)))
 fuzzer := $(BUILD)/fuzz/fuzz
+fuzz_names := $(filter-out $(left_out),$(basename $(notdir $(wildcard tests/fuzz/targets/*.c))))
+fuzz_targets := $(fuzz_names:%=$(BUILD)/fuzz/targets/%)
+replays := $(fuzz_names:%=$(BUILD)/fuzz/replay/%)
+faults := $(BUILD)/faults/preload.so
 solver := $(BUILD)/solve/poisson
 benchers := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/*.c))
 shapes := $(BUILD)/bench/shapes
@@ -139,9 +160,10 @@ generated := $(BUILD)/generated/powers.h $(BUILD)/generated/transitions.h \
 	$(if $(wildcard $(THREE)),$(BUILD)/generated/view_page.h)
 pages := $(wildcard man/*.[157])
 sources := $(wildcard lib/*.h lib/*/*.[ch] lib/*/*/*.[ch] lib/*/*/*/*.[ch] \
-	$(filter_sources) cmd/common/*/*.[ch] tests/*/*.[ch] tests/*/*.cc examples/*.c examples/*.cc)
+	$(filter_sources) cmd/common/*/*.[ch] tests/*/*.[ch] tests/*/*/*.[ch] tests/*/*.cc examples/*.c examples/*.cc)
 
-.PHONY: all tests check benchers bench fuzz lint warnings format install uninstall clean
+.PHONY: all filters tests check coverage benchers bench fuzz lint warnings format install \
+	uninstall clean
 .SECONDARY:
 
 all: $(bin) $(rank_bin) $(scripts) $(completions) $(library) $(shared)
@@ -154,6 +176,8 @@ endif
 ifndef has_gmsh
 	@echo "There is no gmshc.h: gmsh-import and gmsh-export are left out." >&2
 endif
+
+filters: $(bin)
 
 # Programs of the tree that write tables of the library.
 $(BUILD)/generated/%.h: $(BUILD)/generate/%
@@ -200,7 +224,7 @@ define link
 	$(CC) $(TM_CFLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(LDFLAGS) $(LDLIBS)
 endef
 $(gmsh_filters:%=$(BUILD)/bin/%): $(gmsh_objects)
-$(gmsh_filters:%=$(BUILD)/bin/%): private LDLIBS += -lgmsh
+$(gmsh_filters:%=$(BUILD)/bin/%): private LDLIBS += -lgmsh -lstdc++
 $(filter %-import,$(bin)): $(BUILD)/bin/%: $(BUILD)/cmd/import/%.o $(common) $(library)
 	$(link)
 $(filter %-export,$(bin)): $(BUILD)/bin/%: $(BUILD)/cmd/export/%.o $(common) $(library)
@@ -224,11 +248,7 @@ $(scripts): $(BUILD)/bin/%: cmd/%.sh
 $(completions): $(BUILD)/completion/bash/%: $(BUILD)/bin/% cmd/completion.sh
 	sh cmd/completion.sh $< $(BUILD)/completion
 
-$(filter-out $(rank_tests),$(unit_tests)): $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(common) $(library)
-	@mkdir -p $(@D)
-	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lcmocka $(LDLIBS)
-$(filter $(rank_tests),$(unit_tests)): $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(ranks_object) \
-		$(common) $(library)
+$(unit_tests): $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(common) $(library)
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lcmocka $(LDLIBS)
 
@@ -254,6 +274,21 @@ $(fuzzer): $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/fuzz/*.c)) $(library)
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) $(LDLIBS)
 
+# One target by libFuzzer, and the same for the files of its corpus alone.
+$(fuzz_targets): $(BUILD)/fuzz/targets/%: $(BUILD)/tests/fuzz/targets/%.o $(library)
+	@mkdir -p $(@D)
+	$(CC) $(TM_CFLAGS) -fsanitize=fuzzer -o $@ $^ $(LDFLAGS) -lcmocka $(LDLIBS)
+
+$(replays): $(BUILD)/fuzz/replay/%: $(BUILD)/tests/fuzz/targets/%.o \
+		$(BUILD)/tests/fuzz/replay/replay.o $(library)
+	@mkdir -p $(@D)
+	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lcmocka $(LDLIBS)
+
+# For tests/cli/faults.bats: calls that fail.
+$(faults): tests/faults/preload.c
+	@mkdir -p $(@D)
+	$(CC) $(filter-out -fsanitize%,$(TM_CFLAGS)) -shared -o $@ $< $(LDFLAGS)
+
 $(benchers): $(BUILD)/bench/%: $(BUILD)/tests/bench/%.o $(library)
 	@mkdir -p $(@D)
 	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) $(LDLIBS)
@@ -270,21 +305,39 @@ $(solver): $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/solve/*.c)) $(library)
 # Programs that mpirun starts.
 $(rank_tests): $(BUILD)/ranks/%: $(BUILD)/tests/ranks/%.o $(ranks_object) $(library)
 	@mkdir -p $(@D)
-	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) $(LDLIBS)
+	$(CC) $(TM_CFLAGS) -o $@ $^ $(LDFLAGS) -lcmocka $(LDLIBS)
 
 # What the tests run.
-tests: all $(rank_tests) $(unit_tests) $(oracles) $(fuzzer) $(solver) $(shapes)
+tests: all $(rank_tests) $(unit_tests) $(oracles) $(fuzzer) $(replays) $(faults) $(solver) \
+		$(shapes)
 
+check: export FAULTS := $(filter-out 0,$(FAULTS))
 check: tests
 	sh tests/run.sh $(BUILD) $(ONLY)
 
+# All tests, or ONLY those, and what of lib/ they run: tests/coverage.py.
+ifneq ($(filter-out 0,$(COVERAGE)),)
+coverage: tests
+	rm -rf $(coverage_counts)
+	find $(BUILD) -name '*.gcda' -delete
+	-TM_COUNTS=$(coverage_counts) sh tests/run.sh $(BUILD) $(ONLY)
+	python3 tests/coverage.py $(BUILD)
+else
+coverage:
+	$(MAKE) COVERAGE=1 coverage
+endif
+
 # Always under the sanitizers.
-ifneq ($(filter-out 0 thread,$(SAN)),)
+ifeq ($(SAN),fuzzer)
+fuzz: $(fuzz_targets)
+	sh tests/fuzz/targets.sh $(BUILD) $(FUZZ_SECONDS) $(FUZZ_TARGETS)
+else ifneq ($(filter-out 0 thread,$(SAN)),)
 fuzz: all $(fuzzer)
 	$(fuzzer) $(BUILD)/bin $(FUZZ_CASES)
 else
 fuzz:
 	$(MAKE) SAN=1 fuzz
+	$(MAKE) SAN=fuzzer fuzz
 endif
 
 # What the benchmarks run; each is a script that can be run alone.

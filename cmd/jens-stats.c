@@ -324,7 +324,7 @@ static void write_files(const filter *f, const options *o, const tm_jens_statist
         return;
     if (o->histo) {
         tm_jens_histogram_file(&text, histogram(o, s));
-        if (output_file_write(o->histo, &text, &error) != TM_OK)
+        if (output_files_write(f->files, o->histo, &text, &error) != TM_OK)
             filter_fail(f, &error);
         tm_text_free(&text);
     }

@@ -479,7 +479,7 @@ static bool make_together(filter *f, settings *o, tm_surface *surface, tm_slices
     tm_octree_mesh_free(&mesh);
     tm_octree_share_free(&share);
     if (alone)
-        filter_verbose(f, "the octants have hollows, or pieces that the surface has not: "
+        filter_verbose(f, "the octants have hollows, which may be regions: "
                           "rank 0 goes on alone");
     const bool first = tm_rank() == 0;
     if (alone)

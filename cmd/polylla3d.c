@@ -10,6 +10,7 @@
 #include "../lib/poly/facets.h"
 #include "../lib/poly/given.h"
 #include "../lib/poly/octant/join_octants.h"
+#include "../lib/poly/ranks/polyhedra_ranks.h"
 #include "../lib/tet/mesh_measure.h"
 
 #include <stdlib.h>
@@ -48,6 +49,8 @@ static void put_labels(filter *f, tm_stream *stream, const tm_partition *partiti
         filter_fail(f, &error);
     free(number);
 }
+
+enum { SUMMARY = 256 };
 
 /* What was done, for the note, the history and --json. */
 typedef struct {
@@ -304,6 +307,118 @@ static void say_notes(const filter *f, const poly_settings *o, const result *r,
                     r->poly.single);
 }
 
+/* What was done, in a line. */
+static void summarize(const filter *f, const result *r, tm_content content,
+                      char summary[SUMMARY])
+{
+    double cells = (double)r->poly.cells;
+    snprintf(summary, SUMMARY, "%zu %s -> %zu polyhedra, %.2f each", r->poly.tets,
+             content == TM_CONTENT_MIXED       ? "elements"
+             : content == TM_CONTENT_POLYHEDRA ? "polyhedra"
+                                               : "tetrahedra",
+             r->poly.cells, cells > 0 ? (double)r->poly.tets / cells : 0);
+    if (r->levels > 0) {
+        const size_t used = strlen(summary);
+        snprintf(summary + used, SUMMARY - used, ", %zu coarser levels", r->levels);
+    }
+    filter_note(f, "%s", summary);
+}
+
+static int exit_status(const result *r)
+{
+    return r->poly.not_star > 0 ? EXIT_GOAL : EXIT_SUCCESS;
+}
+
+/* All that one process does with a stream that it has read. */
+static int convert_alone(filter *f, tm_stream *stream, const poly_settings *o)
+{
+    result r = {0};
+    const tm_content content = tm_content_of(stream);
+    if (content == TM_CONTENT_MIXED)
+        join_octants(f, stream, o->any, &r);
+    else if (content == TM_CONTENT_POLYHEDRA)
+        join_polyhedra(f, stream, o, &r);
+    else
+        convert(f, stream, o, &r);
+    if (o->poly.star == TM_STAR_CENTROID && !o->label)
+        count_skew(f, stream, &r);
+    add_levels(f, stream, o, &r);
+    drop_unknown_blocks(f, stream, "the elements are polyhedra now");
+    say_notes(f, o, &r, content);
+    char summary[SUMMARY];
+    summarize(f, &r, content, summary);
+    write_json(f, &r);
+    filter_write(f, stream, "%s", summary);
+    tm_stream_free(stream);
+    return filter_finish(f, exit_status(&r));
+}
+
+/* What all ranks can do together, if the mesh is of tetrahedra. */
+static bool is_for_ranks(const poly_settings *o)
+{
+    const tm_poly_options *p = &o->poly;
+    return p->mode == TM_POLY_TERMINAL && p->repair && p->star != TM_STAR_CENTROID &&
+           !p->absorb && !o->partition && !o->merge && !o->label && o->levels == 0;
+}
+
+static bool has_only_tets(const tm_stream *stream)
+{
+    return tm_stream_find(stream, ".ele") && !tm_stream_find(stream, ".mix") &&
+           !tm_stream_find(stream, ".facet") && !tm_stream_find(stream, ".cell");
+}
+
+/* The rest of it where rank 0 has to have all of the mesh. */
+static int leave_to_first(filter *f, tm_slices *slices, const poly_settings *o)
+{
+    tm_error error;
+    filter_agree(f, tm_slices_gather(slices, &error), &error);
+    if (filter_speaks())
+        return convert_alone(f, &slices->stream, o);
+    filter_json_begin(f);
+    filter_json_end(f);
+    return filter_finish(f, EXIT_SUCCESS);
+}
+
+static void drop_unknown_slices(const filter *f, tm_slices *slices)
+{
+    for (size_t b = slices->stream.blocks; b > 0; b--) {
+        tm_block *block = &slices->stream.block[b - 1];
+        if (block->kind != TM_UNKNOWN || block->name[0] != '.')
+            continue;
+        filter_note(f, "%s is dropped: the elements are polyhedra now", block->name);
+        tm_slices_remove(slices, block);
+    }
+}
+
+/* The same by all ranks. */
+static int convert_together(filter *f, const poly_settings *o)
+{
+    tm_slices slices;
+    tm_error error;
+    tm_polyhedra_report made;
+    bool odd = false;
+    filter_read_slices(f, &slices);
+    if (!has_only_tets(&slices.stream) ||
+        tm_slices_check_coordinates(&slices, &error) != TM_OK)
+        return leave_to_first(f, &slices, o);
+    filter_agree(
+        f, tm_polyhedra_ranks(&slices, &o->poly, o->ignore_markers, &made, &odd, &error),
+        &error);
+    if (odd)
+        return leave_to_first(f, &slices, o);
+    const result r = {.poly = made.poly, .facets = made.facets, .lost = made.lost};
+    if (made.turned > 0)
+        filter_note(f, "%zu tetrahedra were left-handed and are turned", made.turned);
+    drop_unknown_slices(f, &slices);
+    say_notes(f, o, &r, TM_CONTENT_TETRAHEDRA);
+    char summary[SUMMARY];
+    summarize(f, &r, TM_CONTENT_TETRAHEDRA, summary);
+    write_json(f, &r);
+    filter_write_slices(f, &slices, "%s", summary);
+    tm_slices_free(&slices);
+    return filter_finish(f, exit_status(&r));
+}
+
 int main(int argc, char **argv)
 {
     filter f = {
@@ -325,37 +440,9 @@ int main(int argc, char **argv)
     filter_start(&f, argc, argv);
     poly_settings o = poly_settings_read(&f);
     filter_operands(&f);
-    filter_together(&f, false);
+    if (filter_together(&f, is_for_ranks(&o)))
+        return convert_together(&f, &o);
     tm_stream stream;
     filter_read(&f, &stream);
-
-    result r = {0};
-    const tm_content content = tm_content_of(&stream);
-    if (content == TM_CONTENT_MIXED)
-        join_octants(&f, &stream, o.any, &r);
-    else if (content == TM_CONTENT_POLYHEDRA)
-        join_polyhedra(&f, &stream, &o, &r);
-    else
-        convert(&f, &stream, &o, &r);
-    if (o.poly.star == TM_STAR_CENTROID && !o.label)
-        count_skew(&f, &stream, &r);
-    add_levels(&f, &stream, &o, &r);
-    drop_unknown_blocks(&f, &stream, "the elements are polyhedra now");
-    say_notes(&f, &o, &r, content);
-    char summary[256];
-    double cells = (double)r.poly.cells;
-    snprintf(summary, sizeof summary, "%zu %s -> %zu polyhedra, %.2f each", r.poly.tets,
-             content == TM_CONTENT_MIXED       ? "elements"
-             : content == TM_CONTENT_POLYHEDRA ? "polyhedra"
-                                               : "tetrahedra",
-             r.poly.cells, cells > 0 ? (double)r.poly.tets / cells : 0);
-    if (r.levels > 0) {
-        const size_t used = strlen(summary);
-        snprintf(summary + used, sizeof summary - used, ", %zu coarser levels", r.levels);
-    }
-    filter_note(&f, "%s", summary);
-    write_json(&f, &r);
-    filter_write(&f, &stream, "%s", summary);
-    tm_stream_free(&stream);
-    return filter_finish(&f, r.poly.not_star > 0 ? EXIT_GOAL : EXIT_SUCCESS);
+    return convert_alone(&f, &stream, &o);
 }

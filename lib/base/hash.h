@@ -47,6 +47,7 @@ static inline uint64_t tm_hash(uint64_t h, uint64_t bits)
     return h ^ h >> HALF;
 }
 
+/* Of a string, by tm_hash(). O(length). */
 static inline uint64_t tm_hash_string(const char *string)
 {
     uint64_t h = 0;

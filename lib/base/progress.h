@@ -27,6 +27,7 @@ typedef struct tm_progress {
     void *context;
 } tm_progress;
 
+/* Reports; nothing where progress is NULL. */
 static inline void tm_progress_tell(const tm_progress *progress, const tm_progress_at *at)
 {
     if (progress)
@@ -36,14 +37,15 @@ static inline void tm_progress_tell(const tm_progress *progress, const tm_progre
 /* A stage begins of which nothing more is said. */
 void tm_progress_stage(const tm_progress *progress, const char *what);
 
-/* Of an operation that is all one stage of another one: what it says is `doing` there.
- * *within is to stay until it has ended. */
+/* Of an operation that is all one stage of another one: what it says is `doing` there. */
 typedef struct tm_progress_within {
     tm_progress inner; /* for the operation */
     const tm_progress *outer;
     const char *what;
 } tm_progress_within;
 
+/* Begins that stage, and returns what the operation is to be given: NULL where outer is.
+ * *within is to stay until it has ended. */
 const tm_progress *tm_progress_begin_within(tm_progress_within *within,
                                             const tm_progress *outer, const char *what);
 

@@ -16,6 +16,7 @@ typedef struct tm_stop {
     void *context;
 } tm_stop;
 
+/* Whether to stop; false where stop is NULL. */
 static inline bool tm_stop_is_wanted(const tm_stop *stop)
 {
     return stop && stop->wanted(stop->context);

@@ -17,6 +17,8 @@ TM_EXTERN_C_BEGIN
 
 typedef enum tm_tet_measure { TM_MEASURE_DIHEDRAL, TM_MEASURE_VOLUME } tm_tet_measure;
 
+/* How good abcd is: tm_tet_sine2(), or tm_tet_volume_quality(), both from 0 to 1; 0 where
+ * it is not right-hand positive. O(1). */
 static inline double tm_tet_measure_of(tm_tet_measure measure, const double a[3],
                                        const double b[3], const double c[3],
                                        const double d[3])

@@ -34,6 +34,7 @@ typedef struct tm_elements {
     const uint32_t *item;
 } tm_elements;
 
+/* The nodes of element e, and how many. */
 static inline const uint32_t *tm_element_at(const tm_elements *elements, size_t e,
                                             size_t *nodes)
 {

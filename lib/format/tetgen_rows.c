@@ -90,7 +90,8 @@ static tm_status read_header(reader *r)
     if (status == TM_OK && block->kind == TM_ELE)
         status = read_order(r);
     if (status == TM_OK && (block->kind == TM_NODE || block->kind == TM_ELE))
-        status = read_field(r, "the number of attributes", 0, INT32_MAX, &attributes);
+        status =
+            read_field(r, "the number of attributes", 0, TM_ATTRIBUTES_MAX, &attributes);
     if (status == TM_OK && block->kind != TM_ELE)
         status = read_field(r, "whether there are markers", 0, 1, &markers);
     if (status == TM_OK)
@@ -290,7 +291,7 @@ tm_status tm_tetgen_read_rows(tm_block *block, tm_scan *scan, tm_tetgen_nodes *n
     }
     tm_row_order_free(&r.order);
     if (status != TM_OK)
-        tm_block_allocate(block, 0, 0, NULL);
+        tm_block_clear(block);
     return status;
 }
 
@@ -302,7 +303,7 @@ tm_status tm_tetgen_read(tm_block *block, const char *bytes, size_t size,
     tm_status status = tm_tetgen_read_rows(block, &scan, nodes, error);
     if (status == TM_OK && tm_scan_seek(&scan)) {
         status = tm_scan_no_more(&scan, "the last row", error);
-        tm_block_allocate(block, 0, 0, NULL);
+        tm_block_clear(block);
     }
     return status;
 }

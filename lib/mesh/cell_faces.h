@@ -24,6 +24,7 @@ typedef enum tm_content {
     TM_CONTENT_POLYHEDRA   /* .cell */
 } tm_content;
 
+/* O(blocks). */
 tm_content tm_content_of(const tm_stream *stream);
 
 /* The block that the content stands in, or NULL. */

@@ -141,20 +141,28 @@ static bool find_longest_edges(forest *s, const tm_poly_options *options)
     return s->longest;
 }
 
+tm_status tm_poly_outlets(const tm_tet_mesh *mesh, const tm_poly_options *options,
+                          uint32_t *up, size_t *regions, tm_error *error)
+{
+    forest s = {.mesh = mesh, .up = up};
+    const bool done = find_longest_edges(&s, options);
+    if (done)
+        tm_parallel_runs(options->threads, mesh->slots, CHUNK, find_outlets, &s);
+    free(s.longest);
+    *regions = mesh->slots;
+    return done ? TM_OK : tm_fail_memory(error);
+}
+
 static tm_status label_terminal(const tm_tet_mesh *mesh, const tm_poly_options *options,
                                 uint32_t *label, size_t *regions, tm_error *error)
 {
     forest s = {.mesh = mesh, .up = label};
-    const bool done = find_longest_edges(&s, options);
-    if (done) {
-        tm_parallel_runs(options->threads, mesh->slots, CHUNK, find_outlets, &s);
+    const tm_status status = tm_poly_outlets(mesh, options, label, regions, error);
+    if (status == TM_OK) {
         tm_parallel_runs(options->threads, mesh->slots, CHUNK, shorten_ways, &s);
         tm_parallel_runs(options->threads, mesh->slots, CHUNK, find_roots, &s);
     }
-    free(s.longest);
-    *regions = mesh->slots;
-    return done ? tm_number_sets(label, mesh->slots, regions, error)
-                : tm_fail_memory(error);
+    return status == TM_OK ? tm_number_sets(label, mesh->slots, regions, error) : status;
 }
 
 /* All fans around one edge are one region, as far as the mesh's regions allow. */

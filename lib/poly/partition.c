@@ -196,7 +196,7 @@ static tm_status order_by_cell(tm_partition *partition, const tm_shelling *shell
     star_work w = {.all = *shelling, .count = calloc(chunks + 1, sizeof *w.count)};
     w.all.piece = partition->cell;
     bool done = w.count && tm_item_lists_make(&w.list, partition->cell, mesh->slots,
-                                              partition->cells, NULL);
+                                              partition->cells + 1, NULL);
     if (done)
         tm_parallel_runs(options->threads, options->star ? partition->cells : 0, CHUNK,
                          count_chunk, &w);
@@ -249,7 +249,8 @@ static void renumber_nodes(void *context, size_t from, size_t to)
 /* Labels tetrahedra by their regions. Ties are told by the numbers of nodes: so that they
  * do not depend on how the mesh was numbered, nodes are numbered by their places here. */
 static tm_status find_regions(const tm_tet_mesh *mesh, const tm_poly_options *options,
-                              uint32_t *label, size_t *regions, tm_error *error)
+                              tm_poly_label *find, uint32_t *label, size_t *regions,
+                              tm_error *error)
 {
     uint32_t *rank = tm_new(mesh->nodes, sizeof *rank);
     renumbering r = {.mesh = mesh, .rank = rank, .ranked = *mesh};
@@ -261,12 +262,53 @@ static tm_status find_regions(const tm_tet_mesh *mesh, const tm_poly_options *op
         tm_parallel_runs(options->threads, mesh->nodes, CHUNK, renumber_nodes, &r);
         tm_parallel_runs(options->threads, mesh->slots, CHUNK, renumber_tets, &r);
     }
-    tm_status status = done ? tm_poly_modes[options->mode].label(&r.ranked, options,
-                                                                 label, regions, error)
-                            : tm_fail_memory(error);
+    tm_status status =
+        done ? find(&r.ranked, options, label, regions, error) : tm_fail_memory(error);
     free(rank);
     free(r.ranked.xyz);
     free(r.ranked.tet);
+    return status;
+}
+
+tm_status tm_partition_outlets(const tm_tet_mesh *mesh, const tm_poly_options *options,
+                               uint32_t *up, tm_error *error)
+{
+    size_t regions;
+    return find_regions(mesh, options, tm_poly_outlets, up, &regions, error);
+}
+
+/* Numbers cells in the order of their first tetrahedra, what is in none behind them. */
+static tm_status number_cells(tm_partition *partition, const tm_tet_mesh *mesh,
+                              tm_error *error)
+{
+    uint32_t *cell = partition->cell;
+    size_t other = mesh->slots;
+    for (size_t t = mesh->slots; t-- > 0;)
+        if (cell[t] == TM_NONE) {
+            cell[t] = (uint32_t)mesh->slots;
+            other = t;
+        }
+    partition->cells = mesh->slots + 1;
+    const tm_status status = tm_number_sets(cell, mesh->slots, &partition->cells, error);
+    if (status != TM_OK || other == mesh->slots)
+        return status;
+    const uint32_t none = cell[other], last = (uint32_t)--partition->cells;
+    for (size_t t = 0; t < mesh->slots; t++)
+        cell[t] = cell[t] == none ? last : cell[t] - (cell[t] > none);
+    return TM_OK;
+}
+
+tm_status tm_partition_repair(tm_partition *partition, const tm_tet_mesh *mesh,
+                              const tm_poly_options *options, tm_poly_report *report,
+                              tm_error *error)
+{
+    tm_shelling shelling = {0};
+    tm_status status = repair_regions(partition, &shelling, mesh, options, report, error);
+    if (status == TM_OK)
+        status = number_cells(partition, mesh, error);
+    if (status == TM_OK)
+        status = order_by_cell(partition, &shelling, mesh, options, report, error);
+    tm_shelling_free(&shelling);
     return status;
 }
 
@@ -284,7 +326,8 @@ tm_status tm_partition_make(tm_partition *partition, const tm_tet_mesh *mesh,
     if (options->given)
         take_regions(mesh, options->given, partition->cell, &report->regions);
     else
-        status = find_regions(mesh, options, partition->cell, &report->regions, error);
+        status = find_regions(mesh, options, tm_poly_modes[options->mode].label,
+                              partition->cell, &report->regions, error);
     partition->cells = report->regions;
     if (status == TM_OK && options->repair)
         status = repair_regions(partition, &shelling, mesh, options, report, error);

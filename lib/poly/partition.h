@@ -48,22 +48,29 @@ typedef struct tm_poly_options {
     const uint32_t *given; /* [slots]: the regions, in place of a mode's; or NULL */
     bool repair;           /* the rest is for this */
     tm_poly_star star;
-    double radius;   /* of TM_STAR_RADIUS */
-    bool absorb;     /* cells of a few tetrahedra join one beside them */
-    bool no_swallow; /* no node inside of a polyhedron */
-    size_t max_tets; /* in one polyhedron; 0: any number */
+    double radius;          /* of TM_STAR_RADIUS */
+    bool absorb;            /* cells of a few tetrahedra join one beside them */
+    bool no_swallow;        /* no node inside of a polyhedron */
+    size_t max_tets;        /* in one polyhedron; 0: any number */
+    const double (*box)[3]; /* [2]: around the whole that a mesh is a part of; or NULL */
     unsigned threads;
     const tm_progress *progress;
 } tm_poly_options;
 
+/* Labels each tetrahedron by its region, 0 … *regions-1 in any order. */
+typedef tm_status tm_poly_label(const tm_tet_mesh *mesh, const tm_poly_options *options,
+                                uint32_t *label, size_t *regions, tm_error *error);
+
 typedef struct tm_poly_mode_row {
     const char *name;
-    /* Labels each tetrahedron by its region, 0 … *regions-1 in any order. */
-    tm_status (*label)(const tm_tet_mesh *mesh, const tm_poly_options *options,
-                       uint32_t *label, size_t *regions, tm_error *error);
+    tm_poly_label *label;
 } tm_poly_mode_row;
 
 extern const tm_poly_mode_row tm_poly_modes[TM_POLY_MODES];
+
+/* Of TM_POLY_TERMINAL: for each tetrahedron another one on the way to the root of its
+ * region, or itself. */
+tm_poly_label tm_poly_outlets;
 
 typedef struct tm_poly_report {
     size_t tets, regions, cells;
@@ -85,6 +92,16 @@ tm_status tm_partition_make(tm_partition *partition, const tm_tet_mesh *mesh,
                             const tm_poly_options *options, tm_poly_report *report,
                             tm_error *error);
 void tm_partition_free(tm_partition *partition);
+
+/* The two steps of it with TM_POLY_TERMINAL, for who has a part of a mesh: up[slots]
+ * leads to the root of the region, as far as all tetrahedra at an edge of each are there.
+ * And partition->cell, the regions 0 … report->regions-1, become cells, numbered as
+ * above; what is of region report->regions is in none, and gets partition->cells. */
+tm_status tm_partition_outlets(const tm_tet_mesh *mesh, const tm_poly_options *options,
+                               uint32_t *up, tm_error *error);
+tm_status tm_partition_repair(tm_partition *partition, const tm_tet_mesh *mesh,
+                              const tm_poly_options *options, tm_poly_report *report,
+                              tm_error *error);
 
 /* Marked faces inside of one region of the mesh are no longer kept. */
 void tm_ignore_markers(tm_tet_mesh *mesh);

@@ -30,9 +30,13 @@ bool tm_shelling_scale(tm_shelling *s)
     for (int x = 0; x < 3; x++) {
         low[x] = HUGE_VAL;
         high[x] = -HUGE_VAL;
-        for (size_t v = 0; v < mesh->nodes; v++) {
+        for (size_t v = 0; v < mesh->nodes && !s->options->box; v++) {
             low[x] = fmin(low[x], mesh->xyz[v][x]);
             high[x] = fmax(high[x], mesh->xyz[v][x]);
+        }
+        if (s->options->box) {
+            low[x] = s->options->box[0][x];
+            high[x] = s->options->box[1][x];
         }
         most = fmax(most, high[x] - low[x]);
     }

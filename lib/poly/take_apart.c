@@ -120,8 +120,8 @@ tm_status tm_take_apart(tm_shelling *s, const uint32_t *label, tm_poly_report *r
               .result = calloc(chunks + 1, sizeof *w.result),
               .caller = pthread_self(),
               .at = {.what = "taking regions apart", .of = report->regions}};
-    bool done = w.result &&
-                tm_item_lists_make(&w.list, label, s->mesh->slots, report->regions, NULL);
+    bool done = w.result && tm_item_lists_make(&w.list, label, s->mesh->slots,
+                                               report->regions + 1, NULL);
     if (done)
         tm_parallel_runs(is_ordered ? 1 : s->options->threads, report->regions, CHUNK,
                          take_chunk, &w);

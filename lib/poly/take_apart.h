@@ -10,6 +10,7 @@
  * of its tetrahedra is in a piece yet. A region whose pieces are a ball together is one,
  * if its options ask for no more than balls. Pieces get numbers below slots, some of
  * which are of none, ascending by their regions and then as they were begun.
+ * Those labelled report->regions are in no region, and in no piece then.
  * report->taken_apart is how many regions are several. Regions are taken several at a
  * time, by options->threads, unless stars are by the centroid. Expected O(slots). */
 tm_status tm_take_apart(tm_shelling *s, const uint32_t *label, tm_poly_report *report,

@@ -66,7 +66,7 @@ tm_status tm_mail_answer(const tm_mail *mail, const void *answer, size_t size, v
         tm_ranks_agree(count && own ? TM_OK : tm_fail_memory(error), error);
     if (status == TM_OK)
         status = tm_ranks_exchange(answer, mail->got_count, size, &sorted, count, error);
-    for (size_t k = 0; k < mail->items && status == TM_OK; k++)
+    for (size_t k = 0; k < mail->items && status == TM_OK && own; k++)
         memcpy(own + size * k, (const char *)sorted + size * mail->place[k], size);
     free(sorted);
     free(count);

@@ -82,6 +82,7 @@ typedef struct tm_tet_mesh {
     size_t dangling;      /* rows of .face that are no face of a tetrahedron */
 } tm_tet_mesh;
 
+/* Whether slot t has a tetrahedron, and whether node v was not removed. */
 static inline bool tm_tet_lives(const tm_tet_mesh *mesh, uint32_t t)
 {
     return mesh->tet[t][0] != TM_NONE;
@@ -162,6 +163,11 @@ tm_status tm_tet_mesh_copy(tm_tet_mesh *to, const tm_tet_mesh *from, tm_error *e
 tm_status tm_tet_mesh_sort(tm_tet_mesh *mesh, uint32_t *order, unsigned threads,
                            tm_error *error);
 
+/* The even permutation of the corners that sorts them by rank, or all but the last two:
+ * as tm_tet_mesh_sort() has them. Its order is that of the curve's positions of first
+ * corners, then of the ranks of all four. */
+void tm_tet_sort_corners(const uint32_t rank[4], uint8_t corner[4]);
+
 /* rank[v] is how many nodes come before node v by x, y and z; at one place by their
  * numbers. False where memory is out. O(n log n), by several threads. */
 bool tm_tet_mesh_rank_nodes(const tm_tet_mesh *mesh, uint32_t *rank, unsigned threads);
@@ -203,6 +209,8 @@ tm_status tm_tet_mesh_reserve(tm_tet_mesh *mesh, size_t nodes, size_t tets, size
 
 /* A slot for a tetrahedron; its contents are the caller's to set. */
 uint32_t tm_tet_mesh_new_tet(tm_tet_mesh *mesh);
+
+/* Frees the slot of a tetrahedron; who its neighbours were is the caller's to forget. */
 void tm_tet_mesh_delete_tet(tm_tet_mesh *mesh, uint32_t t);
 
 /* A node at p, without attributes and marker: they are the caller's to set. There must

@@ -18,9 +18,7 @@ bool tm_tet_mesh_rank_nodes(const tm_tet_mesh *mesh, uint32_t *rank, unsigned th
     return tm_place_rank((const double(*)[3])mesh->xyz, mesh->nodes, threads, rank);
 }
 
-/* The even permutation of the corners that sorts them by rank, or all but the last two.
- */
-static void sort_corners(const uint32_t rank[4], uint8_t corner[4])
+void tm_tet_sort_corners(const uint32_t rank[4], uint8_t corner[4])
 {
     int inversions = 0;
     for (uint8_t i = 0; i < 4; i++) {
@@ -110,7 +108,7 @@ static void place_tets(void *context, size_t from, size_t to)
     for (size_t t = from; t < to; t++) {
         const uint32_t *n = s->mesh->tet[t];
         uint32_t rank[4] = {s->rank[n[0]], s->rank[n[1]], s->rank[n[2]], s->rank[n[3]]};
-        sort_corners(rank, s->corner[t]);
+        tm_tet_sort_corners(rank, s->corner[t]);
         const double *first = s->mesh->xyz[n[s->corner[t][0]]];
         s->placed[t] = (tm_curve_point){tm_space_position(&s->space, first), (uint32_t)t};
     }

@@ -18,11 +18,15 @@
 
 TM_EXTERN_C_BEGIN
 
+/* Appends to a text, which says itself whether memory was out. */
 typedef struct tm_json {
     tm_text *text;
     bool comma; /* the next item needs one before it */
 } tm_json;
 
+/* Append an item: to an object with its key, to an array, or as the whole of the text,
+ * with key NULL. tm_json_open() begins an object or an array, which the closing bracket
+ * ends; that each has its own is the caller's to see to. Strings are UTF-8. O(length). */
 void tm_json_open(tm_json *json, const char *key, char bracket); /* '{' or '[' */
 void tm_json_close(tm_json *json, char bracket);                 /* '}' or ']' */
 void tm_json_bool(tm_json *json, const char *key, bool value);

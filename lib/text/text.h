@@ -19,6 +19,8 @@ typedef struct tm_text {
     bool failed;
 } tm_text;
 
+/* Append bytes, a string, what printf() would print, or a number. O(length) on average.
+ */
 void tm_text_append(tm_text *text, const char *bytes, size_t size);
 void tm_text_string(tm_text *text, const char *string);
 void tm_text_format(tm_text *text, const char *format, ...)

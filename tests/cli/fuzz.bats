@@ -10,3 +10,16 @@ bats_require_minimum_version 1.5.0
     echo "$output"
     [ "$status" -eq 0 ]
 }
+
+@test "the corpus of every fuzz target, without a fuzzer" {
+    corpus=$BATS_TEST_DIRNAME/../fuzz/corpus
+    for target in "$TM_BUILD"/fuzz/replay/*; do
+        [ -x "$target" ] || continue
+        run "$target" "$corpus/${target##*/}"/*
+        if [ "$status" -ne 0 ]; then
+            echo "${target##*/}: exit status $status"
+            tail -n 20 <<<"$output"
+            return 1
+        fi
+    done
+}

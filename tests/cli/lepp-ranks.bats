@@ -12,6 +12,8 @@ setup_file() {
 
 setup() {
     load helpers
+    load ranks
+    need_mpirun
     cd "$BATS_FILE_TMPDIR" || exit
     out=$BATS_TEST_TMPDIR
 }
@@ -26,25 +28,79 @@ tetrahedra() {
     }' | tetgen-mesh --no-history -
 }
 
-# ranks N COMMAND…: under a launcher. What run.sh sets for a process alone keeps several
-# from finding each other.
-ranks() {
-    count=$1
-    shift
-    unset "${!OMPI_MCA_@}" HWLOC_COMPONENTS
-    timeout 120 mpirun --allow-run-as-root --oversubscribe -n "$count" "$@"
+# Prints N^3 cubes of six tetrahedra each, as a mesh can be that ranks have trouble with: in
+# a random order, half of them left-handed; two regions; cubes that only touch at edges and
+# at nodes; rows of .face on the boundary and inside, with and without markers, and of
+# .edge; attributes and markers of nodes; nodes that no tetrahedron has; and with "flat"
+# flat ones, else nodes that are shaken.
+troubled_cubes() {
+    python3 - "$@" <<'END'
+import itertools, random, sys
+n, flat = int(sys.argv[1]), len(sys.argv) > 2
+random.seed(n)
+def node(p): return p[0] + (n + 1) * (p[1] + (n + 1) * p[2])
+def place(p):
+    by = [0, 0, 0]
+    if flat:
+        inside = 0 < min(p) and max(p) < n and {c % 4 for c in p} == {2}
+        by = [1, .5, .5] if inside and random.random() < .6 else by
+    else:
+        by = [random.uniform(-.14, .14) if 0 < c < n and c != n // 2 else 0 for c in p]
+    return [(c + b) / n for c, b in zip(p, by)]
+points = [place((x, y, z)) for z, y, x in itertools.product(range(n + 1), repeat=3)]
+points += [[random.uniform(-.2, 1.2) for _ in range(3)] for _ in range(40)]
+name = list(range(len(points)))
+random.shuffle(name)
+tets = []
+for z, y, x in itertools.product(range(n), repeat=3):
+    if x >= n - 3 and (x + y) % 2 == 0 or x == 0 and (y + z) % 2:
+        continue
+    for axes in itertools.permutations(range(3)):
+        p = [x, y, z]
+        t = [node(p)]
+        for a in axes:
+            p[a] += 1
+            t.append(node(p))
+        random.shuffle(t)
+        tets.append([name[v] for v in t] + [1 + (z >= n // 2), 0])
+random.shuffle(tets)
+sides, edges = {}, set()
+for t in tets:
+    for i in range(4):
+        f = tuple(sorted(t[:i] + t[i + 1:4]))
+        sides[f] = sides.get(f, 0) + 1
+    edges |= {tuple(sorted(e)) for e in itertools.combinations(t[:4], 2)}
+def some(rows, chances, markers):
+    rows = [list(r) + [random.choice(markers(r))] for r in sorted(rows)
+            if random.random() < chances(r)]
+    random.shuffle(rows)
+    return rows
+faces = some(sides, lambda f: .7 if sides[f] == 1 else .008,
+             lambda f: (0, 1, 1, 2) if sides[f] == 1 else (0, 5))
+edges = some(edges, lambda e: .01, lambda e: (0, 0, 3))
+rows = [None] * len(points)
+for p, v in zip(points, name):
+    rows[v] = p + [2 * p[0], p[1] * p[2], 7 * (random.random() < .01)]
+print('termesh 1')
+for header, block in (('.node\n%d 3 2 1', rows), ('.ele\n%d 4 2', tets),
+                      ('.face\n%d 1', faces), ('.edge\n%d 1', edges)):
+    print(header % len(block))
+    for i, row in enumerate(block):
+        print(i, *row)
+print('.end')
+END
 }
 
 @test "a small mesh" {
     lepp-improve points.tm >"$out/one.tm"
     for n in 1 3; do
-        ranks "$n" lepp-improve points.tm >"$out/ranks.tm"
+        on_ranks "$n" lepp-improve points.tm >"$out/ranks.tm"
         cmp "$out/one.tm" "$out/ranks.tm"
     done
     lepp-improve --no-history points.tm >"$out/one.tm"
-    ranks 2 lepp-improve --no-history -o "$out/file.tm" points.tm
+    on_ranks 2 lepp-improve --no-history -o "$out/file.tm" points.tm
     cmp "$out/one.tm" "$out/file.tm"
-    ranks 2 lepp-improve --no-history <points.tm >"$out/ranks.tm"
+    on_ranks 2 lepp-improve --no-history <points.tm >"$out/ranks.tm"
     cmp "$out/one.tm" "$out/ranks.tm"
 }
 
@@ -54,15 +110,49 @@ ranks() {
         # shellcheck disable=SC2086 # options and their arguments
         lepp-improve $options points.tm >"$out/one.tm"
         # shellcheck disable=SC2086
-        ranks 2 lepp-improve $options points.tm >"$out/ranks.tm"
+        on_ranks 2 lepp-improve $options points.tm >"$out/ranks.tm"
         cmp "$out/one.tm" "$out/ranks.tm"
     done
     lepp-improve --json="$out/one.json" points.tm >/dev/null
-    ranks 2 lepp-improve --json="$out/ranks.json" points.tm >/dev/null
+    on_ranks 2 lepp-improve --json="$out/ranks.json" points.tm >/dev/null
     for name in one ranks; do
         sed 's/"seconds": [^,]*,//' "$out/$name.json" >"$out/$name.txt"
     done
     cmp "$out/one.txt" "$out/ranks.txt"
+}
+
+# same_in_parts TETS MESH [RANKS]: improved in parts of so many, by ranks and by one.
+same_in_parts() {
+    local small=$TM_BUILD/ranks/improve_small
+    : >"$out/one.tm"
+    "$small" "$1" "$2" "$out/one.tm" >"$out/one.txt"
+    cat "$out/one.txt"
+    for n in ${3:-1 2 3 4 7}; do
+        : >"$out/ranks.tm"
+        on_ranks "$n" "$small" "$1" "$2" "$out/ranks.tm" >"$out/ranks.txt"
+        diff "$out/one.txt" "$out/ranks.txt"
+        cmp "$out/one.tm" "$out/ranks.tm"
+    done
+}
+
+@test "parts of a mesh with regions, rows of all kinds and edges where it touches itself" {
+    troubled_cubes 10 >"$out/cubes.tm"
+    same_in_parts 400 "$out/cubes.tm"
+    grep -v ' 0 turned\| 0 dropped\| 0 locked\| 0 operations' "$out/one.txt"
+    grep -c . "$out/ranks.tm"
+}
+
+@test "parts of a mesh with flat tetrahedra" {
+    troubled_cubes 8 flat >"$out/cubes.tm"
+    same_in_parts 400 "$out/cubes.tm" "2 3"
+    grep -v ' 0 flat' "$out/one.txt"
+}
+
+@test "more ranks than parts, and a tetrahedron alone" {
+    same_in_parts 100000 points.tm "3"
+    printf '%s\n' 'termesh 1' .node '4 3 0 0' '1 0 0 0' '2 1 0 0' '3 0 1 0' '4 0 0 1' \
+        .ele '1 4 0' '1 1 2 3 4' .end >"$out/one-tet.tm"
+    same_in_parts 10 "$out/one-tet.tm" "2"
 }
 
 @test "errors are said once, and no file is left" {
@@ -70,7 +160,7 @@ ranks() {
     status_of_one=0
     lepp-improve "$out/cut.tm" >/dev/null 2>"$out/one.txt" || status_of_one=$?
     [ "$status_of_one" -gt 0 ]
-    run --separate-stderr ranks 3 lepp-improve -o "$out/none.tm" "$out/cut.tm"
+    run --separate-stderr on_ranks 3 lepp-improve -o "$out/none.tm" "$out/cut.tm"
     [ "$status" -eq "$status_of_one" ]
     [ "$(grep -c '^lepp-improve: ' <<<"$stderr")" -eq 1 ]
     [ ! -e "$out/none.tm" ]

@@ -97,6 +97,7 @@ nested() {
     shapes folded >folded.off
     same_on 2 3 -- -s 5 folded.off
     same_on 2 -- -s 5 --resolve 0 folded.off
+    same_on 2 3 7 -- -s 4 folded.off
     shapes spikes >spikes.off
     same_on 3 -- -s 5 spikes.off
 }

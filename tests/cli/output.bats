@@ -5,6 +5,7 @@
 
 bats_require_minimum_version 1.5.0
 
+load helpers
 load filters
 
 # Whether there are no other files than when this was called first.
@@ -49,55 +50,6 @@ leaves_nothing() {
         python3 -c 'import json, sys; sys.exit(type(json.load(sys.stdin)) != dict)' <report
     }
     for_each_filter reports
-}
-
-@test "memory out, at any time: exit 4, or what is written is all there" {
-    case ${TM_BUILD:?} in */san) skip "the sanitizers have an allocator of their own" ;; esac
-    cat >fail.c <<'END'
-#include <errno.h>
-#include <stdio.h>
-#include <stdlib.h>
-extern void *__libc_malloc(size_t), *__libc_calloc(size_t, size_t);
-extern void *__libc_realloc(void *, size_t);
-static long count, fails;
-__attribute__((constructor)) static void start(void)
-{
-    const char *number = getenv("FAILS");
-    fails = number ? atol(number) : 0;
-    unsetenv("LD_PRELOAD"); /* not in other programs */
-}
-__attribute__((destructor)) static void end(void)
-{
-    FILE *file = fails ? NULL : fopen("count", "w");
-    if (file)
-        fprintf(file, "%ld\n", count), fclose(file);
-}
-static int fail(void) { return ++count == fails && (errno = ENOMEM); }
-void *malloc(size_t size) { return fail() ? NULL : __libc_malloc(size); }
-void *calloc(size_t n, size_t size) { return fail() ? NULL : __libc_calloc(n, size); }
-void *realloc(void *old, size_t size) { return fail() ? NULL : __libc_realloc(old, size); }
-END
-    cc -shared -fPIC -o fail.so fail.c || skip "no such library can be made"
-    fails() {
-        ! needs_p4est "$1" && ! needs_gmsh "$1" || return 0 # MPI and Gmsh abort
-        # shellcheck disable=SC2046 # words
-        set -- "$1" $(operands "$1" "$(input "$1")")
-        [ "$1" != lepp-improve ] || set -- "$1" -a improve -t 30 "${@:2}"
-        "$@" >expected
-        LD_PRELOAD=./fail.so "$@" >written
-        cmp written expected
-        [ "$(cat count)" -gt 5 ]
-        for ((which = 1; which <= $(cat count); which++)); do
-            status=0
-            FAILS=$which LD_PRELOAD=./fail.so "$@" >written 2>message || status=$?
-            case $status in
-            0) cmp written expected ;;
-            4) grep "^$1: .*memory" message ;;
-            *) return 1 ;;
-            esac
-        done
-    }
-    for_each_filter fails
 }
 
 @test "SIGKILL or SIGQUIT while it writes leaves nothing behind" {
@@ -318,4 +270,65 @@ write_each() {
         [[ "$stderr" == 'tet-stats: gnuplot '*'status 3: \x1b[31mbad' ||
             "$stderr" == 'tet-stats: gnuplot '*'signal 15 (Terminated): \x1b[31mbad' ]]
     done
+}
+
+@test "-o or --json to a named pipe that nobody reads any more: SIGTERM ends it, nothing is left" {
+    many 300 >many.tm
+    mkfifo pipe
+    leaves_nothing
+    for command in "mesh-check --json pipe many.tm" "tet-stats --list --json - -o pipe many.tm" \
+        "vtk-export -o pipe many.tm" "vtk-export --json report -o pipe many.tm" \
+        "lepp-improve -s 1 -a bisection --json report -o pipe many.tm"; do
+        # shellcheck disable=SC2086 # words
+        python3 - $command <<'END'
+import fcntl, os, signal, subprocess, sys, time
+fd = os.open('pipe', os.O_RDWR)
+os.write(fd, bytes(fcntl.fcntl(fd, fcntl.F_SETPIPE_SZ, 4096)))
+filter = subprocess.Popen(sys.argv[1:], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+asleep = 0
+while asleep < 5:
+    state = open('/proc/%d/stat' % filter.pid).read().rpartition(') ')[2][0]
+    assert state in 'RSD', state
+    asleep = asleep + 1 if state == 'S' else 0
+    time.sleep(0.02)
+filter.terminate()
+sys.exit(filter.wait(20) != -signal.SIGTERM)
+END
+        leaves_nothing
+    done
+}
+
+@test "a filter is ended: gnuplot ends, too" {
+    mkdir bin
+    printf '%s\n' '#!/bin/sh' "echo \$\$ >'$PWD/pid.new'" "mv '$PWD/pid.new' '$PWD/pid'" \
+        'exec sleep 1000' >bin/gnuplot
+    chmod +x bin/gnuplot
+    for signal in KILL TERM; do
+        for filter in tet-stats jens-stats poly-stats; do
+            rm -f pid
+            PATH=$PWD/bin:$PATH "$filter" --plot figure.svg "$(input "$filter")" >table &
+            while ! [ -e pid ]; do sleep 0.02; done
+            kill "-$signal" $!
+            while ps -p "$(cat pid)" -o stat= | grep -v Z; do sleep 0.02; done
+            [ ! -e figure.svg ]
+        done
+    done
+}
+
+@test "a set of files: where one cannot have its name none has, and the old ones are back" {
+    case ${TM_BUILD:?} in */san*) skip "the sanitizers have an allocator of their own" ;; esac
+    for file in node face; do echo "old $file" >"set.$file"; done
+    for ((which = 1; which < 20; which++)); do
+        head -c 72 /dev/zero >count
+        status=0
+        TM_FAULTS_COUNT=count TM_FAULTS="name $which $which" LD_PRELOAD=$TM_BUILD/faults/preload.so \
+            tetgen-export --json report set corner.tm 2>message || status=$?
+        [ "$status" -eq 4 ] || break
+        [ "$(cat set.node set.face)" = "$(printf 'old node\nold face')" ]
+        [ "$(echo set.* report* termesh.*)" = "set.face set.node report* termesh.*" ]
+    done
+    [ "$which" -gt 4 ]
+    [ "$status" -eq 0 ]
+    [ "$(echo set.* report* termesh.*)" = "set.ele set.face set.node report termesh.*" ]
+    tetgen-import set | mesh-check
 }

@@ -6,61 +6,7 @@
 bats_require_minimum_version 1.5.0
 load helpers
 load filters
-
-# A gear as surface, tetrahedra, octree elements and polyhedra, and in all formats.
-make_inputs() {
-    PATH=$PATH:$TM_BUILD/bench
-    shapes gear 1 >gear.off
-    surface-import -q gear.off >surface.tm
-    tetgen-mesh -q1.4 -a 0.0002 -q surface.tm >tets.tm
-    octree-mesh -q -s 5 surface.tm >elements.tm
-    polylla3d -q tets.tm >cells.tm
-    abaqus-export -q tets.tm >tets.inp
-    medit-export -q tets.tm >tets.mesh
-    vtu-export -q elements.tm >elements.vtu
-    vtk-export -q elements.tm >elements.vtk
-    m3d-export -q elements.tm >elements.m3d
-    oct-export -q elements.tm >elements.oct
-    visf-export -q cells.tm >cells.visf
-    tetgen-export -q tets tets.tm
-    openfoam-export -q cells cells.tm
-    is_left_out gmsh-export || gmsh-export -q tets.msh tets.tm
-    { echo '[Vertices, ARRAY1<POINT3D>]'; awk 'NR == 2 { n = $1; print n }
-        NR > 2 && NR <= n + 2' gear.off; echo '[Triangles, ARRAY1<STRING>]'
-        awk 'NR == 2 { n = $1; print $2 } NR > n + 2 { print $2, $3, $4, 0, 0, 0 }' gear.off
-    } >gear.mdl
-}
-
-# What a filter reads of them.
-large_input() {
-    case $1 in
-    tetgen-mesh | octree-mesh | surface-import | surface-mend) echo gear.off ;;
-    off-export | stl-export | ply-export | obj-export) echo tets.tm ;;
-    octree-repair | oct-export | m3d-export | jens-stats | vtk-export | vtu-export)
-        echo elements.tm ;;
-    poly-stats | visf-export | openfoam-export | mesh-view) echo cells.tm ;;
-    abaqus-import) echo tets.inp ;;
-    medit-import) echo tets.mesh ;;
-    vtu-import) echo elements.vtu ;;
-    vtk-import) echo elements.vtk ;;
-    m3d-import) echo elements.m3d ;;
-    oct-import) echo elements.oct ;;
-    visf-import) echo cells.visf ;;
-    mdl-import) echo gear.mdl ;;
-    gmsh-import) echo tets.msh ;;
-    openfoam-import) echo cells ;;
-    tetgen-import) echo tets.node ;;
-    *) echo tets.tm ;;
-    esac
-}
-
-# What makes it work hard.
-more_options() {
-    case $1 in
-    octree-repair) echo -t 0.35 ;;
-    surface-mend) echo --weld auto ;;
-    esac
-}
+load large
 
 # Runs the filter with so many threads in a folder of its own. (octree-repair ends with 1.)
 run_with() {
@@ -80,6 +26,42 @@ same_for_all_threads() {
 }
 
 @test "each filter gives the same bytes with 1, 2, 3 and 8 threads" {
-    make_inputs
+    make_large_inputs
     for_each_filter same_for_all_threads
+}
+
+# Runs all filters on the small input in the folder $1, behind the words that follow.
+run_small() {
+    local to=$1
+    shift
+    mkdir "$to"
+    for filter in ${some:-$filters}; do
+        # shellcheck disable=SC2046 # words
+        (mkdir "$to/$filter" && cd "$to/$filter" && "$@" "$filter" --quiet --no-history \
+            $(operands "$filter" "../../$(input "$filter")") >printed 2>messages; echo $? >status)
+    done
+}
+
+@test "each filter gives the same bytes in three locales" {
+    run_small in-posix env LC_ALL=POSIX
+    LOCPATH=$(comma_locale)
+    localedef -i tr_TR -f UTF-8 "$LOCPATH/turkish"
+    export LOCPATH
+    [ "$(LC_ALL=comma printf '%.1f' 1)" = 1,0 ]
+    for locale in comma turkish; do
+        run_small "in-$locale" env "LC_ALL=$locale"
+        diff -r in-posix "in-$locale"
+    done
+}
+
+# Its arithmetic is in software. Whole programs are slow: those that compute most.
+@test "the same bytes under valgrind" {
+    case ${TM_BUILD:?} in */san*) skip "the sanitizers do not run under valgrind" ;; esac
+    command -v valgrind >/dev/null || skip "there is no valgrind"
+    some="lepp-improve polylla3d jens-stats"
+    surface cube off >cube.off
+    tetgen-mesh --quiet -a 0.02 cube.off >corner.tm
+    run_small alone env
+    run_small valgrind valgrind -q --log-file=/dev/null
+    diff -r alone valgrind
 }

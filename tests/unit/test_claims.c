@@ -40,6 +40,20 @@ static void test_numbers_of_text(void **state)
     }
 }
 
+/* Attributes of no rows at all, and a wrong number of them. */
+static void test_attributes_of_nothing(void **state)
+{
+    (void)state;
+    static const char *const files[] = {"0 3 1000000000 0\n", "0 3 2147483647 1\n",
+                                        "1 3 -7 0\n1 0 0 0\n"};
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        tm_text meaning = {0};
+        assert_int_equal(read_copy(read_node, files[i], strlen(files[i]), &meaning),
+                         TM_ERROR_INPUT);
+        tm_text_free(&meaning);
+    }
+}
+
 /* At each byte, as a 32-bit number of both byte orders. */
 static void check_binary(reader *read, const char *name, const char *bytes, size_t size)
 {
@@ -95,6 +109,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_numbers_of_text),
+        cmocka_unit_test(test_attributes_of_nothing),
         cmocka_unit_test(test_words_of_binary),
     };
     limit_memory();

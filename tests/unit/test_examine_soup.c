@@ -3,6 +3,7 @@
  * count agrees with one that is made plainly from the definition. */
 #include "../../lib/geom/predicates.h"
 #include "../../lib/examine/element_examine.h"
+#include "../../lib/examine/ranks/examine_ranks.h"
 #include "random.h"
 
 #include <setjmp.h>
@@ -251,6 +252,21 @@ static void check_as_mixed(const tm_mesh_view *tets, const tm_examination *found
     assert_true(mixed.volume == found->volume);
 }
 
+/* One rank, whose slices are all of the mesh, finds the same. */
+static void check_as_ranks(const tm_mesh_view *mesh, const tm_examination *found)
+{
+    const tm_element_slices slices = {*mesh,       mesh->nodes, mesh->elements,
+                                      mesh->faces, mesh->edges, mesh->facets};
+    tm_examination ranks;
+    assert_int_equal(tm_element_examine_ranks(&ranks, &slices, 1, NULL), TM_OK);
+    assert_memory_equal(ranks.defect, found->defect, sizeof ranks.defect);
+    assert_int_equal(ranks.boundary_faces, found->boundary_faces);
+    assert_int_equal(ranks.components, found->components);
+    assert_int_equal(ranks.euler, found->euler);
+    assert_int_equal(ranks.unused_nodes, found->unused_nodes);
+    assert_true(ranks.volume == found->volume && ranks.area == found->area);
+}
+
 static void check(const soup *s)
 {
     const tm_mesh_view mesh = {.nodes = s->nodes,
@@ -282,6 +298,7 @@ static void check(const soup *s)
     assert_int_equal(found.euler, euler(s));
     assert_int_equal(found.unused_nodes, unused_nodes(s));
     check_as_mixed(&mesh, &found);
+    check_as_ranks(&mesh, &found);
 }
 
 static void test_random_soups(void **state)

@@ -220,11 +220,11 @@ tm_json *filter_json_begin(filter *f)
     return &f->json_object;
 }
 
-/* To where --json says. */
+/* To where --json says; a file gets its name with those of the output. */
 static tm_status write_report(const filter *f, tm_error *error)
 {
     if (strcmp(f->json, "-") != 0)
-        return output_file_write(f->json, &f->report, error);
+        return output_files_write(f->files, f->json, &f->report, error);
     progress_hold(f->progress);
     tm_status status = tm_write_text(f->json_is_output ? STDOUT_FILENO : STDERR_FILENO,
                                      &f->report, error);
@@ -255,13 +255,13 @@ int filter_finish(filter *f, int status)
     require_report(f);
     filter_verbose_ranks(f);
     progress_end(f->progress);
-    if (output_files_finish(f->files, &error) != TM_OK)
-        filter_fail(f, &error);
     if (close(STDOUT_FILENO) != 0) {
         tm_fail_at(&error, TM_ERROR_SYSTEM, "<stdout>", 0, NULL, "cannot write: %s",
                    strerror(errno));
         filter_fail(f, &error);
     }
+    if (output_files_finish(f->files, &error) != TM_OK)
+        filter_fail(f, &error);
     tm_text_free(&f->command);
     return filter_speaks() ? status : EXIT_SUCCESS;
 }

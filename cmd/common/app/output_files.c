@@ -108,12 +108,31 @@ static int make_named(output_file *file)
     return fd;
 }
 
-/* Makes a file in the folder of file->target; -1 with errno where that fails. */
-static int make_temporary(output_file *file, bool named, const struct stat *old)
+/* A signal must not end the filter from now on: something has a name that is to be gone.
+ */
+static void hold_signals(output_files *files)
 {
-    int fd = named ? -1 : make_unnamed(file);
-    if (fd < 0)
+    if (!files->held)
+        private_signals_hold();
+    files->held = true;
+}
+
+static void release_signals(output_files *files)
+{
+    const bool held = files->held;
+    files->held = false;
+    if (held)
+        private_signals_release();
+}
+
+/* Makes a file in the folder of file->target; -1 with errno where that fails. */
+static int make_temporary(output_files *files, output_file *file, const struct stat *old)
+{
+    int fd = files->named ? -1 : make_unnamed(file);
+    if (fd < 0) {
+        hold_signals(files);
         fd = make_named(file);
+    }
     if (fd < 0)
         return -1;
     const mode_t everyone = S_IRUSR | S_IWUSR | S_IRGRP | S_IWGRP | S_IROTH | S_IWOTH;
@@ -147,18 +166,36 @@ static bool link_beside(output_file *file, const char *open_file)
     return false;
 }
 
+/* Gives the file under file->temporary its name. Where that is another one's, which may
+ * have to come back, that is under file->temporary then. False with errno. */
+static bool exchange_names(output_file *file, bool may_come_back)
+{
+    const char *from = file->temporary, *to = file->target;
+    file->named =
+        may_come_back && renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_EXCHANGE) == 0;
+    if (file->named)
+        return true;
+    const bool is_new = access(to, F_OK) != 0;
+    if (rename(from, to) != 0)
+        return false;
+    file->named = is_new;
+    free(file->temporary);
+    file->temporary = NULL;
+    return true;
+}
+
 /* Gives a whole file its name, in place of the one that has it; false with errno. */
-static bool give_name(output_file *file)
+static bool give_name(output_file *file, bool may_come_back)
 {
     if (file->unnamed) {
         char open_file[64];
         snprintf(open_file, sizeof open_file, "/proc/self/fd/%d", file->fd);
         if (linkat(AT_FDCWD, open_file, AT_FDCWD, file->target, AT_SYMLINK_FOLLOW) == 0)
-            return true;
+            return file->named = true;
         if (errno != EEXIST || !link_beside(file, open_file))
             return false;
     }
-    return !file->temporary || rename(file->temporary, file->target) == 0;
+    return !file->temporary || exchange_names(file, may_come_back);
 }
 
 /* Whether errno says that no file can be made in the folder, by this user or at all. */
@@ -167,7 +204,7 @@ static bool folder_is_closed(void)
     return errno == EACCES || errno == EPERM || errno == EROFS;
 }
 
-static int open_file(output_file *file, bool named)
+static int open_file(output_files *files, output_file *file)
 {
     struct stat old;
     const bool exists = stat(file->name, &old) == 0;
@@ -179,7 +216,7 @@ static int open_file(output_file *file, bool named)
     const int there = descriptor_of(file->target);
     if (there >= 0)
         return fcntl(there, F_DUPFD_CLOEXEC, 0); /* it goes on where it is */
-    const int fd = make_temporary(file, named, exists ? &old : NULL);
+    const int fd = make_temporary(files, file, exists ? &old : NULL);
     if (fd < 0 && exists && folder_is_closed())
         return open(file->target, O_WRONLY | O_TRUNC | O_CLOEXEC);
     return fd;
@@ -191,7 +228,7 @@ tm_status output_files_make_folder(output_files *files, const char *name, tm_err
     char *folder = strdup(name);
     if (!folder)
         return tm_fail_memory(error);
-    private_signals_hold();
+    hold_signals(files);
     if (mkdir(name, everyone) == 0) {
         files->folder = folder;
         return TM_OK;
@@ -201,7 +238,7 @@ tm_status output_files_make_folder(output_files *files, const char *name, tm_err
         status = tm_fail_at(error, TM_ERROR_SYSTEM, name, 0, NULL,
                             "cannot make the folder: %s", strerror(errno));
     free(folder);
-    private_signals_release();
+    release_signals(files);
     return status;
 }
 
@@ -215,14 +252,12 @@ tm_status output_files_open(output_files *files, const char *name, int *fd,
     output_file file = {.name = strdup(name), .fd = -1};
     if (!file.name)
         return tm_fail_memory(error);
-    if (files->count == 0)
-        private_signals_hold();
-    file.fd = open_file(&file, files->named);
+    file.fd = open_file(files, &file);
     if (file.fd < 0) {
         tm_status status = fail_file(name, error);
         free_file(&file);
-        if (files->count == 0)
-            private_signals_release();
+        if (files->count == 0 && !files->folder)
+            release_signals(files);
         return status;
     }
     *fd = file.fd;
@@ -249,20 +284,21 @@ static void release(output_files *files)
         free_file(&files->file[i]);
     }
     free(files->file);
-    const int held = (files->count > 0) + (files->folder != NULL);
     free(files->folder);
-    *files = (output_files){0};
-    for (int i = 0; i < held; i++)
-        private_signals_release();
+    *files = (output_files){.held = files->held};
+    release_signals(files);
 }
 
 void output_files_abandon(output_files *files)
 {
     for (size_t i = 0; i < files->count; i++) {
-        if (files->file[i].temporary)
-            unlink(files->file[i].temporary);
-        if (files->folder && files->file[i].target)
-            unlink(files->file[i].target);
+        const output_file *file = &files->file[i];
+        if (file->named && file->temporary)
+            rename(file->temporary, file->target);
+        else if (file->named)
+            unlink(file->target);
+        else if (file->temporary)
+            unlink(file->temporary);
     }
     if (files->folder)
         rmdir(files->folder);
@@ -285,17 +321,22 @@ static tm_status close_named(output_files *files, tm_error *error)
 
 tm_status output_files_finish(output_files *files, tm_error *error)
 {
+    hold_signals(files);
     tm_status status = close_named(files, error);
     if (status == TM_OK && private_signals_came())
         status = tm_fail(error, TM_ERROR_SYSTEM, "interrupted");
     for (size_t i = 0; i < files->count && status == TM_OK; i++)
-        if (!give_name(&files->file[i]))
+        if (!give_name(&files->file[i], files->count > 1))
             status = fail_file(files->file[i].name, error);
-    if (status == TM_OK)
-        release(files);
-    else
+    if (status != TM_OK) {
         output_files_abandon(files);
-    return status;
+        return status;
+    }
+    for (size_t i = 0; i < files->count; i++)
+        if (files->file[i].temporary)
+            unlink(files->file[i].temporary); /* the old one */
+    release(files);
+    return TM_OK;
 }
 
 tm_status output_files_write(output_files *files, const char *name, const tm_text *text,

@@ -21,6 +21,7 @@ typedef struct output_file {
     char *target;    /* where that leads to, through symbolic links; NULL: a device */
     char *temporary; /* its other name, or NULL */
     bool unnamed;    /* else, and without a temporary, written directly */
+    bool named;      /* target is it; an old one has the other name, if it was there */
     int fd;
 } output_file;
 
@@ -30,6 +31,7 @@ typedef struct output_files {
     output_file *file;
     char *folder; /* that was made for them, or NULL */
     bool named;   /* none is to be without a name while it is written */
+    bool held;    /* signals: something has a name that is not to stay (private.h) */
 } output_files;
 
 /* Makes the folder that the files will be in, unless it is there. One for a set, before
@@ -50,7 +52,7 @@ void output_files_path(const output_files *files, char path[OUTPUT_PATH]);
 tm_status output_files_write(output_files *files, const char *name, const tm_text *text,
                              tm_error *error);
 
-/* Closes all and gives them their names. */
+/* Closes all and gives them their names; where one cannot have it, none has. */
 tm_status output_files_finish(output_files *files, tm_error *error);
 
 /* Removes all that was begun. */

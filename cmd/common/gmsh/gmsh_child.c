@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gmsh_child.h"
 
+#include "../process/become.h"
 #include "../process/private.h"
 
 #include <errno.h>
@@ -12,7 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -20,15 +20,29 @@
 /* Where the child leaves what it has to say. */
 typedef struct report {
     bool is_done;
+    bool is_limited; /* its memory, more than that of its parent */
+    bool lacks_memory;
     tm_status status;
     tm_error error;
 } report;
+
+static report *to_leave; /* that of this child */
+
+_Noreturn static void end_for_memory(void)
+{
+    to_leave->lacks_memory = true;
+    _exit(EXIT_FAILURE);
+}
 
 tm_status gmsh_fail(tm_status status, tm_error *error)
 {
     char *what = NULL;
     int failed;
     gmshLoggerGetLastError(&what, &failed);
+    if (!failed && what && strstr(what, "Out of memory"))
+        end_for_memory();
+    if (!failed && what && strstr(what, "Unable to open file")) /* which is open here */
+        status = TM_ERROR_SYSTEM;
     if (!failed && what && *what)
         tm_fail(error, status, "Gmsh: %s", what);
     else
@@ -75,14 +89,16 @@ size_t gmsh_link_hide(const gmsh_link *link, char *bytes, size_t size)
 
 /* The child ------------------------------------------------------------------------ */
 
-/* Limits what is mapped to that much more than there is, in bytes. The sanitizers map
- * more than any limit. */
-static void limit_memory(size_t more)
+/* Limits what is mapped to that much more than there is, in bytes, unless the limit is
+ * less already. The sanitizers map more than any limit. */
+static bool limit_memory(size_t more)
 {
 #ifdef __SANITIZE_ADDRESS__
     (void)more;
+    return false;
 #else
     size_t pages = 0;
+    struct rlimit before;
     FILE *file = fopen("/proc/self/statm", "re");
     if (file) {
         if (fscanf(file, "%zu", &pages) != 1)
@@ -90,26 +106,43 @@ static void limit_memory(size_t more)
         fclose(file);
     }
     const rlim_t most = (rlim_t)(pages * (size_t)sysconf(_SC_PAGESIZE) + more);
-    setrlimit(RLIMIT_AS, &(struct rlimit){most, most});
+    return pages > 0 && getrlimit(RLIMIT_AS, &before) == 0 && before.rlim_cur > most &&
+           setrlimit(RLIMIT_AS, &(struct rlimit){most, most}) == 0;
 #endif
 }
 
-static void limit(const gmsh_limits *limits)
+static void limit(const gmsh_limits *limits, report *left)
 {
     if (limits->memory > 0)
-        limit_memory(limits->memory);
+        left->is_limited = limit_memory(limits->memory);
     if (limits->seconds > 0)
         setrlimit(RLIMIT_CPU, &(struct rlimit){limits->seconds, limits->seconds + 1});
     setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
 }
 
 /* The libraries below Gmsh print, too. */
-static void silence(void)
+static tm_status silence(tm_error *error)
 {
     const int nothing = open("/dev/null", O_RDWR | O_CLOEXEC);
     if (nothing < 0 || dup2(nothing, STDIN_FILENO) < 0 ||
         dup2(nothing, STDOUT_FILENO) < 0 || dup2(nothing, STDERR_FILENO) < 0)
-        _exit(EXIT_FAILURE);
+        return tm_fail(error, TM_ERROR_SYSTEM, "cannot open /dev/null: %s",
+                       strerror(errno));
+    return TM_OK;
+}
+
+/* std::set_new_handler() of the C++ library. */
+typedef void new_handler(void);
+new_handler *set_new_handler(new_handler *handler) __asm__("_ZSt15set_new_handlerPFvvE");
+
+/* Gmsh catches what is thrown where memory is out, and goes on with a part of the mesh.
+ * New is asked again once; then the child ends. */
+static void end_without_memory(void)
+{
+    static bool again;
+    if (again)
+        end_for_memory();
+    again = true;
 }
 
 static tm_status start_gmsh(tm_error *error)
@@ -128,36 +161,47 @@ static tm_status start_gmsh(tm_error *error)
 
 /* In the new process: never returns, and tidies nothing up. */
 _Noreturn static void be_child(gmsh_work *work, void *context, const gmsh_limits *limits,
-                               report *left)
+                               report *left, pid_t parent)
 {
     static const int ends[] = {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGXCPU};
     setpgid(0, 0);
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    silence();
+    if (!end_with_parent(parent))
+        _exit(EXIT_FAILURE);
     for (size_t i = 0; i < sizeof ends / sizeof *ends; i++)
         signal(ends[i], SIG_DFL);
     private_signals_unblock();
-    left->status = start_gmsh(&left->error);
+    to_leave = left;
+    set_new_handler(end_without_memory);
+    left->status = silence(&left->error);
+    if (left->status == TM_OK)
+        left->status = start_gmsh(&left->error);
     if (left->status == TM_OK) {
-        limit(limits);
+        limit(limits, left);
         left->status = work(context, &left->error);
     }
     left->is_done = true;
     _exit(EXIT_SUCCESS);
 }
 
-static tm_status fail_ended(int status, const gmsh_limits *limits, tm_error *error)
+/* How it ended, where it is not done. Where nothing is limited no file is read. */
+static tm_status fail_ended(int status, const report *left, const gmsh_limits *limits,
+                            tm_error *error)
 {
+    const bool reads = limits->seconds > 0;
+    const tm_status cause = reads ? TM_ERROR_INPUT : TM_ERROR_SYSTEM;
+    const char *why = reads ? " (the file may be damaged)" : "";
+    if (left->lacks_memory && left->is_limited)
+        return tm_fail(error, TM_ERROR_INPUT,
+                       "Gmsh asks for more memory than a file of this size needs%s", why);
+    if (left->lacks_memory)
+        return tm_fail_memory(error);
     if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
-        return tm_fail(error, TM_ERROR_INPUT,
-                       "Gmsh did not come to an end in %u seconds (the file may be "
-                       "damaged)",
-                       limits->seconds);
+        return tm_fail(error, cause, "Gmsh did not come to an end in %u seconds%s",
+                       limits->seconds, why);
     if (WIFSIGNALED(status))
-        return tm_fail(error, TM_ERROR_INPUT,
-                       "Gmsh broke off: %s (the file may be damaged)",
-                       strsignal(WTERMSIG(status)));
-    return tm_fail(error, TM_ERROR_INPUT, "Gmsh broke off (the file may be damaged)");
+        return tm_fail(error, cause, "Gmsh broke off: %s%s", strsignal(WTERMSIG(status)),
+                       why);
+    return tm_fail(error, cause, "Gmsh broke off%s", why);
 }
 
 /* Waits; a signal that ends the filter has killed it. */
@@ -175,7 +219,7 @@ static tm_status wait_for(pid_t child, const report *left, const gmsh_limits *li
         return tm_fail(error, TM_ERROR_SYSTEM, "cannot wait for Gmsh: %s",
                        strerror(errno));
     if (!left->is_done)
-        return fail_ended(status, limits, error);
+        return fail_ended(status, left, limits, error);
     if (left->status != TM_OK && error)
         *error = left->error;
     return left->status;
@@ -190,9 +234,10 @@ tm_status gmsh_child_run(gmsh_work *work, void *context, const gmsh_limits *limi
         return tm_fail_memory(error);
     private_signals_hold();
     private_signals_block();
+    const pid_t parent = getpid();
     const pid_t child = private_signals_came() ? -1 : fork();
     if (child == 0)
-        be_child(work, context, limits, left);
+        be_child(work, context, limits, left, parent);
     const int cause = errno;
     if (child > 0) {
         setpgid(child, child);

@@ -2,11 +2,12 @@
 #include "plot.h"
 
 #include "../../../lib/text/file.h"
+#include "../../../lib/text/input.h"
+#include "../process/become.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
-#include <spawn.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,21 +37,21 @@ static int memory_file(const tm_text *script, tm_error *error)
 static int start(int input, int output, int complaints, pid_t *child)
 {
     char *const arguments[] = {"gnuplot", "-d", NULL};
+    const int standard[] = {input, output, complaints};
+    const pid_t parent = getpid();
+    int failure[2], reason = 0;
     /* In the C locale gnuplot complains that it cannot write a degree sign. */
-    if (setenv("LC_ALL", "C.UTF-8", 1) != 0)
+    if (setenv("LC_ALL", "C.UTF-8", 1) != 0 || pipe2(failure, O_CLOEXEC) != 0)
         return errno;
-    posix_spawn_file_actions_t actions;
-    int reason = posix_spawn_file_actions_init(&actions);
-    if (reason != 0)
-        return reason;
-    reason = posix_spawn_file_actions_adddup2(&actions, input, STDIN_FILENO);
-    if (reason == 0)
-        reason = posix_spawn_file_actions_adddup2(&actions, output, STDOUT_FILENO);
-    if (reason == 0)
-        reason = posix_spawn_file_actions_adddup2(&actions, complaints, STDERR_FILENO);
-    if (reason == 0)
-        reason = posix_spawnp(child, arguments[0], &actions, NULL, arguments, environ);
-    posix_spawn_file_actions_destroy(&actions);
+    *child = fork();
+    if (*child == 0)
+        become_program(arguments, parent, standard, failure[1]);
+    if (*child < 0)
+        reason = errno;
+    close(failure[1]);
+    if (*child > 0 && tm_read_some(failure[0], (char *)&reason, sizeof reason) > 0)
+        waitpid(*child, NULL, 0);
+    close(failure[0]);
     return reason;
 }
 
@@ -124,7 +125,8 @@ static tm_status run(int script, int complaints, tm_text *figure, tm_error *erro
     return status;
 }
 
-static tm_status draw(const tm_text *script, const char *file, tm_error *error)
+static tm_status draw(const filter *f, const tm_text *script, const char *file,
+                      tm_error *error)
 {
     if (script->failed || script->size == 0)
         return tm_fail_memory(error);
@@ -138,7 +140,7 @@ static tm_status draw(const tm_text *script, const char *file, tm_error *error)
     if (fd >= 0)
         close(fd);
     if (status == TM_OK)
-        status = output_file_write(file, &figure, error);
+        status = output_files_write(f->files, file, &figure, error);
     tm_text_free(&figure);
     return status;
 }
@@ -147,7 +149,7 @@ void plot_write(const filter *f, tm_text *script, const char *file)
 {
     tm_error error;
     filter_stage(f, "drawing");
-    if (draw(script, file, &error) != TM_OK)
+    if (draw(f, script, file, &error) != TM_OK)
         filter_fail(f, &error);
     tm_text_free(script);
 }

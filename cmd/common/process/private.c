@@ -7,6 +7,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
+#include <stdalign.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -87,15 +88,19 @@ void private_signals_release(void)
 
 /* The folder ----------------------------------------------------------------------- */
 
-static void remove_folder(const char *path)
+/* Removes the folder that is open as fd, and its files. There may be no memory, and no
+ * other descriptor. */
+static void remove_folder(const char *path, int fd)
 {
-    DIR *listing = opendir(path);
-    if (listing) {
-        for (struct dirent *entry; (entry = readdir(listing));)
+    enum { ROOM = 4096 };
+    alignas(struct dirent64) char room[ROOM];
+    for (ssize_t got; (got = getdents64(fd, room, sizeof room)) > 0;)
+        for (ssize_t at = 0; at < got;) {
+            const struct dirent64 *entry = (const struct dirent64 *)(room + at);
             if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0)
-                unlinkat(dirfd(listing), entry->d_name, 0);
-        closedir(listing);
-    }
+                unlinkat(fd, entry->d_name, 0);
+            at += entry->d_reclen;
+        }
     rmdir(path);
 }
 
@@ -111,7 +116,7 @@ static void remove_left(const char *path)
     if (fstat(fd, &about) == 0 && about.st_uid == geteuid() &&
         (about.st_mode & (S_IRWXG | S_IRWXO)) == 0 &&
         about.st_mtime < time(NULL) - young && flock(fd, LOCK_EX | LOCK_NB) == 0)
-        remove_folder(path);
+        remove_folder(path, fd);
     close(fd);
 }
 
@@ -138,6 +143,21 @@ static void remove_all_left(const private_folder *folder)
     closedir(listing);
 }
 
+/* Makes it, opens and locks it; false with errno where that cannot be done. */
+static bool make_folder(private_folder *folder)
+{
+    if (!mkdtemp(folder->path))
+        return false;
+    folder->lock = open(folder->path, O_DIRECTORY | O_RDONLY | O_CLOEXEC);
+    const int cause = errno;
+    if (folder->lock < 0)
+        rmdir(folder->path);
+    else
+        flock(folder->lock, LOCK_EX | LOCK_NB);
+    errno = cause;
+    return folder->lock >= 0;
+}
+
 tm_status private_folder_open(private_folder *folder, const char *name, tm_error *error)
 {
     const char *parent = getenv("TMPDIR");
@@ -153,10 +173,7 @@ tm_status private_folder_open(private_folder *folder, const char *name, tm_error
     if (size < 0 || (size_t)size >= sizeof folder->path)
         return tm_fail(error, TM_ERROR_SYSTEM, "the path in TMPDIR is too long");
     private_signals_hold();
-    if (mkdtemp(folder->path)) {
-        folder->lock = open(folder->path, O_DIRECTORY | O_RDONLY | O_CLOEXEC);
-        if (folder->lock >= 0)
-            flock(folder->lock, LOCK_EX | LOCK_NB);
+    if (make_folder(folder)) {
         remove_all_left(folder);
         return TM_OK;
     }
@@ -171,14 +188,7 @@ tm_status private_folder_open(private_folder *folder, const char *name, tm_error
 /* Opens a file of the folder; -1 with errno where that fails. */
 static int open_file(const private_folder *folder, const char *file, int flags)
 {
-    int parent = open(folder->path, O_DIRECTORY | O_RDONLY | O_CLOEXEC);
-    if (parent < 0)
-        return -1;
-    int fd = openat(parent, file, flags | O_CLOEXEC, S_IRUSR | S_IWUSR);
-    int cause = errno;
-    close(parent);
-    errno = cause;
-    return fd;
+    return openat(folder->lock, file, flags | O_CLOEXEC, S_IRUSR | S_IWUSR);
 }
 
 static tm_status fail_file(const private_folder *folder, const char *file,
@@ -237,9 +247,8 @@ int private_folder_full(const private_folder *folder)
 
 void private_folder_close(private_folder *folder)
 {
-    remove_folder(folder->path);
-    if (folder->lock >= 0)
-        close(folder->lock);
+    remove_folder(folder->path, folder->lock);
+    close(folder->lock);
     folder->path[0] = '\0';
     private_signals_release();
 }

@@ -33,7 +33,7 @@ void private_signals_release(void);
  * a folder of that name in the same place. One at a time. */
 typedef struct private_folder {
     char path[768];
-    int lock; /* the folder, locked as long as it is in use */
+    int lock; /* the folder, open, and locked as long as it is in use */
 } private_folder;
 
 /* Makes $TMPDIR/termesh-NAME.XXXXXX, or that in /tmp, with mode 0700. The path, which may

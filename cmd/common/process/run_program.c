@@ -2,6 +2,7 @@
 #include "run_program.h"
 
 #include "../../../lib/text/input.h"
+#include "become.h"
 #include "private.h"
 
 #include <errno.h>
@@ -11,7 +12,6 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <termios.h>
 #include <time.h>
@@ -54,25 +54,6 @@ static bool open_terminal(channel *c)
         close(c->write);
     close(c->read);
     return false;
-}
-
-/* In the new process: never returns. */
-_Noreturn static void become(char *const argv[], pid_t parent, int output, int failure)
-{
-    setpgid(0, 0);
-    prctl(PR_SET_PDEATHSIG, SIGKILL); /* where we are killed ourselves */
-    if (getppid() != parent)          /* or were, before that */
-        _exit(EXIT_FAILURE);
-    int nothing = open("/dev/null", O_RDONLY);
-    if (nothing >= 0 && dup2(nothing, STDIN_FILENO) >= 0 &&
-        dup2(output, STDOUT_FILENO) >= 0 && dup2(output, STDERR_FILENO) >= 0) {
-        private_signals_unblock();
-        signal(SIGXFSZ, SIG_DFL); /* filter_start() ignores it */
-        execvp(argv[0], argv);
-    }
-    int cause = errno;
-    (void)!write(failure, &cause, sizeof cause);
-    _exit(EXIT_FAILURE);
 }
 
 static double now(void)
@@ -156,8 +137,10 @@ static pid_t start(char *const argv[], const channel *output, const channel *fai
     const pid_t parent = getpid();
     private_signals_block();
     pid_t child = private_signals_came() ? -1 : fork();
-    if (child == 0)
-        become(argv, parent, output->write, failure->write);
+    if (child == 0) {
+        const int standard[] = {-1, output->write, output->write};
+        become_program(argv, parent, standard, failure->write);
+    }
     int cause = errno;
     if (child > 0) {
         setpgid(child, child);

@@ -26,7 +26,7 @@ static tm_status measure(examining *x)
         own->start ? own->start[own->elements] : TM_TET_NODES * own->elements;
     uint32_t *list = tm_new(items, sizeof *list);
     tm_part_nodes nodes = {0};
-    tm_status status = tm_examine_enough(list, x->error);
+    tm_status status = tm_ranks_enough(list, x->error);
     if (status == TM_OK && items > 0)
         memcpy(list, own->item, items * sizeof *list);
     if (status == TM_OK)
@@ -66,7 +66,7 @@ static tm_status count_components(const examining *x, const tm_element_part *par
     uint32_t(*pair)[2] = tm_new(count, sizeof *pair);
     uint32_t *parent = tm_new(x->elements.count, sizeof *parent);
     size_t pairs = 0;
-    tm_status status = tm_examine_enough(pair && parent, x->error);
+    tm_status status = tm_ranks_enough(pair && parent, x->error);
     for (uint32_t e = 0; e < count && status == TM_OK; e++)
         if (tree[e] != e) {
             pair[pairs][0] = number[e];
@@ -90,7 +90,7 @@ static tm_status count_nodes(const examining *x, const tm_element_part *part,
 {
     uint32_t *node = tm_new(part->view.nodes, sizeof *node);
     size_t count = 0;
-    tm_status status = tm_examine_enough(node, x->error);
+    tm_status status = tm_ranks_enough(node, x->error);
     for (size_t v = 0; v < part->view.nodes && status == TM_OK; v++)
         if (used[v])
             node[count++] = part->nodes.number[v];

@@ -219,7 +219,7 @@ tm_status tm_element_part_make(tm_element_part *part, const tm_element_slices *m
     *part = (tm_element_part){0};
     tm_status status = deliver(l, &nodes, mesh, sign, error);
     if (status == TM_OK)
-        status = tm_examine_enough(allocate(part, l, mixed), error);
+        status = tm_ranks_enough(allocate(part, l, mixed), error);
     size_t count = 0;
     for (int s = 0; s < SORTS; s++) {
         if (status == TM_OK)

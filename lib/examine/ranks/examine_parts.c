@@ -8,39 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-tm_status tm_examine_enough(bool enough, tm_error *error)
-{
-    return tm_ranks_any(!enough) ? tm_fail_memory(error) : TM_OK;
-}
-
-/* Nodes of a part ------------------------------------------------------------------ */
-
-tm_status tm_part_nodes_make(tm_part_nodes *nodes, uint32_t *list, size_t count,
-                             const tm_rows *rows, const double (*own)[3], tm_error *error)
-{
-    *nodes = (tm_part_nodes){0};
-    bool enough = tm_number_set_of(&nodes->set, list, count, TM_NONE);
-    nodes->number = enough ? tm_new(nodes->set.count, sizeof *nodes->number) : NULL;
-    enough = nodes->number;
-    if (enough)
-        tm_number_set_list(&nodes->set, nodes->number);
-    for (size_t i = 0; enough && i < count; i++)
-        if (list[i] != TM_NONE)
-            list[i] = tm_number_set_below(&nodes->set, list[i]);
-    tm_status status = tm_examine_enough(enough, error);
-    if (status == TM_OK && rows)
-        status = tm_ranks_fetch(rows, own, sizeof *own, &nodes->set, (void **)&nodes->xyz,
-                                error);
-    return status;
-}
-
-void tm_part_nodes_free(tm_part_nodes *nodes)
-{
-    tm_number_set_free(&nodes->set);
-    free(nodes->number);
-    free(nodes->xyz);
-}
-
 void tm_rename_places(tm_defect_list *list, size_t numbers, const uint32_t *name)
 {
     for (size_t i = 0; i < list->count && i < TM_DEFECTS_LISTED; i++)
@@ -96,7 +63,7 @@ tm_status tm_examine_nodes_ranks(tm_examination *found, const tm_rows *rows,
     }
     free(xyz);
     free(number);
-    return tm_examine_enough(enough, error);
+    return tm_ranks_enough(enough, error);
 }
 
 tm_status tm_count_used_nodes(const tm_rows *rows, const uint32_t *node, size_t count,
@@ -111,7 +78,7 @@ tm_status tm_count_used_nodes(const tm_rows *rows, const uint32_t *node, size_t 
     if (status != TM_OK)
         return status;
     tm_number_set set = {0};
-    status = tm_examine_enough(tm_number_set_of(&set, got, words, TM_NONE), error);
+    status = tm_ranks_enough(tm_number_set_of(&set, got, words, TM_NONE), error);
     *used = set.count;
     tm_ranks_sum(used, 1);
     tm_number_set_free(&set);

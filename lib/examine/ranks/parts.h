@@ -4,27 +4,9 @@
 #ifndef TM_EXAMINE_RANKS_PARTS_H
 #define TM_EXAMINE_RANKS_PARTS_H
 
-#include "../../mesh/ranks/fetch.h"
+#include "../../mesh/ranks/part_nodes.h"
 #include "../element_examine_faces.h"
 #include "examine_ranks.h"
-
-/* TM_ERROR_SYSTEM on all where one has not enough memory. */
-tm_status tm_examine_enough(bool enough, tm_error *error);
-
-/* Nodes that something on this rank names. */
-typedef struct tm_part_nodes {
-    tm_number_set set;
-    uint32_t *number; /* [set.count] */
-    double (*xyz)[3]; /* [set.count], or NULL: see below */
-} tm_part_nodes;
-
-/* The nodes in a list, in which they get their numbers in the part; TM_NONE stays. With
- * `own`, the rows that this rank has, xyz comes from who has it. To be freed also after
- * an error. */
-tm_status tm_part_nodes_make(tm_part_nodes *nodes, uint32_t *list, size_t count,
-                             const tm_rows *rows, const double (*own)[3],
-                             tm_error *error);
-void tm_part_nodes_free(tm_part_nodes *nodes);
 
 /* Gives the first `numbers` numbers of the places of defects other names; TM_NONE stays.
  */

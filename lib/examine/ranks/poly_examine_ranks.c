@@ -65,7 +65,7 @@ static tm_status take_facets(facets_here *h, const uint32_t *word, size_t words,
     h->start = calloc(count + 1, sizeof *h->start);
     h->node = tm_new(nodes, sizeof *h->node);
     const bool enough = h->number && h->side && h->start && h->node;
-    tm_status status = tm_examine_enough(enough, x->error);
+    tm_status status = tm_ranks_enough(enough, x->error);
     for (size_t f = 0, at = 0; f < count && enough; f++) {
         const size_t k = word[at + HEAD - 1];
         h->number[f] = word[at];
@@ -97,7 +97,7 @@ static tm_status fetch_facets(const examining *x, const tm_number_set *set,
     uint32_t *number = tm_new(set->count, sizeof *number), *asked = NULL, *got = NULL;
     size_t *counts = calloc(ranks, sizeof *counts), words = 0, at = 0;
     tm_post post = {0};
-    tm_status status = tm_examine_enough(number && counts, x->error);
+    tm_status status = tm_ranks_enough(number && counts, x->error);
     if (status == TM_OK) {
         tm_number_set_list(set, number);
         for (size_t i = 0; i < set->count; i++)
@@ -141,7 +141,7 @@ static tm_status measure_cells(examining *x, facets_here *h, const uint32_t *lis
 {
     const size_t chunks = tm_parallel_chunks(x->cells.count, TM_POLY_CHUNK);
     tm_sum *volume = tm_new(chunks, sizeof *volume);
-    tm_status status = tm_examine_enough(volume, x->error);
+    tm_status status = tm_ranks_enough(volume, x->error);
     for (size_t f = 0; f < 2 * h->mesh.facets; f++) {
         uint32_t *side = &h->side[f / 2][f % 2];
         if (*side != TM_NONE)
@@ -176,7 +176,7 @@ static tm_status examine_cells(examining *x, unsigned threads)
     facets_here here = {0};
     const bool enough =
         list && tm_number_set_of(&set, x->mesh->own.cell_facet, items, TM_NONE);
-    tm_status status = tm_examine_enough(enough, x->error);
+    tm_status status = tm_ranks_enough(enough, x->error);
     for (size_t i = 0; i < items && status == TM_OK; i++)
         list[i] = tm_number_set_below(&set, x->mesh->own.cell_facet[i]);
     if (status == TM_OK)
@@ -225,7 +225,7 @@ static tm_status take_listing(const examining *x, listing *l)
     l->cell = tm_new(pairs, sizeof *l->cell);
     l->start = tm_new(pairs + 1, sizeof *l->start);
     l->facet = tm_new(pairs, sizeof *l->facet);
-    status = tm_examine_enough(l->cell && l->start && l->facet, x->error);
+    status = tm_ranks_enough(l->cell && l->start && l->facet, x->error);
     for (size_t i = 0; i < pairs && status == TM_OK; i++) {
         if (l->cells == 0 || l->cell[l->cells - 1] != got[2 * i]) {
             l->start[l->cells] = i;
@@ -251,7 +251,7 @@ static tm_status count_components(const examining *x, const listing *l,
     uint32_t(*pair)[2] = tm_new(l->cells, sizeof *pair);
     uint32_t *parent = tm_new(x->cells.count, sizeof *parent);
     size_t pairs = 0;
-    tm_status status = tm_examine_enough(pair && parent, x->error);
+    tm_status status = tm_ranks_enough(pair && parent, x->error);
     for (uint32_t c = 0; c < l->cells && status == TM_OK; c++)
         if (tree[c] != c) {
             pair[pairs][0] = l->cell[c];
@@ -285,7 +285,7 @@ static tm_status match_facets(examining *x, const tm_poly_arrays *mesh, const li
 {
     tm_examination found = {0};
     uint32_t *tree = tm_new(l->cells, sizeof *tree);
-    tm_status status = tm_examine_enough(tree, x->error);
+    tm_status status = tm_ranks_enough(tree, x->error);
     if (status == TM_OK)
         status =
             tm_ranks_agree(tm_poly_match_facets(&found, mesh, tree, x->error), x->error);
@@ -327,7 +327,7 @@ static tm_status examine_facets(examining *x)
     uint32_t(*side)[2] = tm_new(mesh.facets, sizeof *side);
     listing l = {0};
     tm_part_nodes nodes = {0};
-    tm_status status = tm_examine_enough(node && side, x->error);
+    tm_status status = tm_ranks_enough(node && side, x->error);
     if (status == TM_OK)
         status = take_listing(x, &l);
     if (status == TM_OK && node && corners > 0)

@@ -4,6 +4,7 @@
 
 #include "../../element/shape.h"
 
+#include <limits.h>
 #include <string.h>
 
 enum { COORDINATES = 3 };
@@ -286,6 +287,22 @@ static tm_status read_data(reader *r, tm_vtu_section section, tm_vtk_data_list *
     return status;
 }
 
+/* Appends the bytes of a string, which are numbers: as char, signed or not, has them. */
+static tm_status take_string(reader *r, const tm_vtu_entry *entry,
+                             const tm_numbers *bytes, tm_text *text)
+{
+    for (size_t b = 0; b < bytes->count; b++) {
+        int64_t value;
+        if (!tm_numbers_whole(bytes, b, SCHAR_MIN, UCHAR_MAX, &value))
+            return tm_vtu_fail(&r->file, entry, r->error,
+                               "number %zu of a string is %.17g (0…255 would be right)",
+                               b, tm_numbers_real(bytes, b));
+        const char byte = (char)(unsigned char)value;
+        tm_text_append(text, &byte, 1);
+    }
+    return TM_OK;
+}
+
 /* The names of groups, see vtk.h. */
 static tm_status read_groups(reader *r)
 {
@@ -297,12 +314,10 @@ static tm_status read_groups(reader *r)
         if (!entry->strings || entry->section != TM_VTU_FIELD_DATA ||
             strcmp(tm_vtu_name(file, entry), "group_names") != 0 || groups->size > 0)
             continue;
-        const tm_status status =
+        tm_status status =
             tm_vtu_all(file, entry, (size_t)(file->end - file->bytes), &bytes, r->error);
-        for (size_t b = 0; b < bytes.count && status == TM_OK; b++) {
-            const char byte = (char)tm_numbers_real(&bytes, b);
-            tm_text_append(groups, &byte, 1);
-        }
+        if (status == TM_OK)
+            status = take_string(r, entry, &bytes, groups);
         tm_numbers_free(&bytes);
         if (status != TM_OK)
             return status;

@@ -28,12 +28,20 @@ static tm_status look_up(const tm_rows *rows, const uint32_t *parent, uint32_t *
     return status;
 }
 
-/* Ways within the slice need nobody else. */
+/* Ways within the slice need nobody else: each goes to a root, or to where the way leaves
+ * the slice. */
 static void shorten_own(const tm_rows *rows, uint32_t *parent)
 {
-    for (size_t i = 0; i < rows->count; i++) /* parents come first */
-        if (tm_rows_have(rows, parent[i]))
-            parent[i] = parent[parent[i] - rows->first];
+    for (size_t i = 0; i < rows->count; i++) {
+        uint32_t end = parent[i];
+        while (tm_rows_have(rows, end) && parent[end - rows->first] != end)
+            end = parent[end - rows->first];
+        for (uint32_t x = (uint32_t)(rows->first + i), next;
+             x != end && tm_rows_have(rows, x); x = next) {
+            next = parent[x - rows->first];
+            parent[x - rows->first] = end;
+        }
+    }
 }
 
 tm_status tm_ranks_find_roots(const tm_rows *rows, uint32_t *parent, tm_error *error)

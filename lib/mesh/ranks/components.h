@@ -11,9 +11,9 @@
 
 TM_EXTERN_C_BEGIN
 
-/* All ranks: parent[rows->count], where each thing is its own parent or has a smaller one
- * as parent, becomes its root. Halves the way each time: O(log of the longest way) times
- * all ranks say something to each other. */
+/* All ranks: parent[rows->count], the forest of all things of which this rank has some,
+ * becomes their roots; a root is its own parent. Halves the way each time: O(log of the
+ * longest way) times all ranks say something to each other. */
 tm_status tm_ranks_find_roots(const tm_rows *rows, uint32_t *parent, tm_error *error);
 
 /* All ranks: joins things that are pairs on any of them, pair[pairs][2], which changes;

@@ -232,6 +232,24 @@ static tm_status find_boundary_once(tm_octree_mesh *m, const tm_octree *octree,
     return status;
 }
 
+/* Takes away pieces that the surface does not have; says whether there are any. */
+static tm_status remove_spurious(const tm_octree_mesh *m, const tm_octree *octree,
+                                 const tm_surface *surface, bool *changed,
+                                 tm_error *error)
+{
+    const tm_boundary_view all = {.octree = octree,
+                                  .boundary = &m->boundary,
+                                  .nodes.past = m->boundary.nodes,
+                                  .faces.past = m->boundary.faces};
+    tm_boundary_pieces pieces;
+    tm_status status = tm_boundary_pieces_find(&pieces, &all, error);
+    if (status == TM_OK)
+        status = tm_spurious_components_remove(m->part, &all, &pieces, surface, m->at,
+                                               changed, error);
+    tm_boundary_pieces_free(&pieces);
+    return status;
+}
+
 /* The interior boundary, without pieces that the surface does not have. */
 static tm_status find_boundary(tm_octree_mesh *m, const tm_octree *octree,
                                tm_surface *surface, tm_error *error)
@@ -244,8 +262,7 @@ static tm_status find_boundary(tm_octree_mesh *m, const tm_octree *octree,
     }
     status = find_boundary_once(m, octree, surface, error);
     if (status == TM_OK && m->report.components > surface->components)
-        status = tm_spurious_components_remove(m->part, octree, &m->boundary, surface,
-                                               m->at, &changed, error);
+        status = remove_spurious(m, octree, surface, &changed, error);
     if (status == TM_OK && changed)
         status = find_boundary_once(m, octree, surface, error);
     if (status != TM_OK || !surface->regions)

@@ -13,17 +13,49 @@
 /* spurious_components.c: pieces of the mesh, and hollows in it, that the surface does not
  * have: they come off where a part of it is thinner than a leaf. */
 
-/* Each piece of the interior boundary belongs to the shell of the surface that most of it
- * is closest to; of those of a shell only the largest stays. The leaves inside of another
- * one are taken away, or, where it is the interior boundary of a hollow, added. at[s] is
- * the point of the surface that is closest to interior boundary node s. *changed says
- * whether any leaf was; then the interior boundary must be found again. TM_ERROR_SYSTEM
- * where memory is out. O(leaves). */
-tm_status tm_spurious_components_remove(tm_interior *interior, const tm_octree *octree,
-                                        const tm_interior_boundary *boundary,
-                                        const tm_surface *surface,
-                                        const tm_surface_point *at, bool *changed,
-                                        tm_error *error);
+/* What of the interior boundary is this rank's: of all, where there is no share. Nodes
+ * and faces of ghosts are there, too. */
+typedef struct tm_boundary_view {
+    const tm_octree *octree;
+    const tm_interior_boundary *boundary;
+    const tm_octree_share *share; /* NULL: one process has all */
+    tm_own_range nodes, faces;
+} tm_boundary_view;
+
+/* Exact: coordinates have 32 bits. */
+__extension__ typedef __int128 tm_volume;
+
+/* A connected piece of the interior boundary. */
+typedef struct tm_boundary_piece {
+    uint32_t label; /* the smallest node of the octree in it, of the whole one */
+    uint32_t shell; /* of the surface: see tm_spurious_components_remove() */
+    bool stays;     /* the same */
+    size_t faces;
+    tm_volume volume; /* six times that which it encloses; negative: a hollow */
+} tm_boundary_piece;
+
+typedef struct tm_boundary_pieces {
+    uint32_t *label;          /* [nodes of the octree]: of the piece there is */
+    size_t count;             /* of all ranks */
+    tm_boundary_piece *piece; /* by label */
+} tm_boundary_pieces;
+
+/* Finds the pieces. TM_ERROR_SYSTEM where memory is out; to be freed, after an error too.
+ * All ranks call it. O(nodes of the octree). */
+tm_status tm_boundary_pieces_find(tm_boundary_pieces *pieces,
+                                  const tm_boundary_view *view, tm_error *error);
+void tm_boundary_pieces_free(tm_boundary_pieces *pieces);
+
+/* Each piece of the interior boundary belongs to the shell of the surface that most of
+ * its nodes are closest to; of those of a shell only the largest stays. The leaves inside
+ * of another one are taken away, or, where it is the interior boundary of a hollow,
+ * added. at[s] is the point of the surface that is closest to own interior boundary node
+ * s. *changed says whether any leaf was; then the interior boundary must be found again.
+ * TM_ERROR_SYSTEM where memory is out. All ranks call it. O(leaves). */
+tm_status
+tm_spurious_components_remove(tm_interior *interior, const tm_boundary_view *view,
+                              const tm_boundary_pieces *pieces, const tm_surface *surface,
+                              const tm_surface_point *at, bool *changed, tm_error *error);
 
 /* projection.c: the layer's outer nodes go onto the surface, and the nodes below make
  * room. */

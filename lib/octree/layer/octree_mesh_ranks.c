@@ -21,106 +21,30 @@ typedef struct {
     tm_boundary_share boundary;
 } maker;
 
-/* A piece of the boundary, or what a rank has of it. */
-typedef struct {
-    uint32_t label;
-    double volume; /* six times that which it encloses; negative: a hollow */
-} piece;
-
-static int compare_pieces(const void *a, const void *b)
+static tm_boundary_view view_of(const maker *m)
 {
-    const piece *p = a, *q = b;
-    return (p->label > q->label) - (p->label < q->label);
+    return (tm_boundary_view){.octree = &m->share->octree,
+                              .boundary = &m->mesh->boundary,
+                              .share = m->share,
+                              .nodes = m->boundary.nodes,
+                              .faces = m->boundary.faces};
 }
 
-/* Six times the volume between the origin and triangle abc of boundary nodes. */
-static double cone(const tm_interior_boundary *b, uint32_t i, uint32_t j, uint32_t k)
+/* The pieces of the boundary, and its Euler number. */
+static tm_status measure_boundary(const maker *m, tm_boundary_pieces *pieces,
+                                  tm_error *error)
 {
-    const uint32_t *p = b->grid[i], *q = b->grid[j], *r = b->grid[k];
-    const double px = p[0], py = p[1], pz = p[2];
-    return px * ((double)q[1] * r[2] - (double)q[2] * r[1]) +
-           py * ((double)q[2] * r[0] - (double)q[0] * r[2]) +
-           pz * ((double)q[0] * r[1] - (double)q[1] * r[0]);
-}
-
-/* What this rank has of pieces: one for each of its faces, those of a label joined. */
-static size_t list_pieces(const maker *m, const uint32_t *label, piece *list)
-{
-    const tm_interior_boundary *b = &m->mesh->boundary;
-    size_t count = 0, joined = 0;
-    for (size_t f = m->boundary.faces.first; f < m->boundary.faces.past; f++) {
-        const uint32_t *face = b->face[f];
-        piece *p = &list[count++];
-        *p = (piece){label[b->grid_node[face[0]]], cone(b, face[0], face[1], face[2])};
-        if (tm_boundary_face_corners(b, f) == 4)
-            p->volume += cone(b, face[0], face[2], face[3]);
-    }
-    if (count > 0)
-        qsort(list, count, sizeof *list, compare_pieces);
-    for (size_t i = 0; i < count; i++)
-        if (joined > 0 && list[joined - 1].label == list[i].label)
-            list[joined - 1].volume += list[i].volume;
-        else
-            list[joined++] = list[i];
-    return joined;
-}
-
-/* Whether any piece is that of a hollow. */
-static tm_status find_hollows(const maker *m, const uint32_t *label, bool *hollow,
-                              tm_error *error)
-{
-    piece *list = tm_new(m->boundary.faces.past - m->boundary.faces.first, sizeof *list);
-    void *got = NULL;
-    size_t total = 0;
-    tm_status status = tm_ranks_agree(list ? TM_OK : tm_fail_memory(error), error);
-    if (status == TM_OK)
-        status = tm_ranks_share(list, list_pieces(m, label, list), sizeof *list, &got,
-                                &total, error);
-    piece *all = got;
-    if (status == TM_OK && total > 0)
-        qsort(all, total, sizeof *all, compare_pieces);
-    double volume = 0;
-    *hollow = false;
-    for (size_t i = 0; status == TM_OK && i < total; i++) {
-        volume = (i > 0 && all[i].label == all[i - 1].label ? volume : 0) + all[i].volume;
-        if (i + 1 == total || all[i + 1].label != all[i].label)
-            *hollow |= volume < 0;
-    }
-    free(list);
-    free(all);
-    return status;
-}
-
-/* The pieces of the boundary, its Euler number, and whether one is of a hollow. */
-static tm_status measure_boundary(const maker *m, bool *hollow, tm_error *error)
-{
-    const tm_interior_boundary *b = &m->mesh->boundary;
     const tm_boundary_share *s = &m->boundary;
     tm_octree_mesh_report *r = &m->mesh->report;
-    const size_t nodes = m->share->octree.nodes;
-    uint32_t *parent = tm_new(nodes, sizeof *parent);
-    size_t sums[2] = {0, 0}; /* half edges, pieces */
-    tm_status status = tm_ranks_agree(parent ? TM_OK : tm_fail_memory(error), error);
-    for (size_t i = 0; status == TM_OK && i < nodes; i++)
-        parent[i] = (uint32_t)i;
-    for (size_t f = s->faces.first; status == TM_OK && f < s->faces.past; f++) {
-        const unsigned k = tm_boundary_face_corners(b, f);
-        sums[0] += k;
-        for (unsigned i = 1; i < k; i++)
-            tm_set_unite(parent, b->grid_node[b->face[f][0]],
-                         b->grid_node[b->face[f][i]]);
-    }
-    if (status == TM_OK)
-        status = tm_share_join_sets(m->share, parent, error);
-    for (size_t i = s->nodes.first; status == TM_OK && i < s->nodes.past; i++)
-        sums[1] += parent[b->grid_node[i]] == m->share->node_number[b->grid_node[i]];
-    tm_ranks_sum(sums, 2);
-    if (status == TM_OK)
-        status = find_hollows(m, parent, hollow, error);
-    r->components = r->outer_components = sums[1];
+    const tm_boundary_view view = view_of(m);
+    size_t half_edges = 0;
+    for (size_t f = s->faces.first; f < s->faces.past; f++)
+        half_edges += tm_boundary_face_corners(&m->mesh->boundary, f);
+    tm_ranks_sum(&half_edges, 1);
+    const tm_status status = tm_boundary_pieces_find(pieces, &view, error);
+    r->components = r->outer_components = pieces->count;
     r->euler = r->outer_euler =
-        (int64_t)(s->nodes.all + s->faces.all) - (int64_t)(sums[0] / 2);
-    free(parent);
+        (int64_t)(s->nodes.all + s->faces.all) - (int64_t)(half_edges / 2);
     return status;
 }
 
@@ -220,22 +144,44 @@ static tm_status find_closest(tm_octree_mesh *mesh, tm_own_range own,
     return status;
 }
 
-static tm_status find_boundary(maker *m, bool *alone, tm_error *error)
+static tm_status find_boundary_once(maker *m, tm_boundary_pieces *pieces, tm_error *error)
 {
     tm_octree_mesh *mesh = m->mesh;
-    bool hollow = false;
+    tm_interior_boundary_free(&mesh->boundary);
+    tm_boundary_share_free(&m->boundary);
+    tm_boundary_pieces_free(pieces);
+    free(mesh->at);
+    free(mesh->off_surface);
+    mesh->at = NULL;
+    mesh->off_surface = NULL;
     tm_status status =
         tm_interior_boundary_find(&mesh->boundary, &m->share->octree, mesh->part, error);
     status = tm_ranks_agree(status, error);
     if (status == TM_OK)
         status = tm_boundary_share_find(&m->boundary, m->share, &mesh->boundary, error);
     if (status == TM_OK)
-        status = measure_boundary(m, &hollow, error);
-    *alone = status == TM_OK && (mesh->report.components > m->surface->components ||
-                                 (hollow && m->surface->regions));
-    return status == TM_OK && !*alone
-               ? find_closest(mesh, m->boundary.nodes, m->surface, error)
-               : status;
+        status = measure_boundary(m, pieces, error);
+    return status == TM_OK ? find_closest(mesh, m->boundary.nodes, m->surface, error)
+                           : status;
+}
+
+/* As find_boundary() of octree_mesh.c, but for what is in hollows. */
+static tm_status find_boundary(maker *m, bool *alone, tm_error *error)
+{
+    tm_boundary_pieces pieces = {0};
+    bool changed = false;
+    tm_status status = find_boundary_once(m, &pieces, error);
+    if (status == TM_OK && m->mesh->report.components > m->surface->components) {
+        const tm_boundary_view view = view_of(m);
+        status = tm_spurious_components_remove(m->mesh->part, &view, &pieces, m->surface,
+                                               m->mesh->at, &changed, error);
+    }
+    if (status == TM_OK && changed)
+        status = find_boundary_once(m, &pieces, error);
+    for (size_t i = 0; status == TM_OK && i < pieces.count; i++)
+        *alone |= m->surface->regions && pieces.piece[i].volume < 0;
+    tm_boundary_pieces_free(&pieces);
+    return status;
 }
 
 /* The boundary node here that has that number, or TM_NONE. */

@@ -8,8 +8,8 @@
 
 /* The same as tm_octree_mesh_make_of(), of a share with one ring of ghosts, of which
  * *interior says what is chosen, of ghosts too. *alone says that it is not made: where
- * the boundary has hollows, or more pieces than a surface without walls, that is for one
- * process. All ranks call it. */
+ * the boundary has hollows that may be regions, that is for one process. All ranks call
+ * it. */
 tm_status tm_octree_mesh_make_on_ranks(tm_octree_mesh *mesh, const tm_octree_share *share,
                                        tm_interior *interior, tm_surface *surface,
                                        const tm_progress *progress, bool *alone,

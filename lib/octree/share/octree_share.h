@@ -55,7 +55,7 @@ tm_status tm_octree_share_build(tm_octree_share *share, const tm_surface *surfac
 
 /* The same as tm_octree_refine() makes of it: splits each leaf with split[local leaf] !=
  * 0, which is only looked at for own ones. All leaves and nodes get new numbers, and
- * ranks. All ranks call it. Errors as there; *share is then as it was. */
+ * ranks. All ranks call it. Errors as there; *share is empty then. */
 tm_status tm_octree_share_refine(tm_octree_share *share, const tm_surface *surface,
                                  const uint8_t *split, unsigned rings, tm_error *error);
 

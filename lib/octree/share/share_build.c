@@ -134,7 +134,7 @@ tm_status tm_octree_share_refine(tm_octree_share *share, const tm_surface *surfa
                                  const uint8_t *split, unsigned rings, tm_error *error)
 {
     const tm_octree *octree = &share->octree;
-    tm_octree_share now = {0};
+    const unsigned threads = octree->threads;
     tm_brick brick;
     tm_leaf_list own = {.count = 0};
     tm_status status = tm_brick_of(&brick, octree, error);
@@ -143,19 +143,16 @@ tm_status tm_octree_share_refine(tm_octree_share *share, const tm_surface *surfa
             &own, octree, surface, octree->leaf + share->own_first,
             share->own_past - share->own_first, split + share->own_first, error);
     status = tm_ranks_agree(status, error);
+    tm_octree_share_free(share);
     if (status == TM_OK) {
-        now = on_brick(&brick, octree->threads);
-        status = balance(&own, &now.octree, surface, error);
+        *share = on_brick(&brick, threads);
+        status = balance(&own, &share->octree, surface, error);
     }
     if (status == TM_OK)
-        status = make(&now, &own, rings, error);
+        status = make(share, &own, rings, error);
     tm_brick_free(&brick);
     free(own.leaf);
-    if (status != TM_OK) {
-        tm_octree_share_free(&now);
-        return status;
-    }
-    tm_octree_share_free(share);
-    *share = now;
-    return TM_OK;
+    if (status != TM_OK)
+        tm_octree_share_free(share);
+    return status;
 }

@@ -26,16 +26,39 @@ size_t tm_share_total(const tm_octree_share *share, const size_t *count)
     return total;
 }
 
-/* How many nodes the leaves up to that one have, if those before it have `past`; they are
- * numbered as leaves have them. */
-static size_t count_nodes(const tm_octree *octree, size_t first, size_t end, size_t past)
+/* Nodes as the leaves that are here first are numbered by: own leaves have the first ones
+ * of [own, past), and those below that are wanted. */
+typedef struct {
+    size_t own, past;
+    uint8_t *wanted;  /* [own] */
+    uint32_t *number; /* [own]: of those, in the whole octree, then here */
+} numbering;
+
+/* Goes over leaves in order, of which those before have `past` nodes; they are numbered
+ * as leaves have them. */
+static size_t count_nodes(const tm_octree *octree, size_t first, size_t end, size_t past,
+                          uint8_t *wanted, size_t below)
 {
     for (size_t l = first; l < end; l++)
         for (int p = 0; p < TM_LEAF_NODES; p++) {
             const uint32_t v = octree->node[l][p];
             past += v != TM_NONE && v >= past;
+            if (v < below)
+                wanted[v] = 1;
         }
     return past;
+}
+
+static bool find_own(const tm_octree_share *s, numbering *n)
+{
+    n->own = count_nodes(&s->octree, 0, s->own_first, 0, NULL, 0);
+    n->wanted = calloc(n->own + 1, 1);
+    n->number = calloc(n->own + 1, sizeof *n->number);
+    n->past = n->own;
+    if (n->wanted)
+        n->past =
+            count_nodes(&s->octree, s->own_first, s->own_past, n->own, n->wanted, n->own);
+    return n->wanted && n->number;
 }
 
 /* Point p of a leaf of another rank. */
@@ -43,8 +66,7 @@ typedef struct {
     uint32_t leaf, point;
 } question;
 
-/* Asks for the numbers of the nodes below own_node_first that own leaves have:
- * number[own_node_first]. */
+/* To the ranks, in order. */
 typedef struct {
     question *question;
     uint32_t *node; /* which one each is for */
@@ -52,57 +74,45 @@ typedef struct {
     size_t *counts; /* [ranks] */
 } questions;
 
-/* Marks those nodes. */
-static void mark_foreign(const tm_octree_share *s, uint8_t *wanted)
-{
-    for (size_t l = s->own_first; l < s->own_past; l++)
-        for (int p = 0; p < TM_LEAF_NODES; p++) {
-            const uint32_t v = s->octree.node[l][p];
-            if (v != TM_NONE && v < s->own_node_first)
-                wanted[v] = 1;
-        }
-}
-
 /* Ghosts before the own leaves are gone through in order, so in that of their ranks. */
-static bool list_questions(const tm_octree_share *s, questions *q)
+static bool list_questions(const tm_octree_share *s, const numbering *n, questions *q)
 {
-    uint8_t *wanted = calloc(s->own_node_first + 1, 1);
-    q->question = tm_new(s->own_node_first, sizeof *q->question);
-    q->node = tm_new(s->own_node_first, sizeof *q->node);
+    q->question = tm_new(n->own, sizeof *q->question);
+    q->node = tm_new(n->own, sizeof *q->node);
     q->counts = calloc(s->ranks, sizeof *q->counts);
-    const bool done = wanted && q->question && q->node && q->counts;
-    if (done)
-        mark_foreign(s, wanted);
     unsigned rank = 0;
-    for (size_t l = 0; done && l < s->own_first; l++) {
+    if (!q->question || !q->node || !q->counts)
+        return false;
+    for (size_t l = 0; l < s->own_first; l++) {
         while (s->leaf_number[l] >= s->first[rank + 1])
             rank++;
         for (uint32_t p = 0; p < TM_LEAF_NODES; p++) {
             const uint32_t v = s->octree.node[l][p];
-            if (v == TM_NONE || !wanted[v])
+            if (v == TM_NONE || !n->wanted[v])
                 continue;
-            wanted[v] = 0;
+            n->wanted[v] = 0;
             q->node[q->count] = v;
             q->question[q->count++] = (question){s->leaf_number[l], p};
             q->counts[rank]++;
         }
     }
-    free(wanted);
-    return done;
+    return true;
 }
 
-/* The number of a local node that is this rank's own. */
-static uint32_t own_number(const tm_octree_share *s, uint32_t node)
+/* The number in the whole octree of a node of an own leaf. */
+static uint32_t number_of(const tm_octree_share *s, const numbering *n, uint32_t node)
 {
-    return (uint32_t)(node - s->own_node_first + s->first_node[s->rank]);
+    return node == TM_NONE ? node
+           : node < n->own ? n->number[node]
+                           : (uint32_t)(node - n->own + s->first_node[s->rank]);
 }
 
-static tm_status ask(const tm_octree_share *s, uint32_t *number, tm_error *error)
+static tm_status ask(const tm_octree_share *s, const numbering *n, tm_error *error)
 {
     questions q = {0};
     question *asked = NULL;
     uint32_t *answer = NULL, *got = NULL;
-    bool done = list_questions(s, &q);
+    const bool done = list_questions(s, n, &q);
     tm_status status = tm_share_exchange(done, q.question, q.counts, sizeof *q.question,
                                          (void **)&asked, error);
     if (status == TM_OK) {
@@ -110,13 +120,13 @@ static tm_status ask(const tm_octree_share *s, uint32_t *number, tm_error *error
         answer = tm_new(count, sizeof *answer);
         for (size_t i = 0; answer && i < count; i++) {
             const size_t l = asked[i].leaf - s->first[s->rank] + s->own_first;
-            answer[i] = own_number(s, s->octree.node[l][asked[i].point]);
+            answer[i] = number_of(s, n, s->octree.node[l][asked[i].point]);
         }
         status = tm_share_exchange(answer, answer, q.counts, sizeof *answer,
                                    (void **)&got, error);
     }
     for (size_t i = 0; status == TM_OK && i < q.count; i++)
-        number[q.node[i]] = got[i];
+        n->number[q.node[i]] = got[i];
     free(q.question);
     free(q.node);
     free(q.counts);
@@ -126,14 +136,11 @@ static tm_status ask(const tm_octree_share *s, uint32_t *number, tm_error *error
     return status;
 }
 
-/* Gives own leaves the numbers of their nodes in the whole octree. */
-static tm_status number_own(tm_octree_share *s, tm_error *error)
+/* Numbers the nodes of own leaves in the whole octree. */
+static tm_status number_own(tm_octree_share *s, numbering *n, tm_error *error)
 {
-    tm_octree *o = &s->octree;
-    s->own_node_first = count_nodes(o, 0, s->own_first, 0);
-    s->own_node_past = count_nodes(o, s->own_first, s->own_past, s->own_node_first);
-    const size_t before =
-        tm_ranks_before(s->own_node_past - s->own_node_first, &s->all_nodes);
+    const bool found = find_own(s, n);
+    const size_t before = tm_ranks_before(n->past - n->own, &s->all_nodes);
     tm_status status = TM_OK;
     if (s->all_nodes >= TM_NONE)
         status =
@@ -145,24 +152,14 @@ static tm_status number_own(tm_octree_share *s, tm_error *error)
         status == TM_OK
             ? realloc(s->first_node, (s->ranks + (size_t)1) * sizeof *s->first_node)
             : NULL;
-    uint32_t *number = tm_new(s->own_node_first, sizeof *number);
     if (grown) {
         s->first_node = grown;
         grown[s->ranks] = s->all_nodes;
     }
-    if (status == TM_OK && (!grown || !number))
+    if (status == TM_OK && (!grown || !found))
         status = tm_fail_memory(error);
     status = tm_ranks_agree(status, error);
-    if (status == TM_OK)
-        status = ask(s, number, error);
-    for (size_t l = s->own_first; status == TM_OK && l < s->own_past; l++)
-        for (int p = 0; p < TM_LEAF_NODES; p++) {
-            uint32_t *v = &o->node[l][p];
-            if (*v != TM_NONE)
-                *v = *v < s->own_node_first ? number[*v] : own_number(s, *v);
-        }
-    free(number);
-    return status;
+    return status == TM_OK ? ask(s, n, error) : status;
 }
 
 /* Puts these ghosts, ascending, around the own leaves, and drops the others. */
@@ -227,21 +224,53 @@ static tm_status tell_ranks(const tm_octree_share *s, const uint32_t *number,
     return status;
 }
 
+/* Ghosts' rows are those of their ranks, with numbers in the whole octree. */
+static tm_status give_rows(const tm_octree_share *s, const numbering *n, tm_error *error)
+{
+    const tm_share_list *list = &s->leaves_sent;
+    const tm_octree *o = &s->octree;
+    const size_t after = o->leaves - s->own_past;
+    uint32_t(*send)[TM_LEAF_NODES] = tm_new(list->start[s->ranks], sizeof *send);
+    size_t *counts = tm_new(s->ranks, sizeof *counts);
+    void *got = NULL;
+    for (unsigned r = 0; counts && r < s->ranks; r++)
+        counts[r] = list->start[r + 1] - list->start[r];
+    for (size_t i = 0; send && i < list->start[s->ranks]; i++)
+        for (int p = 0; p < TM_LEAF_NODES; p++)
+            send[i][p] = number_of(s, n, o->node[list->item[i]][p]);
+    const tm_status status =
+        tm_share_exchange(send && counts, send, counts, sizeof *send, &got, error);
+    if (status == TM_OK && s->own_first > 0)
+        memcpy(o->node, got, s->own_first * sizeof *o->node);
+    if (status == TM_OK && after > 0)
+        memcpy(o->node + s->own_past, (uint32_t(*)[TM_LEAF_NODES])got + s->own_first,
+               after * sizeof *o->node);
+    free(send);
+    free(counts);
+    free(got);
+    return status;
+}
+
+/* The first ghost from that local leaf on. */
+static size_t next_ghost(const tm_octree_share *s, size_t l)
+{
+    return l == s->own_first ? s->own_past : l;
+}
+
 static bool is_own(const tm_octree_share *s, uint32_t number)
 {
     return number >= s->first_node[s->rank] && number < s->first_node[s->rank + 1];
 }
 
-/* The numbers of all nodes of local leaves, ascending. */
-static bool list_nodes(tm_octree_share *s, size_t *nodes)
+/* The numbers of all nodes here, ascending: those of others are those of ghosts. */
+static bool list_nodes(tm_octree_share *s)
 {
-    const tm_octree *o = &s->octree;
-    const size_t own = s->own_node_past - s->own_node_first;
+    const size_t own = s->first_node[s->rank + 1] - s->first_node[s->rank];
     size_t count = 0, room = 0, n = 0, once = 0;
     uint32_t *foreign = NULL;
-    for (size_t l = 0; l < o->leaves; l++)
+    for (size_t l = next_ghost(s, 0); l < s->octree.leaves; l = next_ghost(s, l + 1))
         for (int p = 0; p < TM_LEAF_NODES; p++) {
-            const uint32_t v = o->node[l][p];
+            const uint32_t v = s->octree.node[l][p];
             if (v != TM_NONE && !is_own(s, v) && !tm_append(&foreign, &count, &room, v)) {
                 free(foreign);
                 return false;
@@ -252,6 +281,7 @@ static bool list_nodes(tm_octree_share *s, size_t *nodes)
     for (size_t i = 0; i < count; i++)
         if (i == 0 || foreign[i] != foreign[once - 1])
             foreign[once++] = foreign[i];
+    s->octree.nodes = own + once;
     s->node_number = tm_new(own + once, sizeof *s->node_number);
     while (n < once && foreign[n] < s->first_node[s->rank])
         n++;
@@ -262,23 +292,50 @@ static bool list_nodes(tm_octree_share *s, size_t *nodes)
                             : i < n + own ? (uint32_t)(s->first_node[s->rank] + i - n)
                                           : foreign[i - own];
     free(foreign);
-    *nodes = own + once;
     return s->node_number;
 }
 
-/* Gives leaves local numbers of their nodes, and says where these are. */
-static void place_nodes(tm_octree_share *s)
+/* The local number of a node. */
+static uint32_t node_here(const tm_octree_share *s, uint32_t number)
+{
+    return is_own(s, number)
+               ? (uint32_t)(number - s->first_node[s->rank] + s->own_node_first)
+               : (uint32_t)tm_first_not_below(s->node_number, s->octree.nodes, number);
+}
+
+/* Moves own nodes to where they are now. */
+static bool place_own_nodes(tm_octree_share *s, const numbering *n)
 {
     tm_octree *o = &s->octree;
-    for (size_t l = 0; l < o->leaves; l++)
+    const size_t own = n->past - n->own;
+    const size_t room = o->nodes > n->past ? o->nodes : n->past;
+    void *grown = realloc(o->grid, (room + 1) * sizeof *o->grid);
+    if (!grown)
+        return false;
+    o->grid = grown;
+    memmove(o->grid + s->own_node_first, o->grid + n->own, own * sizeof *o->grid);
+    for (size_t v = 0; v < n->own; v++)
+        n->number[v] = node_here(s, n->number[v]);
+    for (size_t l = s->own_first; l < s->own_past; l++)
+        for (int p = 0; p < TM_LEAF_NODES; p++) {
+            uint32_t *v = &o->node[l][p];
+            if (*v != TM_NONE)
+                *v = *v < n->own ? n->number[*v]
+                                 : (uint32_t)(*v - n->own + s->own_node_first);
+        }
+    return true;
+}
+
+/* Gives ghosts local numbers of their nodes, and says where these are. */
+static void place_ghost_nodes(tm_octree_share *s)
+{
+    tm_octree *o = &s->octree;
+    for (size_t l = next_ghost(s, 0); l < o->leaves; l = next_ghost(s, l + 1))
         for (int p = 0; p < TM_LEAF_NODES; p++) {
             uint32_t *v = &o->node[l][p];
             if (*v == TM_NONE)
                 continue;
-            if (is_own(s, *v))
-                *v = (uint32_t)(*v - s->first_node[s->rank] + s->own_node_first);
-            else
-                *v = (uint32_t)tm_first_not_below(s->node_number, o->nodes, *v);
+            *v = node_here(s, *v);
             const tm_leaf *leaf = &o->leaf[l];
             for (int k = 0; k < 3; k++)
                 o->grid[*v][k] =
@@ -287,31 +344,36 @@ static void place_nodes(tm_octree_share *s)
         }
 }
 
+static tm_status make(tm_octree_share *s, const tm_ghost_list *ghosts, numbering *n,
+                      tm_error *error)
+{
+    tm_status status = number_own(s, n, error);
+    if (status != TM_OK)
+        return status;
+    if (place_ghosts(s, ghosts) != TM_OK)
+        status = tm_fail_memory(error);
+    status = tm_ranks_agree(status, error);
+    if (status == TM_OK)
+        status = tell_ranks(s, s->leaf_number, s->octree.leaves, s->own_first,
+                            s->own_past, s->first, &s->leaves_sent, error);
+    if (status == TM_OK)
+        status = give_rows(s, n, error);
+    if (status == TM_OK && !(list_nodes(s) && place_own_nodes(s, n)))
+        status = tm_fail_memory(error);
+    status = tm_ranks_agree(status, error);
+    if (status != TM_OK)
+        return status;
+    place_ghost_nodes(s);
+    return tell_ranks(s, s->node_number, s->octree.nodes, s->own_node_first,
+                      s->own_node_past, s->first_node, &s->nodes_sent, error);
+}
+
 tm_status tm_share_number_nodes(tm_octree_share *share, const tm_ghost_list *ghosts,
                                 tm_error *error)
 {
-    tm_octree *o = &share->octree;
-    tm_status status = number_own(share, error);
-    if (status != TM_OK)
-        return status;
-    free(o->grid);
-    o->grid = NULL;
-    if (place_ghosts(share, ghosts) != TM_OK)
-        status = tm_fail_memory(error);
-    status = tm_ranks_agree(status, error);
-    if (status == TM_OK)
-        status = tell_ranks(share, share->leaf_number, o->leaves, share->own_first,
-                            share->own_past, share->first, &share->leaves_sent, error);
-    if (status == TM_OK)
-        status = tm_share_fill_leaves(share, o->node, sizeof *o->node, error);
-    if (status == TM_OK && list_nodes(share, &o->nodes))
-        o->grid = tm_new(o->nodes, sizeof *o->grid);
-    if (status == TM_OK && !o->grid)
-        status = tm_fail_memory(error);
-    status = tm_ranks_agree(status, error);
-    if (status != TM_OK)
-        return status;
-    place_nodes(share);
-    return tell_ranks(share, share->node_number, o->nodes, share->own_node_first,
-                      share->own_node_past, share->first_node, &share->nodes_sent, error);
+    numbering n = {.own = 0};
+    const tm_status status = make(share, ghosts, &n, error);
+    free(n.wanted);
+    free(n.number);
+    return status;
 }

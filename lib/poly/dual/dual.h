@@ -52,7 +52,7 @@ typedef struct tm_dual_blocks {
  * that is linear in the tetrahedra, and the marker of the node, edge or face that they
  * are on; facets the markers of faces, cells the number of their tetrahedra and the
  * attributes of these. Every cell is closed, a ball, and sees all its facets from its
- * centroid as OpenFOAM's checkMesh asks, but for report->wrong_cells. With feature_angle
+ * centroid as OpenFOAM's checkMesh asks, but for report->wrong_pyramids. With feature_angle
  * 0 no volume of a region changes. TM_ERROR_SYSTEM where memory is out or there are 2^31
  * points. *made is to be freed, after an error too. Expected O(n). */
 tm_status tm_dual_make(tm_dual_blocks *made, const tm_tet_mesh *mesh,

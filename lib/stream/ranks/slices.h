@@ -65,6 +65,9 @@ tm_status tm_slices_check_coordinates(const tm_slices *slices, tm_error *error);
  * stream. */
 tm_status tm_slices_even(tm_slices *slices, size_t b, tm_error *error);
 
+/* Removes a block. */
+void tm_slices_remove(tm_slices *slices, tm_block *block);
+
 /* Gives rank 0 all rows of all blocks, and the others none. */
 tm_status tm_slices_gather(tm_slices *slices, tm_error *error);
 

@@ -62,7 +62,7 @@ static tm_status prepare(filler *f)
 }
 
 /* Goes around a hole, against the triangle of the side that it begins with. False where
- * a node has more than two open sides; *ok where memory is in. */
+ * a node has another number of open sides than two; *ok where memory is in. */
 static bool walk(filler *f, uint32_t side, bool *ok)
 {
     uint32_t v = from(f, side);
@@ -73,6 +73,8 @@ static bool walk(filler *f, uint32_t side, bool *ok)
     *ok = tm_append(&f->loop, &f->length, &f->loop_room, first);
     while (*ok && v != first && simple) {
         simple = f->sides[v] == 2;
+        if (!simple)
+            break;
         *ok = tm_append(&f->loop, &f->length, &f->loop_room, v);
         side = f->side[v][f->side[v][0] == side];
         f->done[side] = true;

@@ -91,10 +91,8 @@ static bool split(const tm_curve_point *placed, size_t count, const size_t *befo
 {
     const unsigned ranks = tm_ranks_count();
     size_t *position = tm_new(ranks, sizeof *position), *sum = tm_new(ranks, sizeof *sum);
-    tm_error error;
-    const bool done =
-        tm_ranks_agree(position && sum ? TM_OK : TM_ERROR_SYSTEM, &error) == TM_OK;
-    if (done)
+    const bool done = !tm_ranks_any(!position || !sum);
+    if (done && position)
         find_positions(placed, count, position, before, sum, ranks);
     for (unsigned r = 0; r < ranks && done; r++) {
         const size_t first = count_before(placed, count, position[r]);
@@ -128,9 +126,8 @@ static bool make_deal(tm_tet_deal *deal, const tm_tet_share *share, size_t parts
     deal->count = calloc(ranks, sizeof *deal->count);
     deal->tet = tm_new(count, sizeof *deal->tet);
     deal->key = tm_new(count, sizeof *deal->key);
-    tm_error error;
     bool done = before && cut && placed && deal->count && deal->tet && deal->key;
-    done = tm_ranks_agree(done ? TM_OK : TM_ERROR_SYSTEM, &error) == TM_OK;
+    done = !tm_ranks_any(!done);
     for (unsigned r = 0; r < ranks && done; r++)
         before[r] = share->all_tets * first_part(parts, r) / parts;
     done = done && split(placed, count, before, cut);
@@ -244,7 +241,7 @@ static void open_cut(tm_tet_share *share, const cut_face *list, size_t count)
 {
     tm_tet_mesh *mesh = &share->mesh;
     const uint32_t across = 4 * share->beyond;
-    for (size_t f = 0; f < mesh->faces && count > 0; f++) {
+    for (size_t f = 0; f < mesh->faces && list && count > 0; f++) {
         tm_constrained_face *face = &mesh->face[f];
         const bool first = face->side[0] == TM_NONE;
         if (!first && face->side[1] != TM_NONE)
@@ -263,7 +260,7 @@ static void open_cut(tm_tet_share *share, const cut_face *list, size_t count)
 }
 
 /* Numbers of the nodes that the parts have made: behind all others, part by part. */
-static bool number_nodes(tm_tet_share *share, size_t nodes)
+static tm_status number_nodes(tm_tet_share *share, size_t nodes, tm_error *error)
 {
     const size_t all = share->mesh.nodes;
     uint32_t *number = realloc(share->number, (all + 1) * sizeof *number);
@@ -273,7 +270,9 @@ static bool number_nodes(tm_tet_share *share, size_t nodes)
     for (size_t v = nodes; v < all && number; v++)
         number[v] = (uint32_t)(share->all_nodes + before + v - nodes);
     share->all_nodes += more;
-    return number;
+    if (share->all_nodes >= TM_NONE)
+        return tm_fail(error, TM_ERROR_SYSTEM, "more than %u nodes", TM_NONE - 1);
+    return number ? TM_OK : tm_fail_memory(error);
 }
 
 /* Homes of all nodes, as many for each rank. */
@@ -309,8 +308,9 @@ tm_status tm_tet_share_join(tm_tet_share *share, tm_tet_parts *parts, unsigned t
         open_cut(share, list, count);
     }
     free(list);
-    if (!number_nodes(share, nodes) && status == TM_OK)
-        status = tm_fail_memory(error);
+    tm_error numbering;
+    if (number_nodes(share, nodes, &numbering) != TM_OK && status == TM_OK)
+        status = tm_fail_as(error, &numbering);
     find_homes(share);
     share->all_tets = share->mesh.tets;
     tm_ranks_sum(&share->all_tets, 1);

@@ -210,8 +210,9 @@ static tm_status connect(unpacking *u)
                                .item = (const uint32_t *)mesh->tet};
     const size_t faces = u->p->all[FACES];
     uint32_t(*node)[3] = tm_new(faces, sizeof *node);
-    tm_status status =
-        node ? tm_face_mates(&u->mate, &view, u->error) : tm_fail_memory(u->error);
+    if (!node)
+        return tm_fail_memory(u->error);
+    tm_status status = tm_face_mates(&u->mate, &view, u->error);
     if (status == TM_OK)
         status = tm_tet_mesh_reserve(mesh, 0, 0, faces, 0, u->error);
     if (status == TM_OK) {

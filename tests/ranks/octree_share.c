@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shares of octrees: cut from a whole one against what touches what; and those that ranks
- * make together, as many as a launcher starts, against the cut. */
+/* octree_share RANKS: shares of octrees: cut from a whole one against what touches what;
+ * and those that ranks make together, as many as a launcher starts, against the cut. */
 #include "../../lib/base/disjoint_sets.h"
 #include "../../lib/octree/interior/interior_share.h"
 #include "../../lib/ranks/ranks.h"
@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-#include "octree_fixture.h"
+#include "../unit/octree_fixture.h"
 
 enum { SURFACES = 40, RULES = 3, RINGS = 3, SPLIT_EVERY = 30 };
 
@@ -344,7 +344,7 @@ static void test_refused(void **state)
     tm_surface_free(&surface);
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_cut),
@@ -353,7 +353,8 @@ int main(void)
         cmocka_unit_test(test_refused),
     };
     tm_error error;
-    if (tm_ranks_start(&error) != TM_OK)
+    if (argc != 2 || tm_ranks_start(&error) != TM_OK ||
+        tm_ranks_count() != strtoul(argv[1], NULL, 10))
         return EXIT_FAILURE;
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
