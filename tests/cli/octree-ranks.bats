@@ -64,6 +64,35 @@ same_on() {
     same_on 2 3 -- -s 5 spool.off
 }
 
+# nested: a sphere within a sphere, three times as small.
+nested() {
+    shapes sphere | awk 'NR == 2 { nodes = $1; faces = $2; next }
+        NR > 2 && NR <= 2 + nodes { node[NR - 3] = $0 }
+        NR > 2 + nodes { face[NR - 3 - nodes] = $0 }
+        END {
+            print "OFF"
+            print 2 * nodes, 2 * faces, 0
+            for (i = 0; i < nodes; i++) print node[i]
+            for (i = 0; i < nodes; i++) {
+                split(node[i], p)
+                print p[1] / 3, p[2] / 3, p[3] / 3
+            }
+            for (i = 0; i < faces; i++) print face[i]
+            for (i = 0; i < faces; i++) {
+                split(face[i], c)
+                print 3, c[2] + nodes, c[3] + nodes, c[4] + nodes
+            }
+        }'
+}
+
+@test "hollows, pieces that the surface has not: rank 0 goes on alone" {
+    shapes slit >slit.off
+    same_on 2 3 -- -s 4 slit.off
+    nested >nested.off
+    same_on 2 -- -s 4 nested.off
+    python3 -c "import json; assert json.load(open('one.json'))['regions'] == 2"
+}
+
 @test "nodes that stay off the surface" {
     shapes folded >folded.off
     same_on 2 3 -- -s 5 folded.off

@@ -4,8 +4,8 @@
 #ifndef TM_LAYER_MESH_SHARE_H
 #define TM_LAYER_MESH_SHARE_H
 
+#include "../share/mesh_ghosts.h"
 #include "assemble.h"
-#include "mesh_ghosts.h"
 
 /* Own things, which are next to each other: first … past - 1 here; in the whole mesh the
  * first of them has a number, and there are `all`. */

@@ -125,12 +125,6 @@ tm_status tm_octree_mesh_fail_empty(tm_error *error);
 tm_status tm_octree_mesh_complete_report(tm_octree_mesh *mesh, const tm_octree *octree,
                                          const tm_surface *surface, tm_error *error);
 
-/* closest_on_ranks.c: fills at[] of own nodes of the boundary, and makes off_surface[].
- * All ranks call it. */
-tm_status tm_octree_mesh_find_closest_on_ranks(tm_octree_mesh *mesh, tm_own_range own,
-                                               const tm_surface *surface,
-                                               tm_error *error);
-
 /* adaptive_refinement.c: what adaptive_ranks.c does, too. */
 
 /* Of a mesh with more elements nothing is tried: it would be made twice again. So many

@@ -224,13 +224,12 @@ static void mark_moving(void *context, size_t first, size_t past)
                 tm_mark(&z->moves[mesh->item[i]]);
 }
 
-/* The inner nodes, those in an element with one of them, and those of elements that are
- * no hexahedra, without the outer ones. */
+/* Marks the inner nodes, those in an element with one of them, and those of elements that
+ * are no hexahedra. */
 static tm_status find_moving(const fitter *projection, zone *z, tm_error *error)
 {
     const tm_assembly *a = projection->assembly;
     const tm_mixed_mesh *mesh = &a->mesh;
-    const size_t outer_end = a->outer + projection->boundary->nodes;
     z->order = tm_new(mesh->nodes, sizeof *z->order);
     z->moves = calloc(mesh->nodes + 1, 1);
     if (!z->order || !z->moves)
@@ -243,9 +242,15 @@ static tm_status find_moving(const fitter *projection, zone *z, tm_error *error)
                 z->order[a->inner[p][s]] = 0;
     }
     tm_parallel_runs(projection->threads, mesh->elements, TM_CHUNK, mark_moving, z);
-    if (projection->share && tm_mesh_ghosts_fill(&projection->share->ghosts, z->moves,
-                                                 sizeof *z->moves, error) != TM_OK)
-        return TM_ERROR_SYSTEM;
+    return TM_OK;
+}
+
+/* Lists what is marked, without the outer nodes. */
+static tm_status list_moving(const fitter *projection, zone *z, tm_error *error)
+{
+    const tm_assembly *a = projection->assembly;
+    const tm_mixed_mesh *mesh = &a->mesh;
+    const size_t outer_end = a->outer + projection->boundary->nodes;
     for (size_t n = 0; n < mesh->nodes; n++) {
         const bool is_outer = n >= a->outer && n < outer_end;
         z->order[n] = z->moves[n] && !is_outer ? (uint32_t)z->nodes++ : TM_NONE;
@@ -497,6 +502,10 @@ tm_status tm_project_layer(tm_assembly *assembly, const tm_interior_boundary *bo
                          .threads = surface->threads};
     zone z = {.mesh = &assembly->mesh};
     tm_status status = tm_ranks_agree(find_moving(&projection, &z, error), error);
+    if (status == TM_OK && share)
+        status = tm_mesh_ghosts_fill(&share->ghosts, z.moves, sizeof *z.moves, error);
+    if (status == TM_OK)
+        status = tm_ranks_agree(list_moving(&projection, &z, error), error);
     if (status == TM_OK)
         status = find_own(&projection, &z, error);
     if (status == TM_OK)

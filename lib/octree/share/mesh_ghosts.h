@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Things at the nodes and in the leaves of a share, as nodes of its mesh: which ranks
  * have them as ghosts, and what these get from those that own them. */
-#ifndef TM_LAYER_MESH_GHOSTS_H
-#define TM_LAYER_MESH_GHOSTS_H
+#ifndef TM_SHARE_MESH_GHOSTS_H
+#define TM_SHARE_MESH_GHOSTS_H
 
-#include "../share/octree_share.h"
+#include "octree_share.h"
 
 typedef struct tm_mesh_ghosts {
     unsigned ranks;
