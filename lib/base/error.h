@@ -48,7 +48,8 @@ tm_status tm_fail_as(tm_error *error, const tm_error *cause);
 /* What an error, which may be NULL, says; with that status. */
 tm_error tm_error_of(tm_status status, const tm_error *error);
 
-/* So many lines are before the text in which the error, which may be NULL, has its line. */
+/* So many lines are before the text in which the error, which may be NULL, has its line.
+ */
 void tm_error_add_lines(size_t lines, tm_error *error);
 
 /* "out of memory", as TM_ERROR_SYSTEM. */

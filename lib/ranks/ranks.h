@@ -41,8 +41,8 @@ tm_status tm_ranks_start(tm_error *error);
 unsigned tm_rank(void);
 unsigned tm_ranks_count(void);
 
-/* Ends what tm_ranks_start() began: each rank is alone then, rank 0 of 1. Rank 0 may go on;
- * the others are to end. */
+/* Ends what tm_ranks_start() began: each rank is alone then, rank 0 of 1. Rank 0 may go
+ * on; the others are to end. */
 void tm_ranks_leave(void);
 
 /* Ends all ranks at once with that exit status, whatever the others do. */

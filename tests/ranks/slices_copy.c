@@ -38,9 +38,9 @@ static void check_fetch(const tm_slices *s)
     double(*xyz)[3] = tm_new(count, sizeof *xyz);
     for (size_t i = 0; i < count; i++)
         number[i] = (uint32_t)(STEP * i);
-    stop_at(tm_slices_fetch(node->real, slice.total, sizeof *xyz, number, count, xyz,
-                            &error),
-            &error);
+    stop_at(
+        tm_slices_fetch(node->real, slice.total, sizeof *xyz, number, count, xyz, &error),
+        &error);
     size_t wrong = 0;
     for (size_t i = 0; i < count; i++)
         if (number[i] >= slice.before && number[i] - slice.before < node->count)

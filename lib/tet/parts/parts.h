@@ -35,7 +35,8 @@ tm_status tm_tet_parts_cut(tm_tet_parts *parts, const tm_tet_mesh *mesh, size_t 
                            unsigned round, tm_error *error);
 void tm_tet_parts_free(tm_tet_parts *parts);
 
-/* What that is made of, for a mesh of which a process has only a share. How many parts: */
+/* What that is made of, for a mesh of which a process has only a share. How many parts:
+ */
 size_t tm_tet_parts_count(size_t tets, size_t size);
 
 /* A point as the round's curve sees it: turned about three axes, another way in each
