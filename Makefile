@@ -389,7 +389,7 @@ endif
 
 uninstall:
 	rm -f $(filters:%=$(DESTDIR)$(BINDIR)/%) $(scripts:$(BUILD)/bin/%=$(DESTDIR)$(BINDIR)/%) \
-		$(DESTDIR)$(LIBDIR)/libtermesh.* \
+		$(rank_filters:%=$(DESTDIR)$(LIBEXECDIR)/%) $(DESTDIR)$(LIBDIR)/libtermesh.* \
 		$(DESTDIR)$(LIBDIR)/pkgconfig/termesh.pc \
 		$(filters:%=$(DESTDIR)$(BASHCOMPLETIONDIR)/%) \
 		$(filters:%=$(DESTDIR)$(ZSHCOMPLETIONDIR)/_%)
