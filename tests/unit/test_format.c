@@ -259,7 +259,7 @@ static const fault faults[] = {
     {TM_FORMAT_NODE, "1 3 0 0\n2 0 0 0\n", 2, "0 or 1"},
     {TM_FORMAT_NODE, "1 3 0 0\n1 0 0 0 5\n", 2, "follows the row"},
     {TM_FORMAT_NODE, "4000000000 3 0 0\n1 0 0 0\n", 2, "claims 4000000000 rows"},
-    {TM_FORMAT_NODE, "1 3 2000000000 0\n1 0 0 0\n", 2, "claims"},
+    {TM_FORMAT_NODE, "1 3 2000000000 0\n1 0 0 0\n", 1, "attributes: 2000000000 is out of range"},
     {TM_FORMAT_NODE, "1 3 0 0\n1 0 0 0\n1 0 0\n", 3, "follows the last row"},
     {TM_FORMAT_SMESH, "1 3 0 0\n1 0 0 0\n1 0\n3 1 1 2\n", 4, "node: 2 is out of range"},
     {TM_FORMAT_SMESH, "1 3 0 0\n1 0 0 0\n1 0\n3 1 1 1 7\n", 4, "follows the facet"},
