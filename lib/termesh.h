@@ -17,6 +17,7 @@
 
 /* ranks: processes that work on one mesh */
 #include "ranks/ranks.h"
+#include "ranks/mail.h"
 
 /* number: numbers from and to text */
 #include "number/number.h"
@@ -35,8 +36,11 @@
 /* stream: the stream and its blocks; what other files look like */
 #include "stream/coordinates.h"
 #include "stream/group.h"
+#include "stream/slice.h"
 #include "stream/sniff.h"
 #include "stream/stream.h"
+#include "stream/ranks/pass.h"
+#include "stream/ranks/slices.h"
 
 /* element: shapes and measures of one element */
 #include "element/aspect_ratio.h"
@@ -93,6 +97,7 @@
 #include "format/tetgen.h"
 #include "format/visf.h"
 #include "format/vtk/vtk.h"
+#include "format/vtk/vtk_piece.h"
 #include "format/vtk/vtk_read.h"
 
 /* optimise: node positions */
@@ -105,9 +110,14 @@
 #include "tet/mesh_measure.h"
 #include "tet/evaluate.h"
 #include "tet/star.h"
+#include "tet/parts/parts.h"
+#include "tet/share/share.h"
+#include "tet/share/take.h"
 #include "tet/delaunay/delaunay.h"
 #include "tet/improve/improve.h"
 #include "tet/improve/improve_forced.h"
+#include "tet/improve/improve_parts.h"
+#include "tet/improve/improve_ranks.h"
 #include "tet/lepp/lepp.h"
 
 /* octree: octrees, and the elements made of them */
@@ -115,6 +125,8 @@
 #include "octree/forest/octree.h"
 #include "octree/forest/octree_build.h"
 #include "octree/forest/octree_estimate.h"
+#include "octree/share/mesh_ghosts.h"
+#include "octree/share/octree_share.h"
 #include "octree/forest/rule_files.h"
 #include "octree/transition/transition.h"
 #include "octree/layer/adaptive_refinement.h"
@@ -126,6 +138,8 @@
 #include "octree/layer/mesh_choice.h"
 #include "octree/layer/octree_mesh.h"
 #include "octree/layer/octree_mesh_stream.h"
+#include "octree/layer/mesh_share.h"
+#include "octree/layer/octree_mesh_ranks.h"
 #include "octree/repair/repair.h"
 #include "octree/repair/repair_forced.h"
 #include "octree/repair/repair_shape.h"
@@ -142,6 +156,7 @@
 #include "poly/join_cells.h"
 #include "poly/octant/join_octants.h"
 #include "poly/partition.h"
+#include "poly/ranks/polyhedra_ranks.h"
 
 /* view: a page that shows meshes */
 #include "view/view.h"

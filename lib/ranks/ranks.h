@@ -46,7 +46,7 @@ unsigned tm_ranks_count(void);
 void tm_ranks_leave(void);
 
 /* Ends all ranks at once with that exit status, whatever the others do. */
-_Noreturn void tm_ranks_end(int status);
+void tm_ranks_end(int status) __attribute__((noreturn));
 
 /* The error of the lowest rank that has one, on all of them: a step that may fail on some
  * ranks ends with `status = tm_ranks_agree(status, error)`. TM_OK where none failed. */
