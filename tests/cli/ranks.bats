@@ -32,14 +32,17 @@ setup() {
             on_ranks $n "$copy" in.tm out.tm
             cmp in.tm out.tm
         done
-        on_ranks 3 "$copy" in.tm - | cmp - in.tm
-        on_ranks 2 "$copy" - - <in.tm | cmp - in.tm
+        on_ranks 3 "$copy" in.tm - >out.tm
+        cmp in.tm out.tm
+        on_ranks 2 "$copy" - - <in.tm >out.tm
+        cmp in.tm out.tm
         : >out.tm
-        cat in.tm | on_ranks 7 "$copy" - out.tm
+        on_ranks 7 "$copy" - out.tm <in.tm
         cmp in.tm out.tm
     done
     gzip -k in.tm
-    on_ranks 2 "$copy" in.tm.gz - | cmp - in.tm
+    on_ranks 2 "$copy" in.tm.gz - >out.tm
+    cmp in.tm out.tm
 }
 
 # Ways to spoil a line of a stream: sed programs for line L.
@@ -57,19 +60,20 @@ END
 }
 
 @test "what is wrong is said as by one process, the first of several in the file" {
-    lines=$(wc -l <"$meshes/tets.tm")
-    for line in 900 $((lines / 3)) $((lines - 2000)); do
-        spoiled $line | while read -r program; do
+    rows=$(wc -l <"$meshes/tets.tm")
+    for line in 900 $((rows / 3)) $((rows - 2000)); do
+        spoiled $line >programs
+        while read -r program <&3; do
             sed "$program" "$meshes/tets.tm" >in.tm
-            status=0 other=0 piped=0
-            "$copy" in.tm - >one.out 2>one.err || status=$?
-            on_ranks 3 "$copy" in.tm - >several.out 2>several.err || other=$?
+            alone=0 together=0 piped=0
+            "$copy" in.tm - >one.out 2>one.err || alone=$?
+            on_ranks 3 "$copy" in.tm - >several.out 2>several.err || together=$?
             on_ranks 2 "$copy" - - <in.tm >piped.out 2>piped.err || piped=$?
-            [ $status -eq $other ] && [ $status -eq $piped ]
+            [ $alone -eq $together ] && [ $alone -eq $piped ]
             grep '^in.tm' several.err | cmp - one.err
             sed -n 's/^-:/in.tm:/p' piped.err | cmp - one.err
-            [ $status -ne 0 ] || cmp one.out several.out
-        done
+            [ $alone -ne 0 ] || cmp one.out several.out
+        done 3<programs
     done
 }
 
@@ -161,7 +165,9 @@ END
 }
 
 @test "filters that do not work on ranks do so on rank 0 alone" {
-    on_ranks 3 vtu-export <"$meshes/small.tm" | cmp - <(vtu-export "$meshes/small.tm")
+    vtu-export "$meshes/small.tm" >one.vtu
+    on_ranks 3 vtu-export "$meshes/small.tm" >several.vtu
+    cmp one.vtu several.vtu
     on_ranks 2 tetgen-mesh -o several.tm <<<"$(surface cube off)"
     tetgen-mesh -o one.tm <<<"$(surface cube off)"
     cmp one.tm several.tm
@@ -197,10 +203,10 @@ END
         for pid in $(pgrep -P "$(pgrep -P $job | head -n 1)"); do
             grep -qz "^OMPI_COMM_WORLD_RANK=$which$" "/proc/$pid/environ" && kill -KILL "$pid"
         done
-        status=0
-        wait $job || status=$?
+        ended=0
+        wait $job || ended=$?
         kill $writer
-        [ $status -ne 0 ] && [ $status -ne 124 ]
+        [ $ended -ne 0 ] && [ $ended -ne 124 ]
         [ ! -e out.txt ] && [ ! -e out.json ]
         [ -z "$(pgrep -f "tet-stats -o out.txt" || true)" ]
     done

@@ -91,14 +91,18 @@ typedef struct {
     bool over;
 } inbox;
 
+static void open_next(inbox *in)
+{
+    tm_ranks_receive(0, in->text, MESSAGE, &in->size);
+    in->at = 0;
+    in->over = in->size == 0;
+}
+
 static ptrdiff_t pull(void *from, char *bytes, size_t size)
 {
     inbox *in = from;
-    if (in->at == in->size && !in->over) {
-        tm_ranks_receive(0, in->text, MESSAGE, &in->size);
-        in->at = 0;
-        in->over = in->size == 0;
-    }
+    if (in->at == in->size && !in->over)
+        open_next(in);
     const size_t some = in->size - in->at < size ? in->size - in->at : size;
     memcpy(bytes, in->text + in->at, some);
     in->at += some;
@@ -121,10 +125,8 @@ static tm_status receive(tm_reader *r, tm_block *block, inbox *in, size_t rows,
         status = tm_reader_read_part(r, block, first, past - first, limit);
     tm_lines_close(&r->lines);
     r->lines = own;
-    while (!in->over) {
-        in->at = in->size;
-        pull(in, NULL, 0);
-    }
+    while (!in->over)
+        open_next(in);
     return status;
 }
 
