@@ -3,14 +3,13 @@
 
 bats_require_minimum_version 1.5.0
 load helpers
+load ranks
 
 setup() {
     [ -x "$TM_BUILD/bin/octree-mesh" ] || skip "there is no p4est"
-    command -v mpirun >/dev/null || skip "there is no mpirun"
+    need_mpirun
     cd "$BATS_TEST_TMPDIR" || exit
     PATH=$PATH:$TM_BUILD/bench
-    unset "${!OMPI_MCA_@}"
-    export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 }
 
 # same_on RANKS… -- OPTION… : octree-mesh with these, on so many ranks.
@@ -26,7 +25,7 @@ same_on() {
     for n in "${ranks[@]}"; do
         many=0
         rm -f many.tm many.json
-        timeout 120 mpirun --oversubscribe -q -n "$n" octree-mesh --no-history -j 1 \
+        on_ranks "$n" octree-mesh --no-history -j 1 \
             --json many.json -o many.tm "$@" 2>many.err || many=$?
         [ "$many" -eq "$status" ]
         cmp one.tm many.tm
@@ -113,8 +112,8 @@ nested() {
 @test "to standard output; a surface that is not there" {
     shapes gear >gear.off
     octree-mesh -q --no-history -s 4 gear.off >one.tm
-    mpirun --oversubscribe -q -n 3 octree-mesh -q --no-history -s 4 gear.off >many.tm
+    on_ranks 3 octree-mesh -q --no-history -s 4 gear.off >many.tm
     cmp one.tm many.tm
-    run -4 --separate-stderr mpirun --oversubscribe -q -n 3 octree-mesh -s 4 none.off
+    run -4 --separate-stderr on_ranks 3 octree-mesh -s 4 none.off
     [ -z "$output" ]
 }

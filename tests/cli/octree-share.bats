@@ -3,19 +3,15 @@
 
 bats_require_minimum_version 1.5.0
 load helpers
+load ranks
 
 setup() {
     [ -x "$TM_BUILD/ranks/octree_share" ] || skip "there is no p4est"
-    command -v mpirun >/dev/null || skip "there is no mpirun"
+    need_mpirun
 }
 
 @test "ranks make the octree of one process" {
-    # What tests/run.sh sets is for one process.
-    for name in $(env | sed -n 's/^\(OMPI_MCA_[a-z_]*\)=.*/\1/p') HWLOC_COMPONENTS; do
-        unset "$name"
-    done
-    for ranks in 1 2 3 7; do
-        timeout 120 mpirun --allow-run-as-root --oversubscribe -n "$ranks" \
-            "$TM_BUILD/ranks/octree_share" "$ranks"
+    for n in 1 2 3 7; do
+        on_ranks "$n" "$TM_BUILD/ranks/octree_share" "$n"
     done
 }

@@ -10,7 +10,7 @@ need_mpirun() {
 
 # on_ranks N COMMAND…
 on_ranks() {
-    mpirun --allow-run-as-root --oversubscribe -n "$@"
+    timeout 120 mpirun -q --allow-run-as-root --oversubscribe --mca pml ob1 --mca btl self,vader -n "$@"
 }
 
 # ranks_agree MESH FILTER OPTION…: 1, 2, 3, 4 and 7 ranks say and write what the filter
