@@ -92,21 +92,17 @@ static tm_status attributes_to_stream(const extent *x, const tm_surface *surface
     return TM_OK;
 }
 
-/* Copies the elements of a part. */
-static tm_status copy_elements(const extent *x, tm_block *mix, tm_error *error)
+/* Of a part, the elements in its arrays are moved to their front, with the numbers that
+ * nodes have in the whole. */
+static void number_elements(const extent *x)
 {
-    const tm_mixed_mesh *mesh = &x->mesh->assembly.mesh;
+    tm_mixed_mesh *mesh = &x->mesh->assembly.mesh;
     const size_t begin = mesh->start[x->element];
     const size_t items = mesh->start[x->element_past] - begin;
-    mix->start = tm_new(mix->count + 1, sizeof *mix->start);
-    mix->item = tm_new(items, sizeof *mix->item);
-    if (!mix->start || !mix->item)
-        return tm_fail_memory(error);
-    for (size_t e = 0; e <= mix->count; e++)
-        mix->start[e] = mesh->start[x->element + e] - begin;
+    for (size_t e = 0; e <= x->element_past - x->element; e++)
+        mesh->start[e] = mesh->start[x->element + e] - begin;
     for (size_t i = 0; i < items; i++)
-        mix->item[i] = number_of(x, mesh->item[begin + i]);
-    return TM_OK;
+        mesh->item[i] = number_of(x, mesh->item[begin + i]);
 }
 
 static tm_status elements_to_stream(const extent *x, const tm_surface *surface,
@@ -124,7 +120,7 @@ static tm_status elements_to_stream(const extent *x, const tm_surface *surface,
             return status;
     }
     if (x->number)
-        return copy_elements(x, mix, error);
+        number_elements(x);
     mix->start = mesh->start;
     mix->item = mesh->item;
     mesh->start = NULL;
