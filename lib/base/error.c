@@ -69,7 +69,7 @@ void tm_error_add_lines(size_t lines, tm_error *error)
         error->line += lines;
 }
 
-tm_status tm_fail_memory(tm_error *error)
+void tm_say_memory(tm_error *error)
 {
-    return tm_fail(error, TM_ERROR_SYSTEM, "out of memory");
+    tm_fail(error, TM_ERROR_SYSTEM, "out of memory");
 }

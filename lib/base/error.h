@@ -53,7 +53,13 @@ tm_error tm_error_of(tm_status status, const tm_error *error);
 void tm_error_add_lines(size_t lines, tm_error *error);
 
 /* "out of memory", as TM_ERROR_SYSTEM. */
-tm_status tm_fail_memory(tm_error *error);
+void tm_say_memory(tm_error *error);
+
+static inline tm_status tm_fail_memory(tm_error *error)
+{
+    tm_say_memory(error);
+    return TM_ERROR_SYSTEM;
+}
 
 TM_EXTERN_C_END
 

@@ -40,7 +40,7 @@ void tm_ranks_end(int status)
     exit(status);
 }
 
-tm_status tm_ranks_agree(tm_status status, tm_error *error)
+tm_status tm_ranks_first_error(tm_status status, tm_error *error)
 {
     (void)error;
     return status;
@@ -64,7 +64,7 @@ void tm_ranks_largest(double *value, size_t count)
     (void)count;
 }
 
-bool tm_ranks_any(bool value)
+bool tm_ranks_find_any(bool value)
 {
     return value;
 }

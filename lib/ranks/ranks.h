@@ -50,13 +50,24 @@ void tm_ranks_end(int status) __attribute__((noreturn));
 
 /* The error of the lowest rank that has one, on all of them: a step that may fail on some
  * ranks ends with `status = tm_ranks_agree(status, error)`. TM_OK where none failed. */
-tm_status tm_ranks_agree(tm_status status, tm_error *error);
+tm_status tm_ranks_first_error(tm_status status, tm_error *error);
+
+static inline tm_status tm_ranks_agree(tm_status status, tm_error *error)
+{
+    const tm_status first = tm_ranks_first_error(status, error);
+    return first == TM_OK ? status : first;
+}
 
 /* Sums, minima and maxima over all ranks, in place. */
 void tm_ranks_sum(size_t *value, size_t count);
 void tm_ranks_least(double *value, size_t count);
 void tm_ranks_largest(double *value, size_t count);
-bool tm_ranks_any(bool value);
+bool tm_ranks_find_any(bool value);
+
+static inline bool tm_ranks_any(bool value)
+{
+    return tm_ranks_find_any(value) || value;
+}
 
 /* The sum over the ranks before this one; *all (may be NULL) gets that of all. */
 size_t tm_ranks_before(size_t value, size_t *all);

@@ -137,8 +137,9 @@ tm_status tm_tet_mesh_copy(tm_tet_mesh *to, const tm_tet_mesh *from, tm_error *e
 
 size_t tm_tet_mesh_most(const tm_tet_mesh *mesh, double growth)
 {
-    double most = growth * (double)mesh->tets;
-    return growth > 0 && most < (double)TM_TETS_MAX ? (size_t)most : TM_TETS_MAX;
+    const size_t limit = TM_TETS_MAX;
+    const double most = growth * (double)mesh->tets;
+    return growth > 0 && most < (double)limit ? (size_t)most : limit;
 }
 
 uint32_t tm_tet_mesh_new_tet(tm_tet_mesh *mesh)

@@ -16,6 +16,6 @@ typedef struct vtk_exporter {
 } vtk_exporter;
 
 /* For main() to return. */
-int vtk_export(int argc, char **argv, const vtk_exporter *exporter);
+int vtk_export(int argc, char **argv, const vtk_exporter *of);
 
 #endif

@@ -295,7 +295,7 @@ static void copy_items(const tm_stream *piece, uint32_t *list, bool back)
         if (!names_nodes(&piece->block[b]))
             continue;
         uint32_t *item = items_of(&piece->block[b], &count);
-        if (count > 0)
+        if (count > 0 && item && list)
             memcpy(back ? item : list, back ? list : item, count * sizeof *item);
         list += count;
     }
@@ -436,7 +436,7 @@ static tm_status add_cells(maker *m)
     static const char *const name[] = {[TM_CONTENT_SURFACE] = ".face",
                                        [TM_CONTENT_TETRAHEDRA] = ".ele",
                                        [TM_CONTENT_MIXED] = ".mix"};
-    const bool points = m->content == TM_CONTENT_POINTS;
+    const bool points = m->content <= TM_CONTENT_POINTS;
     m->cell = points ? 0 : 1;
     const bool done = (points || tm_stream_add(m->piece, ".node")) &&
                       take(m, points ? ".node" : name[m->content], &m->slice);

@@ -4,6 +4,7 @@
 #include "../../base/array.h"
 #include "../../ranks/ranks.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -204,6 +205,15 @@ static void take_elements(received *r, const sent_element *element, size_t count
     r->mesh.elements = count;
 }
 
+/* Bit for bit. */
+static bool is_same(const double a[3], const double b[3])
+{
+    for (int i = 0; i < 3; i++)
+        if (a[i] != b[i] || signbit(a[i]) != signbit(b[i]))
+            return false;
+    return true;
+}
+
 /* Lists the nodes that are elsewhere than they were: sorted as in r. */
 static size_t list_moved(const received *r, const tm_sent_node *old, size_t count,
                          tm_sent_node *moved)
@@ -212,7 +222,7 @@ static size_t list_moved(const received *r, const tm_sent_node *old, size_t coun
     for (size_t i = 0; i < count; i++) {
         if (i > 0 && old[i].number == old[i - 1].number)
             continue;
-        if (memcmp(old[i].xyz, r->mesh.xyz[n], sizeof old[i].xyz) != 0) {
+        if (!is_same(old[i].xyz, r->mesh.xyz[n])) {
             moved[listed].number = r->number[n];
             memcpy(moved[listed++].xyz, r->mesh.xyz[n], sizeof old[i].xyz);
         }

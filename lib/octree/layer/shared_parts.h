@@ -46,17 +46,17 @@ static inline bool tm_shared_is_near(const tm_shared_work *s, size_t e)
 
 /* The node of the octree that stands for a node of the mesh: where it is, or a corner of
  * its leaf. */
-uint32_t tm_shared_stand_in(const tm_shared_work *work, uint32_t n);
+uint32_t tm_shared_stand_in(const tm_shared_work *s, uint32_t n);
 
 /* Sends the candidates that are near to the ranks of their sets, which make that pass of
  * tm_mixed_optimise(); pass 0: to rank 0, which makes all. *moved, to be freed, gets the
  * nodes that are elsewhere then; *measured how many elements were measured here. All
  * ranks call it. */
-tm_status tm_shared_mend(const tm_shared_work *work, unsigned pass, tm_sent_node **moved,
+tm_status tm_shared_mend(const tm_shared_work *s, unsigned pass, tm_sent_node **moved,
                          size_t *listed, size_t *measured, tm_error *error);
 
 /* Gives the moved nodes to their ranks, and these to those that have them as ghosts. */
-tm_status tm_shared_put(const tm_shared_work *work, tm_sent_node *moved, size_t listed,
+tm_status tm_shared_put(const tm_shared_work *s, tm_sent_node *moved, size_t listed,
                         tm_error *error);
 
 #endif

@@ -112,9 +112,9 @@ static void number_steps(const planner *p, const size_t *begin)
         sweep->step[run] = SIZE_MAX;
     for (size_t c = 0; c < sweep->colours; c++)
         sweep->steps[c] = 1;
-    for (size_t c = 0, run; c < sweep->colours; c++)
+    for (size_t c = 0; c < sweep->colours; c++)
         for (size_t i = sweep->start[c]; i < sweep->start[c + 1]; i++)
-            pieces[run = sweep->run[i]] = c;
+            pieces[sweep->run[i]] = c;
     size_t last = SIZE_MAX, count = 0;
     for (unsigned r = 0; r < ranks; r++) {
         const size_t end = r + 1 < ranks ? begin[r + 1] : sweep->all;

@@ -56,7 +56,7 @@ void tm_ranks_end(int status)
     abort(); /* MPI_Abort() does not return */
 }
 
-tm_status tm_ranks_agree(tm_status status, tm_error *error)
+tm_status tm_ranks_first_error(tm_status status, tm_error *error)
 {
     int first = status == TM_OK ? world.count : world.rank;
     if (world.count == 1)
@@ -93,7 +93,7 @@ void tm_ranks_largest(double *value, size_t count)
     reduce(value, count, MPI_DOUBLE, MPI_MAX);
 }
 
-bool tm_ranks_any(bool value)
+bool tm_ranks_find_any(bool value)
 {
     int any = value;
     reduce(&any, 1, MPI_INT, MPI_MAX);
@@ -201,7 +201,7 @@ tm_status tm_ranks_exchange(const void *send, const size_t *send_count, size_t s
         pieces += pieces_of(to[r] * size) + pieces_of(from[r] * size);
     }
     *got = tm_new(items, size);
-    m.request = tm_new(pieces, sizeof *m.request);
+    m.request = tm_new(pieces, sizeof(MPI_Request));
     const bool failed = tm_ranks_any(!*got || !m.request);
     if (failed) {
         free(*got);
@@ -223,7 +223,7 @@ static tm_status collect(const void *mine, size_t count, size_t size, bool share
     const size_t before = tm_ranks_before(count, total);
     size_t *counts = tm_new(ranks, sizeof *counts), sum = 0;
     messages m = {.request = tm_new((ranks + 1) * (pieces_of(count * size) + 1) + ranks,
-                                    sizeof *m.request)};
+                                    sizeof(MPI_Request))};
     *all = NULL;
     if (tm_ranks_any(!counts || !m.request)) {
         free(counts);
@@ -240,7 +240,7 @@ static tm_status collect(const void *mine, size_t count, size_t size, bool share
         pieces += pieces_of(counts[r] * size) + pieces_of(count * size);
     }
     const bool receives = share || world.rank == 0;
-    MPI_Request *grown = realloc(m.request, (pieces + 1) * sizeof *grown);
+    MPI_Request *grown = realloc(m.request, (pieces + 1) * sizeof(MPI_Request));
     m.request = grown ? grown : m.request;
     char *to = receives ? tm_new(sum, size) : NULL;
     const bool failed = tm_ranks_any(!grown || (receives && !to));

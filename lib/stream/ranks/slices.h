@@ -34,7 +34,7 @@ tm_status tm_slices_write(const tm_slices *slices, int fd, unsigned threads,
                           tm_error *error);
 
 /* The same to a file that is there and empty, of which each rank writes its part. */
-tm_status tm_slices_write_file(const tm_slices *slices, const char *file,
+tm_status tm_slices_write_file(const tm_slices *slices, const char *name,
                                unsigned threads, tm_error *error);
 
 /* Rows with these ascending numbers of a flat array of which each rank has a slice: `own`
