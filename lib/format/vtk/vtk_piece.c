@@ -433,13 +433,13 @@ static tm_status add_names(maker *m)
 /* The cells; of points this rank's slice of .node is all that there is. */
 static tm_status add_cells(maker *m)
 {
-    static const char *const name[] = {[TM_CONTENT_SURFACE] = ".face",
-                                       [TM_CONTENT_TETRAHEDRA] = ".ele",
-                                       [TM_CONTENT_MIXED] = ".mix"};
+    const char *name = m->content == TM_CONTENT_SURFACE ? ".face" : ".mix";
     const bool points = m->content <= TM_CONTENT_POINTS;
     m->cell = points ? 0 : 1;
+    if (m->content == TM_CONTENT_TETRAHEDRA)
+        name = ".ele";
     const bool done = (points || tm_stream_add(m->piece, ".node")) &&
-                      take(m, points ? ".node" : name[m->content], &m->slice);
+                      take(m, points ? ".node" : name, &m->slice);
     return agree(m, done);
 }
 

@@ -27,12 +27,12 @@ static tm_status make_plan(plan *p, size_t before, size_t count, size_t total,
     for (unsigned r = 0; r < ranks; r++) {
         size_t first = tm_slice_first(total, ranks, r);
         size_t end = tm_slice_first(total, ranks, r + 1);
+        if (r == tm_rank())
+            p->got = end - first;
         first = first < before ? before : first;
         end = end < past ? end : past;
         p->rows[r] = end > first ? end - first : 0;
     }
-    p->got = tm_slice_first(total, ranks, tm_rank() + 1) -
-             tm_slice_first(total, ranks, tm_rank());
     return TM_OK;
 }
 

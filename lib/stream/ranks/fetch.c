@@ -45,13 +45,14 @@ tm_status tm_slices_fetch(const void *own, size_t total, size_t size,
         if (tm_ranks_any(!answer))
             status = tm_fail_memory(error);
     }
-    for (size_t i = 0; i < items && status == TM_OK; i++)
-        memcpy(answer + i * size,
-               (const char *)own + (((const uint32_t *)wanted)[i] - first) * size, size);
+    const char *mine = own;
+    for (size_t i = 0; i < items && mine && status == TM_OK; i++)
+        memcpy(answer + i * size, mine + (((const uint32_t *)wanted)[i] - first) * size,
+               size);
     free(wanted);
     if (status == TM_OK)
         status = tm_ranks_exchange(answer, asked, size, &got, of, error);
-    if (status == TM_OK && count > 0)
+    if (status == TM_OK && got && count > 0)
         memcpy(row, got, count * size);
     free(answer);
     free(got);
