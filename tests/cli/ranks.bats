@@ -31,7 +31,7 @@ setup() {
         [ $mesh != mixed ] || counts='1 2 3 4 7'
         for n in $counts; do
             : >out.tm
-            on_ranks $n "$copy" in.tm out.tm
+            on_ranks "$n" "$copy" in.tm out.tm
             cmp in.tm out.tm
         done
         on_ranks 3 "$copy" in.tm - >out.tm
