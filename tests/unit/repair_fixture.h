@@ -24,12 +24,14 @@ typedef struct repair_case {
     tm_repair_state state;
 } repair_case;
 
-/* Of an octree of the surface with leaves of a level at it; facets have markers. */
+/* Of an octree of the surface with leaves of a level at it, or where none of these is
+ * inside the first finer one of which some are; facets have markers. */
 static inline void start_case(repair_case *c, tm_polygon_surface *p, unsigned level)
 {
     const tm_surface_options options = {.feature_angle = TM_FEATURE_ANGLE,
                                         .unless_rough = true};
-    const tm_octree_rule rule = {.kind = TM_RULE_SURFACE, .level = level};
+    tm_octree_rule rule = {.kind = TM_RULE_SURFACE, .level = level};
+    tm_status status;
     tm_error error;
     tm_surface surface;
     tm_octree octree;
@@ -39,8 +41,15 @@ static inline void start_case(repair_case *c, tm_polygon_surface *p, unsigned le
         p->facet_marker[f] = (int32_t)f + 1;
     assert_ok(tm_surface_build(&surface, p, &options, &error), &error);
     assert_ok(tm_surface_build(&c->surface, p, &options, &error), &error);
-    assert_ok(tm_octree_build(&octree, &surface, &rule, 1, &error), &error);
-    assert_ok(tm_octree_mesh_make(&mesh, &octree, &surface, NULL, &error), &error);
+    for (;; rule.level++) {
+        assert_ok(tm_octree_build(&octree, &surface, &rule, 1, &error), &error);
+        status = tm_octree_mesh_make(&mesh, &octree, &surface, NULL, &error);
+        if (status != TM_ERROR_INPUT || rule.level > level + 2)
+            break;
+        tm_octree_mesh_free(&mesh);
+        tm_octree_free(&octree);
+    }
+    assert_ok(status, &error);
     tm_stream_init(&c->stream);
     assert_ok(
         tm_octree_mesh_to_stream(&mesh, &octree, &surface, true, &c->stream, &error),
