@@ -1,9 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Runs the tests that make built in the folder $1 and all of tests/cli, as many at a time
-# as there are processors, and ends with the line "N passed, N failed". With more words
-# only those, which name programs (test_lepp) or files (lepp-improve). Used by make check;
-# exit status 1 if a test failed, 2 if there is none of that name.
+# as there are processors and one more, as ranks wait for each other, and ends with the line
+# "N passed, N failed". With more words only those, which name programs (test_lepp) or files
+# (lepp-improve). Used by make check; exit status 1 if a test failed, 2 if there is none of
+# that name.
 set -u
 build=${1:-build}
 [ $# -eq 0 ] || shift
@@ -105,7 +106,7 @@ trap 'kill "$reporter" 2>/dev/null; rm -rf "$logs"' EXIT
 # was told to count (make coverage) goes to a folder in it, for each test, and how long they
 # took to TM_COUNTS.seconds.
 # shellcheck disable=SC2016 # expanded by the inner shell
-tr '\n' '\0' <"$logs/all" | xargs -0 -n 1 -P "$(nproc)" sh -c '
+tr '\n' '\0' <"$logs/all" | xargs -0 -n 1 -P $(($(nproc) + 1)) sh -c '
     log=$logs/${1##*/}
     [ -z "${TM_COUNTS:-}" ] || export GCOV_PREFIX="$TM_COUNTS/${1##*/}"
     begin=$(date +%s)
