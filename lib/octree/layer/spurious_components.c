@@ -363,6 +363,7 @@ static tm_status change_leaves(finder *f, bool chosen, size_t *changed, tm_error
         *changed += !share || (l >= share->own_first && l < share->own_past);
     }
     free(f->set);
+    f->set = NULL;
     return status;
 }
 

@@ -4,14 +4,14 @@
 
 #include "../../../lib/octree/forest/rule_files.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
 {
-    const char *bytes = (const char *)data;
+    const char *text = (const char *)bytes;
     tm_octree_rules rules = {0};
     uint32_t *leaf;
     size_t leaves;
     tm_error error;
-    tm_status status = tm_reg_read(&rules, bytes, size, "file", &error);
+    tm_status status = tm_reg_read(&rules, text, size, "file", &error);
     require(status == TM_OK ||
                 (status == TM_ERROR_INPUT && error.what[0] && rules.count == 0),
             ".reg: not read, but no reason");
@@ -19,7 +19,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         for (int i = 0; i < 3; i++)
             require(rules.rule[r].low[i] <= rules.rule[r].high[i], "a box is none");
     tm_octree_rules_free(&rules);
-    status = tm_ref_read(&leaf, &leaves, bytes, size, "file", &error);
+    status = tm_ref_read(&leaf, &leaves, text, size, "file", &error);
     require(status == TM_OK || (status == TM_ERROR_INPUT && error.what[0] && !leaf),
             ".ref: not read, but no reason");
     free(leaf);

@@ -49,14 +49,14 @@ static void read_as(tm_format format, const char *bytes, size_t size)
     tm_polygon_surface_free(&polygons);
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
 {
-    const char *bytes = (const char *)data;
-    const tm_format format = tm_format_of(bytes, size, "file");
+    const char *text = (const char *)bytes;
+    const tm_format format = tm_format_of(text, size, "file");
     if (format == TM_FORMAT_NODE || format == TM_FORMAT_POLY || format == TM_FORMAT_SMESH)
         for (int f = TM_FORMAT_NODE; f <= TM_FORMAT_SMESH; f++)
-            read_as((tm_format)f, bytes, size);
+            read_as((tm_format)f, text, size);
     else if (format != TM_FORMAT_STREAM)
-        read_as(format, bytes, size);
+        read_as(format, text, size);
     return 0;
 }

@@ -10,7 +10,7 @@
 
 #include <stdbool.h>
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 
 /* A reader either says what is wrong, and leaves the stream empty, or makes one that is
  * sound. */
