@@ -18,21 +18,7 @@ setup_file() {
     tetgen-mesh --no-history -q1.6 -a 0.0002 --switches A boxes.poly >boxes.tm
     # A cube of 14³ cells of six tetrahedra, whose longest edges are all alike, and one cell.
     for n in 14 1; do
-        python3 - $n >grid-$n.tm <<'END'
-import itertools, sys
-n = int(sys.argv[1])
-m = n + 1
-print('termesh 1\n.node\n%d 3 0 0' % m ** 3)
-for v, (z, y, x) in enumerate(itertools.product(range(m), repeat=3)):
-    print(v, x, y, z)
-print('.ele\n%d 4 0' % (6 * n ** 3))
-t = itertools.count()
-for z, y, x in itertools.product(range(n), repeat=3):
-    first = (z * m + y) * m + x
-    for a, b in (1, m + 1), (m + 1, m), (m, m * m + m), (m * m + m, m * m), (m * m, m * m + 1), (m * m + 1, 1):
-        print(next(t), first, first + a, first + b, first + m * m + m + 1)
-print('.end')
-END
+        tet_grid $n >grid-$n.tm
     done
 }
 
