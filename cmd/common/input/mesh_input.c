@@ -18,9 +18,14 @@ void mesh_input_turn(const filter *f, const tm_stream *stream, tm_block *ele,
                      const char *what)
 {
     const tm_turned turned = tm_tetgen_orient(tm_stream_find(stream, ".node"), ele);
-    if (turned.turned > 0)
+    mesh_note_turned(f, turned.turned, ele->count, what);
+}
+
+void mesh_note_turned(const filter *f, size_t turned, size_t of, const char *what)
+{
+    if (turned > 0)
         filter_note(f, "%s: %zu of %zu tetrahedra were left-handed and %s",
-                    filter_input_name(f), turned.turned, ele->count, what);
+                    filter_input_name(f), turned, of, what);
 }
 
 size_t mesh_rows(const tm_stream *stream, const char *name)

@@ -21,6 +21,9 @@ void mesh_input_read_to_compute(const filter *f, tm_stream *stream);
 void mesh_input_turn(const filter *f, const tm_stream *stream, tm_block *ele,
                      const char *what);
 
+/* The note alone, of so many of so many. */
+void mesh_note_turned(const filter *f, size_t turned, size_t of, const char *what);
+
 /* filter_fail() with the input's name, for errors that have none. */
 _Noreturn void mesh_input_fail(const filter *f, tm_error *error);
 

@@ -4,6 +4,7 @@
 #include "../../../lib/format/tetgen.h"
 #include "../../../lib/ranks/ranks.h"
 #include "../../../lib/stream/coordinates.h"
+#include "mesh_input.h"
 
 #include <stdlib.h>
 
@@ -49,9 +50,7 @@ void mesh_share_turn(const filter *f, mesh_share *share, const char *what)
         .kind = TM_NODE, .count = share->nodes, .real = (double *)share->xyz};
     size_t turned = tm_tetgen_orient(&node, share->block).turned;
     tm_ranks_sum(&turned, 1);
-    if (turned > 0)
-        filter_note(f, "%s: %zu of %zu tetrahedra were left-handed and %s",
-                    filter_input_name(f), turned, share->slice.total, what);
+    mesh_note_turned(f, turned, share->slice.total, what);
 }
 
 void mesh_share_gather(const filter *f, void **items, size_t *count, size_t size)

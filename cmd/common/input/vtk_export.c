@@ -65,9 +65,7 @@ static void turn(const filter *f, const tm_stream *piece, const tm_slices *slice
     if (ele && ele->count > 0)
         turned = tm_tetgen_orient(tm_stream_find(piece, ".node"), ele).turned;
     tm_ranks_sum(&turned, 1);
-    if (turned > 0)
-        filter_note(f, "%s: %zu of %zu tetrahedra were left-handed and are turned",
-                    filter_input_name(f), turned, slice.total);
+    mesh_note_turned(f, turned, slice.total, "are turned");
 }
 
 /* This rank's piece; that of polyhedra is rank 0's. */
