@@ -35,6 +35,20 @@ static inline unsigned tm_slice_owner(size_t total, unsigned ranks, size_t row)
                       tm_parallel_chunks(total, TM_SLICE_ROWS));
 }
 
+/* How many of the rows before … before + count - 1 are in each rank's slice: of[ranks].
+ */
+static inline void tm_slice_shares(size_t total, unsigned ranks, size_t before,
+                                   size_t count, size_t *of)
+{
+    for (unsigned r = 0; r < ranks; r++) {
+        size_t first = tm_slice_first(total, ranks, r);
+        size_t past = tm_slice_first(total, ranks, r + 1);
+        first = first > before ? first : before;
+        past = past < before + count ? past : before + count;
+        of[r] = past > first ? past - first : 0;
+    }
+}
+
 TM_EXTERN_C_END
 
 #endif

@@ -24,13 +24,7 @@ static tm_status deal(dealer *d, const void *rows, size_t before, size_t count,
     const unsigned ranks = tm_ranks_count();
     size_t all = 0;
     void *got;
-    for (unsigned r = 0; r < ranks; r++) {
-        size_t first = tm_slice_first(d->total, ranks, r);
-        size_t past = tm_slice_first(d->total, ranks, r + 1);
-        first = first > before ? first : before;
-        past = past < before + count ? past : before + count;
-        d->count[r] = past > first ? past - first : 0;
-    }
+    tm_slice_shares(d->total, ranks, before, count, d->count);
     const tm_status status =
         tm_ranks_exchange(rows, d->count, size, &got, d->count, error);
     for (unsigned r = 0; status == TM_OK && r < ranks; r++)
@@ -116,7 +110,7 @@ tm_status tm_octree_mesh_to_slices(tm_octree_mesh *mesh, const tm_octree_share *
     if (status != TM_OK)
         return status;
     slices->slice = calloc(stream->blocks, sizeof *slices->slice);
-    status = tm_ranks_agree(slices->slice ? TM_OK : tm_fail_memory(error), error);
+    status = tm_ranks_enough(slices->slice, error);
     for (size_t b = 1; b < stream->blocks && status == TM_OK; b++)
         status = even_block(slices, b, error);
     return status == TM_OK ? nodes_to_slices(mesh, slices, 0, error) : status;

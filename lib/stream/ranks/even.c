@@ -19,20 +19,11 @@ static tm_status make_plan(plan *p, size_t before, size_t count, size_t total,
                            tm_error *error)
 {
     const unsigned ranks = tm_ranks_count();
-    const size_t past = before + count;
     p->rows = tm_new(2 * (size_t)ranks, sizeof *p->rows);
     if (tm_ranks_any(!p->rows))
         return tm_fail_memory(error);
     p->items = p->rows + ranks;
-    for (unsigned r = 0; r < ranks; r++) {
-        size_t first = tm_slice_first(total, ranks, r);
-        size_t end = tm_slice_first(total, ranks, r + 1);
-        if (r == tm_rank())
-            p->got = end - first;
-        first = first < before ? before : first;
-        end = end < past ? end : past;
-        p->rows[r] = end > first ? end - first : 0;
-    }
+    tm_slice_shares(total, ranks, before, count, p->rows);
     return TM_OK;
 }
 
@@ -132,7 +123,7 @@ tm_status tm_slices_even(tm_slices *slices, size_t b, tm_error *error)
     const bool even = slice->before == first && block->count == past - first;
     if (!tm_ranks_any(!even))
         return TM_OK;
-    plan p = {0};
+    plan p = {.got = past - first};
     tm_status status = make_plan(&p, slice->before, block->count, slice->total, error);
     if (status == TM_OK)
         status = move_rows(&p, block, error);

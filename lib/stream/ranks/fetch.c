@@ -2,6 +2,7 @@
 #include "slices.h"
 
 #include "../../base/array.h"
+#include "../../base/number_set.h"
 #include "../../ranks/ranks.h"
 #include "../coordinates.h"
 
@@ -63,27 +64,17 @@ tm_status tm_slices_fetch(const void *own, size_t total, size_t size,
 tm_status tm_slices_localize(uint32_t *item, size_t items, uint32_t **number,
                              size_t *numbers, tm_error *error)
 {
-    uint32_t *sorted = tm_new(items, sizeof *sorted);
-    size_t count = 0;
-    *number = NULL;
-    *numbers = 0;
-    if (!sorted)
-        return tm_fail_memory(error);
-    for (size_t i = 0; i < items; i++)
+    tm_number_set set = {0};
+    const bool made = tm_number_set_of(&set, item, items, TM_NONE);
+    *number = made ? tm_new(set.count, sizeof **number) : NULL;
+    *numbers = *number ? set.count : 0;
+    if (*number)
+        tm_number_set_list(&set, *number);
+    for (size_t i = 0; i < items && *number; i++)
         if (item[i] != TM_NONE)
-            sorted[count++] = item[i];
-    qsort(sorted, count, sizeof *sorted, tm_compare_numbers);
-    size_t unique = 0;
-    for (size_t i = 0; i < count; i++)
-        if (i == 0 || sorted[i] != sorted[unique - 1])
-            sorted[unique++] = sorted[i];
-    for (size_t i = 0; i < items; i++)
-        if (item[i] != TM_NONE)
-            item[i] = (uint32_t)tm_first_not_below(sorted, unique, item[i]);
-    uint32_t *fitting = realloc(sorted, (unique + 1) * sizeof *fitting);
-    *number = fitting ? fitting : sorted;
-    *numbers = unique;
-    return TM_OK;
+            item[i] = tm_number_set_below(&set, item[i]);
+    tm_number_set_free(&set);
+    return *number ? TM_OK : tm_fail_memory(error);
 }
 
 tm_status tm_slices_take_nodes(const tm_slices *slices, uint32_t *item, size_t items,

@@ -47,7 +47,7 @@ tm_status tm_slices_fetch(const void *own, size_t total, size_t size,
 /* The numbers that are in a list, ascending, none twice: *number, to be freed; the list
  * then names their places. A row of a slice with `items` such numbers becomes one of a
  * mesh of its own, whose node n has the number (*number)[n]. TM_NONE stays. On this rank
- * alone. O(items log items). */
+ * alone. O(items + range of the numbers / 64). */
 tm_status tm_slices_localize(uint32_t *item, size_t items, uint32_t **number,
                              size_t *numbers, tm_error *error);
 
