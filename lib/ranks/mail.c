@@ -62,8 +62,7 @@ tm_status tm_mail_answer(const tm_mail *mail, const void *answer, size_t size, v
     size_t *count = calloc(ranks, sizeof *count);
     char *own = tm_new(mail->items, size);
     void *sorted = NULL;
-    tm_status status =
-        tm_ranks_agree(count && own ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(count && own, error);
     if (status == TM_OK)
         status = tm_ranks_exchange(answer, mail->got_count, size, &sorted, count, error);
     for (size_t k = 0; k < mail->items && status == TM_OK && own; k++)
@@ -83,7 +82,7 @@ tm_status tm_ranks_runs(size_t count, size_t **first, tm_error *error)
     const unsigned ranks = tm_ranks_count();
     void *all = NULL;
     size_t *runs = calloc(ranks + (size_t)1, sizeof *runs);
-    tm_status status = tm_ranks_agree(runs ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(runs, error);
     if (status == TM_OK)
         status = tm_ranks_share(&count, 1, sizeof count, &all, NULL, error);
     for (unsigned r = 0; r < ranks && status == TM_OK; r++)

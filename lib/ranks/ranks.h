@@ -69,6 +69,13 @@ static inline bool tm_ranks_any(bool value)
     return tm_ranks_find_any(value) || value;
 }
 
+/* Whether all ranks have the memory that they need: tm_fail_memory() on all where one has
+ * not. */
+static inline tm_status tm_ranks_enough(bool enough, tm_error *error)
+{
+    return tm_ranks_any(!enough) ? tm_fail_memory(error) : TM_OK;
+}
+
 /* The sum over the ranks before this one; *all (may be NULL) gets that of all. */
 size_t tm_ranks_before(size_t value, size_t *all);
 

@@ -70,11 +70,6 @@ static const tm_block *cells_of(const maker *m)
     return &m->piece->block[m->cell];
 }
 
-static tm_status agree(const maker *m, bool done)
-{
-    return tm_ranks_any(!done) ? tm_fail_memory(m->error) : TM_OK;
-}
-
 /* Marked rows ----------------------------------------------------------------------- */
 
 static tm_status share(void **array, size_t count, size_t size, size_t *total,
@@ -118,7 +113,7 @@ static tm_status collect(maker *m, int part)
     const bool is_content = part == 0 && m->content == TM_CONTENT_SURFACE;
     if (!block || !block->markers || facets_of_none || is_content)
         return TM_OK;
-    tm_status status = agree(m, collect_own(p, block));
+    tm_status status = tm_ranks_enough(collect_own(p, block), m->error);
     size_t rows = p->rows;
     if (status == TM_OK)
         status = share((void **)&p->length, p->rows, sizeof *p->length, &rows, m->error);
@@ -203,7 +198,7 @@ static tm_status find_owners(maker *m, marked *p)
 {
     if (p->rows == 0)
         return TM_OK;
-    const tm_status status = agree(m, find_own_owners(m, p));
+    const tm_status status = tm_ranks_enough(find_own_owners(m, p), m->error);
     if (status == TM_OK)
         tm_ranks_least(p->owner, p->rows);
     return status;
@@ -268,7 +263,7 @@ static tm_status add_all_marked(maker *m)
         free(m->part[part].owner);
         m->part[part] = (marked){0};
     }
-    return status == TM_OK ? agree(m, done) : status;
+    return status == TM_OK ? tm_ranks_enough(done, m->error) : status;
 }
 
 /* Nodes ----------------------------------------------------------------------------- */
@@ -306,7 +301,7 @@ static tm_status fetch(const maker *m, void **array, const void *own, size_t siz
                        size_t total, const uint32_t *number, size_t count)
 {
     *array = tm_new(count, size);
-    const tm_status status = agree(m, *array != NULL);
+    const tm_status status = tm_ranks_enough(*array != NULL, m->error);
     return status == TM_OK
                ? tm_slices_fetch(own, total, size, number, count, *array, m->error)
                : status;
@@ -323,7 +318,7 @@ static tm_status add_nodes(maker *m)
             items += count;
         }
     uint32_t *list = tm_new(items, sizeof *list);
-    tm_status status = agree(m, list != NULL);
+    tm_status status = tm_ranks_enough(list != NULL, m->error);
     if (status == TM_OK) {
         copy_items(m->piece, list, false);
         status = tm_ranks_agree(
@@ -383,7 +378,7 @@ static tm_status send_octants(const maker *m, const tm_block *from, size_t total
         }
     }
     void *all = NULL;
-    tm_status status = agree(m, done);
+    tm_status status = tm_ranks_enough(done, m->error);
     if (status == TM_OK)
         status = tm_ranks_exchange(list, send, sizeof *list, &all, send, m->error);
     *count = 0;
@@ -419,7 +414,7 @@ static tm_status add_octants(maker *m)
     } else {
         free(octant);
     }
-    return agree(m, block != NULL);
+    return tm_ranks_enough(block != NULL, m->error);
 }
 
 /* Names are in rank 0's piece. */
@@ -427,7 +422,7 @@ static tm_status add_names(maker *m)
 {
     tm_slice slice;
     const bool has = tm_rank() == 0 && tm_slices_find(m->slices, ".group", &slice);
-    return agree(m, !has || take(m, ".group", &slice) != NULL);
+    return tm_ranks_enough(!has || take(m, ".group", &slice) != NULL, m->error);
 }
 
 /* The cells; of points this rank's slice of .node is all that there is. */
@@ -440,7 +435,7 @@ static tm_status add_cells(maker *m)
         name = ".ele";
     const bool done = (points || tm_stream_add(m->piece, ".node")) &&
                       take(m, points ? ".node" : name, &m->slice);
-    return agree(m, done);
+    return tm_ranks_enough(done, m->error);
 }
 
 tm_status tm_vtk_piece_make(tm_stream *piece, tm_slices *slices,

@@ -17,7 +17,7 @@ static tm_status look_up(const tm_rows *rows, const uint32_t *parent, uint32_t *
     tm_number_set set = {0};
     uint32_t *found = NULL;
     const bool made = tm_number_set_of(&set, list, count, NOTHING);
-    tm_status status = tm_ranks_any(!made) ? tm_fail_memory(error) : TM_OK;
+    tm_status status = tm_ranks_enough(made, error);
     if (status == TM_OK)
         status =
             tm_ranks_fetch(rows, parent, sizeof *parent, &set, (void **)&found, error);

@@ -6,11 +6,6 @@
 
 #include <stdlib.h>
 
-tm_status tm_ranks_enough(bool enough, tm_error *error)
-{
-    return tm_ranks_any(!enough) ? tm_fail_memory(error) : TM_OK;
-}
-
 tm_status tm_part_nodes_make(tm_part_nodes *nodes, uint32_t *list, size_t count,
                              const tm_rows *rows, const double (*own)[3], tm_error *error)
 {

@@ -7,9 +7,6 @@
 
 TM_EXTERN_C_BEGIN
 
-/* All ranks: TM_ERROR_SYSTEM on all where one has not enough memory. */
-tm_status tm_ranks_enough(bool enough, tm_error *error);
-
 /* Nodes that something on this rank names. */
 typedef struct tm_part_nodes {
     tm_number_set set;

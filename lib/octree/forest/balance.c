@@ -236,8 +236,7 @@ static tm_status complete_together(balancer *b, unsigned level, tm_error *error)
     size_t *count = tm_new(ranks, sizeof *count), all = 0;
     void *send = count ? collect_away(b, count) : NULL;
     anchors told = {0};
-    tm_status status =
-        tm_ranks_agree(send && !b->failed ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(send && !b->failed, error);
     if (status == TM_OK)
         status = tm_ranks_exchange(send, count, sizeof *told.anchor,
                                    (void **)&told.anchor, count, error);

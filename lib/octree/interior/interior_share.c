@@ -283,7 +283,7 @@ static tm_status choose_enclosed(tm_interior *enclosed, const tm_interior *inter
 {
     uint32_t *parent = tm_new(share->octree.nodes, sizeof *parent), *outside = NULL;
     size_t count = 0;
-    tm_status status = tm_ranks_agree(parent ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(parent, error);
     if (status == TM_OK)
         status = list_outside(interior, share, surface, parent, &outside, &count, error);
     for (size_t l = share->own_first; status == TM_OK && l < share->own_past; l++) {

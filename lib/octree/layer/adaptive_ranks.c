@@ -57,7 +57,7 @@ static tm_status count_sets(const maker *m, const bool *marked, const uint32_t *
     leaf_set *own = tm_new(s->own_past - s->own_first, sizeof *own);
     size_t listed = 0, joined = 0;
     void *got = NULL;
-    tm_status status = tm_ranks_agree(own ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(own, error);
     for (size_t l = s->own_first; status == TM_OK && l < s->own_past; l++)
         if (marked[l])
             own[listed++] = (leaf_set){label[s->octree.node[l][0]], 1};
@@ -99,7 +99,7 @@ static tm_status mark_many(const maker *m, const bool *behind, uint8_t *split,
 {
     const tm_octree *octree = &m->share->octree;
     uint32_t *parent = tm_new(octree->nodes, sizeof *parent);
-    tm_status status = tm_ranks_agree(parent ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(parent, error);
     for (size_t n = 0; status == TM_OK && n < octree->nodes; n++)
         parent[n] = (uint32_t)n;
     for (size_t l = 0; status == TM_OK && l < octree->leaves; l++)
@@ -118,7 +118,7 @@ static tm_status mark_behind(const maker *m, const tm_interior *interior, uint8_
 {
     const tm_octree *octree = &m->share->octree;
     bool any = false, *behind = tm_new(octree->leaves, sizeof *behind);
-    tm_status status = tm_ranks_agree(behind ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(behind, error);
     if (status == TM_OK)
         any = tm_ranks_any(tm_interior_find_behind(interior, octree, m->level, behind));
     if (any)
@@ -154,7 +154,7 @@ static tm_status make_without_loss(const maker *m, tm_error *error)
         uint8_t *split = calloc(m->share->octree.leaves + 1, sizeof *split);
         tm_interior_free(&interior);
         tm_progress_stage(progress, "choosing octants");
-        status = tm_ranks_agree(split ? TM_OK : tm_fail_memory(error), error);
+        status = tm_ranks_enough(split, error);
         if (status == TM_OK)
             status = tm_interior_choose_on_ranks(&interior, m->share, m->surface, error);
         if (status == TM_OK)
@@ -170,20 +170,11 @@ static tm_status make_without_loss(const maker *m, tm_error *error)
     return status;
 }
 
-/* Marks leaves that the surface crosses at nodes that are near, then the nodes of these.
- */
+/* tm_octree_mark_ring(), and the marks of other ranks' nodes. */
 static tm_status mark_ring(const maker *m, const tm_mesh_ghosts *ghosts, bool *near,
                            uint8_t *split, tm_error *error)
 {
-    const tm_octree *octree = &m->share->octree;
-    for (size_t l = 0; l < octree->leaves; l++) {
-        split[l] = 0;
-        for (int p = 0; octree->leaf[l].crossed && p < TM_LEAF_EDGE; p++)
-            split[l] |= near[octree->node[l][p]];
-    }
-    for (size_t l = 0; l < octree->leaves; l++)
-        for (int p = 0; split[l] && p < TM_LEAF_EDGE; p++)
-            near[octree->node[l][p]] = true;
+    tm_octree_mark_ring(&m->share->octree, near, split);
     return tm_mesh_ghosts_mark(ghosts, near, error);
 }
 
@@ -196,7 +187,7 @@ static tm_status mark_off_surface(const maker *m, bool *near, uint8_t *split, bo
     const tm_octree *octree = &m->share->octree;
     uint32_t *self = tm_new(octree->nodes, sizeof *self);
     tm_mesh_ghosts ghosts = {0};
-    tm_status status = tm_ranks_agree(self ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(self, error);
     for (size_t n = 0; status == TM_OK && n < octree->nodes; n++)
         self[n] = (uint32_t)n;
     const uint32_t *const of_node[] = {self};
@@ -256,8 +247,7 @@ static tm_status split_off_surface(maker *m, bool *better, tm_error *error)
 {
     bool *near = calloc(m->share->octree.nodes + 1, sizeof *near), any = false;
     uint8_t *split = tm_new(m->share->octree.leaves, sizeof *split);
-    tm_status status =
-        tm_ranks_agree(near && split ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(near && split, error);
     if (status == TM_OK)
         status = mark_off_surface(m, near, split, &any, error);
     free(near);
@@ -279,7 +269,7 @@ static tm_status find_losses(const maker *m, const tm_boundary_share *b, tm_erro
     tm_leaf *list =
         tm_octree_mesh_lost_leaves(mesh->part, &m->share->octree, m->surface,
                                    m->share->own_first, m->share->own_past, &own);
-    tm_status status = tm_ranks_agree(list ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(list, error);
     if (status == TM_OK)
         status = tm_ranks_gather(list, own, sizeof *list, &lost, &losts, error);
     if (status == TM_OK)

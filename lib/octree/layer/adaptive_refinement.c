@@ -161,6 +161,18 @@ static tm_status make_without_loss(tm_octree_mesh *mesh, tm_octree *octree,
     return status;
 }
 
+void tm_octree_mark_ring(const tm_octree *octree, bool *near, uint8_t *split)
+{
+    for (size_t l = 0; l < octree->leaves; l++) {
+        split[l] = 0;
+        for (int p = 0; octree->leaf[l].crossed && p < TM_LEAF_EDGE; p++)
+            split[l] |= near[octree->node[l][p]];
+    }
+    for (size_t l = 0; l < octree->leaves; l++)
+        for (int p = 0; split[l] && p < TM_LEAF_EDGE; p++)
+            near[octree->node[l][p]] = true;
+}
+
 /* The leaves at boundary nodes that are off the surface, and their neighbours that the
  * surface crosses. NULL where memory is out or there is none. */
 static uint8_t *mark_off_surface(const tm_octree_mesh *mesh, const tm_octree *octree,
@@ -170,16 +182,8 @@ static uint8_t *mark_off_surface(const tm_octree_mesh *mesh, const tm_octree *oc
     bool *near = calloc(octree->nodes + 1, sizeof *near);
     for (size_t s = 0; near && s < mesh->boundary.nodes; s++)
         near[mesh->boundary.grid_node[s]] = mesh->off_surface[s];
-    for (int ring = 0; split && near && ring < 2; ring++) {
-        for (size_t l = 0; l < octree->leaves; l++) {
-            split[l] = 0;
-            for (int p = 0; octree->leaf[l].crossed && p < TM_LEAF_EDGE; p++)
-                split[l] |= near[octree->node[l][p]];
-        }
-        for (size_t l = 0; l < octree->leaves; l++)
-            for (int p = 0; split[l] && p < TM_LEAF_EDGE; p++)
-                near[octree->node[l][p]] = true;
-    }
+    for (int ring = 0; split && near && ring < 2; ring++)
+        tm_octree_mark_ring(octree, near, split);
     const bool any = split && near && keep_shallow(octree, deepest, split) > 0;
     free(near);
     if (!any)

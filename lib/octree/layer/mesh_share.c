@@ -29,8 +29,7 @@ static tm_status find_ghosts(tm_mesh_share *s, const tm_assembly *a,
     const tm_octree *octree = &s->of->octree;
     uint32_t *outer = tm_new(octree->nodes, sizeof *outer);
     uint32_t *middle = tm_new(octree->leaves, sizeof *middle);
-    tm_status status =
-        tm_ranks_agree(outer && middle ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(outer && middle, error);
     for (size_t n = 0; status == TM_OK && n < octree->nodes; n++)
         outer[n] = TM_NONE;
     for (size_t l = 0; status == TM_OK && l < octree->leaves; l++)
@@ -69,7 +68,7 @@ tm_status tm_mesh_share_find(tm_mesh_share *s, const tm_octree_share *of,
                        "the mesh would have %zu nodes and %zu elements, more than 32 "
                        "bits can number",
                        s->nodes, s->elements.all);
-    tm_status status = tm_ranks_agree(s->number ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(s->number, error);
     if (status == TM_OK)
         status = find_ghosts(s, a, boundary, error);
     if (status != TM_OK)

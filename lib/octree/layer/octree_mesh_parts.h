@@ -136,6 +136,10 @@ enum { TM_MOST_TO_SPLIT = 5000000, TM_BEHIND_MANY = 8 };
 bool tm_interior_find_behind(const tm_interior *interior, const tm_octree *octree,
                              unsigned level, bool *behind);
 
+/* Sets split[leaves], those that the surface crosses and that have a corner that is near,
+ * then makes their corners near. */
+void tm_octree_mark_ring(const tm_octree *octree, bool *near, uint8_t *split);
+
 /* By how much pieces and Euler number of the boundary differ from the surface's. */
 uint64_t tm_topology_missing(const tm_octree_mesh_report *report,
                              const tm_surface *surface);

@@ -100,8 +100,7 @@ static tm_status get_before(closest_finder *f, const tm_own_range *range, tm_err
         all += count[r] =
             needed(range[r].number, range[r].past - range[r].first, first, past, &begin);
     uint32_t(*send)[3] = tm_new(all, sizeof *send);
-    tm_status status =
-        tm_ranks_agree(count && send ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(count && send, error);
     void *got = NULL;
     all = 0;
     for (unsigned r = 0; status == TM_OK && r < ranks; r++) {
@@ -292,8 +291,7 @@ tm_status tm_octree_mesh_make_on_ranks(tm_octree_mesh *mesh, const tm_octree_sha
     const size_t bytes = surface->triangles * sizeof *surface->patch;
     uint32_t *patch = tm_new(surface->triangles, sizeof *patch);
     *mesh = (tm_octree_mesh){.part = calloc(1, sizeof *mesh->part)};
-    tm_status status =
-        tm_ranks_agree(mesh->part && patch ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(mesh->part && patch, error);
     if (status == TM_OK) {
         mesh->parts = 1;
         *mesh->part = *interior;

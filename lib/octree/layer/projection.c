@@ -147,7 +147,7 @@ static tm_status find_ghosts(tm_mesh_ghosts *ghosts, const tm_mesh_share *share,
                              const uint32_t *order, tm_error *error)
 {
     bool *kept = calloc(nodes + 1, sizeof *kept);
-    tm_status status = tm_ranks_agree(kept ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(kept, error);
     for (size_t n = first; status == TM_OK && n < past; n++)
         kept[n] = !order || order[n] != TM_NONE;
     if (status == TM_OK)
@@ -289,7 +289,7 @@ static tm_status find_own(const fitter *projection, zone *z, tm_error *error)
     z->middle_past = place_of(z, middles + share->middles.past);
     const size_t before = tm_ranks_before(z->own_past - z->own, NULL);
     z->number = tm_new(nodes, sizeof *z->number);
-    tm_status status = tm_ranks_agree(z->number ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(z->number, error);
     for (size_t i = z->own; status == TM_OK && i < z->own_past; i++)
         z->number[z->node[i]] = (uint32_t)(before + i - z->own);
     if (status == TM_OK)

@@ -269,7 +269,7 @@ tm_status tm_shared_mend(const tm_shared_work *s, unsigned pass, tm_sent_node **
     parcel p = {.to_first = pass == 0};
     void *elements = NULL, *nodes = NULL;
     size_t element_count = 0, node_count = 0;
-    tm_status status = tm_ranks_agree(pack(s, &p) ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(pack(s, &p), error);
     if (status == TM_OK)
         status = tm_ranks_exchange(p.element, p.elements, sizeof *p.element, &elements,
                                    p.elements, error);
@@ -327,7 +327,7 @@ tm_status tm_shared_put(const tm_shared_work *s, tm_sent_node *moved, size_t lis
     size_t *count = calloc(tm_ranks_count(), sizeof *count), all = 0;
     double(*xyz)[3] = s->mesh->assembly.mesh.xyz;
     void *range = NULL, *got = NULL;
-    tm_status status = tm_ranks_agree(count ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(count, error);
     if (status == TM_OK)
         status = tm_ranks_share(own, 3, sizeof *own, &range, NULL, error);
     for (size_t i = 0; status == TM_OK && i < listed; i++) {

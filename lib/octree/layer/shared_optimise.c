@@ -66,8 +66,7 @@ static tm_status find_candidates(tm_shared_work *s, tm_error *error)
 {
     size_t count = 0;
     s->candidate = tm_new(own_elements(s), sizeof *s->candidate);
-    tm_status status =
-        tm_ranks_agree(s->candidate ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(s->candidate, error);
     if (status != TM_OK)
         return status;
     s->candidates = own_elements(s);
@@ -186,7 +185,7 @@ static tm_status optimise(tm_shared_work *s, tm_optimise_report *report, tm_erro
     tm_status status = find_candidates(s, error);
     double(*kept)[3] = tm_new(mesh->nodes, sizeof *kept);
     if (status == TM_OK)
-        status = tm_ranks_agree(kept ? TM_OK : tm_fail_memory(error), error);
+        status = tm_ranks_enough(kept, error);
     if (status == TM_OK) {
         memcpy(kept, mesh->xyz, mesh->nodes * sizeof *kept);
         status = make_passes(s, (const double(*)[3])kept, error);

@@ -88,7 +88,7 @@ static tm_status gather_faces(tm_interior_boundary *skin, const tm_boundary_shar
     const size_t count = s->faces.past - s->faces.first;
     uint32_t(*face)[4] = tm_new(count, sizeof *face);
     void *faces = NULL, *cut = NULL;
-    tm_status status = tm_ranks_agree(face ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(face, error);
     for (size_t f = 0; status == TM_OK && f < count; f++)
         for (int i = 0; i < 4; i++) {
             const uint32_t n = boundary->face[s->faces.first + f][i];

@@ -32,7 +32,7 @@ static tm_status share_list(const tm_boundary_view *view, void **list, size_t *c
                             bool done, tm_error *error)
 {
     void *all = NULL;
-    tm_status status = tm_ranks_agree(done ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(done, error);
     if (view->share && status == TM_OK) {
         status = tm_ranks_share(*list, *count, size, &all, count, error);
         free(*list);
@@ -151,8 +151,7 @@ tm_status tm_boundary_pieces_find(tm_boundary_pieces *pieces,
     *pieces =
         (tm_boundary_pieces){.label = tm_new(view->octree->nodes, sizeof(uint32_t))};
     void *list = NULL;
-    tm_status status =
-        tm_ranks_agree(pieces->label ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(pieces->label, error);
     if (status == TM_OK)
         status = label_pieces(view, pieces->label, error);
     if (status != TM_OK)

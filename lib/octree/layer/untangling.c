@@ -430,7 +430,7 @@ tm_status tm_untangle_layer(tm_octree_mesh *mesh, const tm_octree *octree,
     const tm_boundary boundary = tm_boundary_of_surface(surface);
     tm_node_rule *rule = find_rules(mesh);
     double worst = 1;
-    tm_status status = tm_ranks_agree(rule ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(rule, error);
     if (status != TM_OK)
         return status;
     status = improve(mesh, rule, &boundary, progress, &worst, error);

@@ -76,7 +76,7 @@ tm_status tm_mesh_ghosts_find(tm_mesh_ghosts *g, const tm_octree_share *share,
         g->receives[r + 1] = received.count;
         done = !sent.failed && !received.failed;
     }
-    return tm_ranks_agree(done ? TM_OK : tm_fail_memory(error), error);
+    return tm_ranks_enough(done, error);
 }
 
 tm_status tm_mesh_ghosts_some(tm_mesh_ghosts *some, const tm_mesh_ghosts *all,
@@ -93,7 +93,7 @@ tm_status tm_mesh_ghosts_some(tm_mesh_ghosts *some, const tm_mesh_ghosts *all,
         some->receives[r + 1] = received.count;
         done = !sent.failed && !received.failed;
     }
-    return tm_ranks_agree(done ? TM_OK : tm_fail_memory(error), error);
+    return tm_ranks_enough(done, error);
 }
 
 void tm_mesh_ghosts_free(tm_mesh_ghosts *g)
@@ -112,8 +112,7 @@ static tm_status exchange(unsigned ranks, const size_t *start, const uint32_t *i
     char *send = tm_new(start[ranks], size);
     size_t *count = tm_new(ranks, sizeof *count);
     *got = NULL;
-    tm_status status =
-        tm_ranks_agree(send && count ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(send && count, error);
     for (size_t i = 0; status == TM_OK && i < start[ranks]; i++)
         memcpy(send + i * size, value + item[i] * size, size);
     for (unsigned r = 0; status == TM_OK && r < ranks; r++)

@@ -83,7 +83,7 @@ tm_status tm_share_join_sets(const tm_octree_share *share, uint32_t *parent,
     uint32_t *other = tm_new(nodes, sizeof *other), *name = NULL, *set = NULL;
     pair *list = NULL, *all = NULL;
     size_t count = 0, names = 0;
-    tm_status status = tm_ranks_agree(other ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(other, error);
     for (size_t n = 0; status == TM_OK && n < nodes; n++)
         other[n] = share->node_number[tm_set_root(parent, (uint32_t)n)];
     if (status == TM_OK && other) { /* as all say */

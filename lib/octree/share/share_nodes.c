@@ -13,7 +13,7 @@
 tm_status tm_share_exchange(bool done, const void *send, size_t *count, size_t size,
                             void **got, tm_error *error)
 {
-    const tm_status status = tm_ranks_agree(done ? TM_OK : tm_fail_memory(error), error);
+    const tm_status status = tm_ranks_enough(done, error);
     return status == TM_OK ? tm_ranks_exchange(send, count, size, got, count, error)
                            : status;
 }

@@ -120,7 +120,7 @@ static tm_status announce(tm_reader *r, tm_block *block, size_t rows, size_t lim
     a.begin = tm_lines_place(&r->lines);
     a.past = s->regular ? tm_block_places_next(&s->place, a.begin) : 0;
     tm_ranks_broadcast(&a, sizeof a);
-    status = tm_ranks_agree(TM_OK, r->error);
+    status = tm_ranks_enough(true, r->error);
     s->agreed = status != TM_OK;
     return status == TM_OK && !is_text(block) ? read_together(r, block, &a) : status;
 }
@@ -149,8 +149,7 @@ static tm_status follow(tm_reader *r)
         if (a.end)
             return tm_stream_check_references(&r->names, r->lines.name, r->error);
         tm_block *block = add_announced(r, &a);
-        tm_status status =
-            tm_ranks_agree(block ? TM_OK : tm_fail_memory(r->error), r->error);
+        tm_status status = tm_ranks_enough(block, r->error);
         s->agreed = status != TM_OK;
         if (status == TM_OK && !is_text(block))
             status = read_together(r, block, &a);

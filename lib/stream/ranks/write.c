@@ -150,7 +150,7 @@ tm_status tm_slices_write_file(const tm_slices *slices, const char *name,
 {
     size_t *place = tm_new(slices->stream.blocks, sizeof *place), end;
     tm_ranks_file *file = NULL;
-    tm_status status = tm_ranks_any(!place) ? tm_fail_memory(error) : TM_OK;
+    tm_status status = tm_ranks_enough(place, error);
     if (status == TM_OK)
         status = find_places(slices, threads, place, &end, error);
     if (status == TM_OK)

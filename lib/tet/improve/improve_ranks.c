@@ -41,7 +41,7 @@ static tm_status find_due(tm_tet_share *share, const bool *between, size_t nodes
                           tm_error *error)
 {
     const bool done = tm_improve_find_due(&share->mesh, &share->due, between, nodes);
-    const tm_status status = tm_ranks_agree(done ? TM_OK : tm_fail_memory(error), error);
+    const tm_status status = tm_ranks_enough(done, error);
     return status == TM_OK ? tm_tet_share_any(share, share->due, nodes, error) : status;
 }
 

@@ -15,7 +15,7 @@ static tm_status address(tm_mail *mail, const tm_tet_share *share, size_t count,
     *mail = (tm_mail){0};
     for (size_t v = 0; v < count && to; v++)
         to[v] = tm_rank_of(share->home, share->number[v]);
-    tm_status status = tm_ranks_agree(to ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(to, error);
     if (status == TM_OK)
         status = tm_mail_address(mail, to, count, error);
     free(to);
@@ -60,7 +60,7 @@ tm_status tm_tet_share_any(const tm_tet_share *share, bool *flag, size_t count,
         status = tm_mail_send(&mail, item, sizeof *item, &got, error);
     if (status == TM_OK) {
         answer = answers(share, got, mail.got);
-        status = tm_ranks_agree(answer ? TM_OK : tm_fail_memory(error), error);
+        status = tm_ranks_enough(answer, error);
     }
     if (status == TM_OK)
         status = tm_mail_answer(&mail, answer, sizeof *flag, &all, error);
@@ -224,7 +224,7 @@ tm_status tm_share_widen_by(tm_tet_share *share, const tm_share_book *book,
     void *got = NULL;
     tm_tet_deal deal = {0};
     sharer *list = count ? list_sharers(share, book, number, mail, count) : NULL;
-    tm_status status = tm_ranks_agree(list ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(list, error);
     if (status == TM_OK)
         status = tm_ranks_exchange(list, count, sizeof *list, &got, count, error);
     free(list);

@@ -87,7 +87,7 @@ tm_status tm_tet_share_deal(tm_tet_share *share, const tm_tet_deal *deal,
     done &= tm_packet_start(&in);
     done = done && tm_packet_fill(&out, share, deal);
     const tm_tet_mesh like = share->mesh; /* its pointers are not followed */
-    tm_status status = tm_ranks_agree(done ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(done, error);
     if (status == TM_OK && to == share)
         empty(share);
     if (status == TM_OK)

@@ -141,7 +141,7 @@ static tm_status send_nodes(giving *give, const node_list *list, tm_block *block
         answer = tm_new(mail.got, sizeof *answer);
         bool done = !tm_ranks_any(!answer);
         done = done && make_nodes(give, block, got, attribute, mail.got, answer);
-        status = tm_ranks_agree(done ? TM_OK : tm_fail_memory(error), error);
+        status = tm_ranks_enough(done, error);
     }
     free(got);
     free(attribute);
@@ -241,7 +241,7 @@ static tm_status sort_faces(const giving *give, sorted_row **rows, size_t *count
     tm_error *error = give->error;
     for (size_t k = 0; k < *count && to; k++)
         to[k] = tm_slice_owner(slice.total, tm_ranks_count(), (*rows)[k].key[0]);
-    tm_status status = tm_ranks_agree(to ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(to, error);
     if (status == TM_OK)
         status = tm_mail_address(&mail, to, *count, error);
     if (status == TM_OK)
@@ -283,7 +283,7 @@ static tm_status send_rows(const sorted_row *rows, size_t count, size_t before,
     void *came = NULL;
     for (size_t k = 0; k < count && to; k++)
         to[k] = tm_slice_owner(total, tm_ranks_count(), before + k);
-    tm_status status = tm_ranks_agree(to ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(to, error);
     if (status == TM_OK)
         status = tm_mail_address(&mail, to, count, error);
     if (status == TM_OK)
@@ -295,7 +295,7 @@ static tm_status send_rows(const sorted_row *rows, size_t count, size_t before,
             memcpy(all + *got_count, came, mail.got * sizeof *all);
             *got_count += mail.got;
         }
-        status = tm_ranks_agree(all ? TM_OK : tm_fail_memory(error), error);
+        status = tm_ranks_enough(all, error);
     }
     tm_mail_free(&mail);
     free(to);
@@ -314,8 +314,7 @@ static tm_status give_faces(const giving *give, size_t inner_faces)
     sorted_row *inner = list_faces(give, 0, inner_faces, &inner_count), *got = NULL;
     sorted_row *other =
         list_faces(give, inner_faces, give->share->mesh.faces, &other_count);
-    tm_status status =
-        tm_ranks_agree(inner && other ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(inner && other, error);
     if (status == TM_OK)
         status = sort_faces(give, &other, &other_count);
     if (status == TM_OK) {
@@ -348,7 +347,7 @@ static tm_status ask_for_edges(const giving *give, const sorted_row *rows, size_
     void *came = NULL, *answer = NULL;
     for (size_t k = 0; k < count && to; k++)
         to[k] = rows[k].key[0] % tm_ranks_count();
-    tm_status status = tm_ranks_agree(to ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(to, error);
     if (status == TM_OK)
         status = tm_mail_address(&mail, to, count, error);
     if (status == TM_OK)
@@ -361,7 +360,7 @@ static tm_status ask_for_edges(const giving *give, const sorted_row *rows, size_
         tm_edge_map_put(&known, key[0], key[1], 0);
     }
     if (status == TM_OK)
-        status = tm_ranks_agree(done ? TM_OK : tm_fail_memory(error), error);
+        status = tm_ranks_enough(done, error);
     if (status == TM_OK)
         status = tm_mail_answer(&mail, first, sizeof *first, &answer, error);
     *keep = answer;
@@ -401,7 +400,7 @@ static tm_status give_edges(const giving *give)
     size_t count, kept = 0;
     bool *keep = NULL;
     sorted_row *rows = list_edges(give, &count);
-    tm_status status = tm_ranks_agree(rows ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(rows, error);
     if (status == TM_OK)
         status = ask_for_edges(give, rows, count, &keep);
     for (size_t k = 0; k < count && status == TM_OK; k++)

@@ -28,7 +28,7 @@ static tm_status send_home(const tm_tet_share *share, const tm_block *block,
         rows[k].marker = block->marker ? block->marker[k] : 0;
         to[k] = tm_rank_of(share->home, rows[k].node[0]);
     }
-    tm_status status = tm_ranks_agree(rows && to ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(rows && to, error);
     if (status == TM_OK)
         status = tm_mail_address(&mail, to, block->count, error);
     if (status == TM_OK)
@@ -62,8 +62,7 @@ static tm_status send_on(const tm_tet_share *share, const tm_share_book *book, r
             to[k++] = book->rank[j];
         }
     }
-    tm_status status =
-        tm_ranks_agree(copies && to ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(copies && to, error);
     if (status == TM_OK)
         status = tm_mail_address(&mail, to, all, error);
     if (status == TM_OK)
@@ -148,7 +147,7 @@ static tm_status claim(const tm_tet_share *share, row *rows, size_t *count, size
     *count = kept;
     free(at.start);
     free(at.tet);
-    return tm_ranks_agree(done ? TM_OK : tm_fail_memory(error), error);
+    return tm_ranks_enough(done, error);
 }
 
 /* Whether some rank has claimed each of `total` rows. */
@@ -168,7 +167,7 @@ static tm_status are_all_claimed(const row *rows, size_t count, size_t total, bo
         number[k] = rows[k].number;
     }
     const bool done = to && number && claimed;
-    tm_status status = tm_ranks_agree(done ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(done, error);
     if (status == TM_OK)
         status = tm_mail_address(&mail, to, count, error);
     if (status == TM_OK)
@@ -293,7 +292,7 @@ tm_status tm_share_count_locked(const tm_tet_share *share, size_t *locked,
             key[count++] = edges.slot[s].key;
         }
     tm_edge_map_free(&edges);
-    tm_status status = tm_ranks_agree(done ? TM_OK : tm_fail_memory(error), error);
+    tm_status status = tm_ranks_enough(done, error);
     if (status == TM_OK)
         status = tm_mail_address(&mail, to, count, error);
     if (status == TM_OK)
