@@ -61,9 +61,13 @@ static void test_stage_line(void **state)
 {
     (void)state;
     char line[PROGRESS_LINE];
-    const progress_clock from = {1, 0.5}, to = {3.25, 1};
+    const progress_clock from = {1, 0.5, 0}, to = {3.25, 1, 0};
     progress_stage_line(line, "filter", "sorting", &from, &to, 3 * 512);
     assert_string_equal(line, "filter: sorting: 2.25 s, 0.50 s of CPU, 1.5 MB at most\n");
+    const progress_clock sent = {2, 1, 250000}, more = {3, 2, 1500000};
+    progress_stage_line(line, "filter", "dealing", &sent, &more, 1024);
+    assert_string_equal(
+        line, "filter: dealing: 1.00 s, 1.00 s of CPU, 1.0 MB at most, 1.2 MB sent\n");
 }
 
 /* What has been drawn since the last time. */

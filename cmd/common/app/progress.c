@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "progress.h"
 
+#include "../../../lib/ranks/ranks.h"
+
 #include <errno.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -101,10 +103,13 @@ void progress_stage_line(char line[PROGRESS_LINE], const char *name, const char 
                          const progress_clock *from, const progress_clock *to,
                          long kilobytes)
 {
-    const double kilobytes_in_megabyte = 1024;
-    snprintf(line, PROGRESS_LINE, "%s: %s: %.2f s, %.2f s of CPU, %.1f MB at most\n",
-             name, what, to->seconds - from->seconds, to->cpu - from->cpu,
+    const double kilobytes_in_megabyte = 1024, million = 1e6;
+    snprintf(line, PROGRESS_LINE, "%s: %s: %.2f s, %.2f s of CPU, %.1f MB at most", name,
+             what, to->seconds - from->seconds, to->cpu - from->cpu,
              (double)kilobytes / kilobytes_in_megabyte);
+    if (to->sent > from->sent)
+        add(line, ", %.1f MB sent", (double)(to->sent - from->sent) / million);
+    add(line, "\n");
 }
 
 /* Clocks and memory ---------------------------------------------------------------- */
@@ -127,7 +132,7 @@ static double seconds_of(const struct timeval *t)
 static progress_clock measure(const progress *p, long *kilobytes)
 {
     static const int who[] = {RUSAGE_SELF, RUSAGE_CHILDREN};
-    progress_clock clock = {.seconds = now() - p->began};
+    progress_clock clock = {.seconds = now() - p->began, .sent = tm_ranks_sent().bytes};
     *kilobytes = 0;
     for (size_t i = 0; i < sizeof who / sizeof *who; i++) {
         struct rusage usage;

@@ -12,9 +12,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Since the filter began: elapsed, and of its processors. */
+/* Since the filter began: elapsed, of its processors, and what this rank has sent. */
 typedef struct progress_clock {
     double seconds, cpu;
+    size_t sent; /* bytes */
 } progress_clock;
 
 typedef struct progress {

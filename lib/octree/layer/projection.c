@@ -24,6 +24,7 @@ typedef struct {
     const tm_mesh_share *share; /* NULL: this is the whole mesh */
     size_t own, own_past;       /* this rank's boundary nodes */
     tm_mesh_ghosts ghosts;      /* outer nodes */
+    tm_mesh_ghosts *by_step;    /* those that change in each step of sweeps */
     unsigned threads;
     bool curves_only; /* in this sweep */
 } fitter;
@@ -134,11 +135,11 @@ static void look_around(const void *context, size_t n, uint64_t *seen)
     }
 }
 
-static tm_status give_outer(void *context, tm_error *error)
+static tm_status give_outer(void *context, size_t step, tm_error *error)
 {
     const fitter *projection = context;
     double(*xyz)[3] = projection->assembly->mesh.xyz;
-    return tm_mesh_ghosts_fill(&projection->ghosts, xyz, sizeof *xyz, error);
+    return tm_mesh_ghosts_fill(&projection->by_step[step], xyz, sizeof *xyz, error);
 }
 
 /* The ghosts of a range of nodes, of those that have an order, where this is given. */
@@ -160,8 +161,12 @@ static tm_status sweep_all(fitter *projection, const tm_sweep *sweep, tm_error *
 {
     const size_t own = projection->own_past - projection->own;
     tm_parallel_runs(projection->threads, own, TM_CHUNK, put_first, projection);
-    tm_status status = projection->share ? give_outer(projection, error) : TM_OK;
-    for (int i = 0; i < CURVE_SWEEPS + BOUNDARY_SWEEPS && status == TM_OK; i++) {
+    double(*xyz)[3] = projection->assembly->mesh.xyz;
+    tm_status status = TM_OK;
+    if (projection->share)
+        status = tm_mesh_ghosts_fill(&projection->ghosts, xyz, sizeof *xyz, error);
+    const int begin = projection->surface->curves > 0 ? 0 : CURVE_SWEEPS;
+    for (int i = begin; i < CURVE_SWEEPS + BOUNDARY_SWEEPS && status == TM_OK; i++) {
         projection->curves_only = i < CURVE_SWEEPS;
         status = tm_sweep_make(sweep, sweep_boundary, give_outer, projection, error);
     }
@@ -179,8 +184,13 @@ static tm_status project_boundary(fitter *projection, tm_error *error)
         status =
             find_ghosts(&projection->ghosts, projection->share, a->mesh.nodes, a->outer,
                         a->outer + projection->boundary->nodes, NULL, error);
+    if (status == TM_OK && projection->share)
+        status = tm_sweep_cut_ghosts(&sweep, &projection->ghosts, a->mesh.nodes,
+                                     a->outer + projection->own, NULL,
+                                     &projection->by_step, error);
     if (status == TM_OK)
         status = sweep_all(projection, &sweep, error);
+    tm_sweep_free_ghosts(&sweep, projection->by_step);
     tm_sweep_free(&sweep);
     tm_mesh_ghosts_free(&projection->ghosts);
     return status;
@@ -202,7 +212,8 @@ typedef struct {
     size_t middle, middle_past; /* its middles */
     uint32_t *number; /* [nodes of the mesh]: as order, among those of the octree of all
                          ranks; NULL: that is order */
-    tm_mesh_ghosts ghosts[2];
+    tm_mesh_ghosts ghosts[2]; /* of the octree; of its middles */
+    tm_mesh_ghosts *by_step;  /* of the first, those that change in each step of sweeps */
 } zone;
 
 static bool has_moving(const zone *z, const tm_mixed_mesh *mesh, size_t e)
@@ -447,10 +458,11 @@ static void average_middles(void *context, size_t first, size_t past)
     average_nodes(z, z->middle + first, z->middle + past);
 }
 
-static tm_status give_core(void *context, tm_error *error)
+static tm_status give_core(void *context, size_t step, tm_error *error)
 {
     const zone *z = context;
-    return tm_mesh_ghosts_fill(&z->ghosts[0], z->mesh->xyz, sizeof *z->mesh->xyz, error);
+    return tm_mesh_ghosts_fill(&z->by_step[step], z->mesh->xyz, sizeof *z->mesh->xyz,
+                               error);
 }
 
 static tm_status give_middles(const zone *z, tm_error *error)
@@ -475,6 +487,9 @@ static tm_status average(zone *z, unsigned threads, tm_error *error)
     tm_sweep sweep;
     tm_status status = tm_sweep_plan(&sweep, z->own_past - z->own, threads,
                                      look_at_neighbours, z, error);
+    if (status == TM_OK && z->number)
+        status = tm_sweep_cut_ghosts(&sweep, &z->ghosts[0], z->mesh->nodes, 0,
+                                     z->node + z->own, &z->by_step, error);
     for (int i = 0; status == TM_OK && i < CORE_SWEEPS; i++) {
         status = tm_sweep_make(&sweep, average_run, give_core, z, error);
         tm_parallel_runs(threads, z->middle_past - z->middle, TM_CHUNK, average_middles,
@@ -482,6 +497,7 @@ static tm_status average(zone *z, unsigned threads, tm_error *error)
         if (status == TM_OK && z->number)
             status = give_middles(z, error);
     }
+    tm_sweep_free_ghosts(&sweep, z->by_step);
     tm_sweep_free(&sweep);
     return status;
 }

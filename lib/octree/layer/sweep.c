@@ -14,9 +14,12 @@ typedef struct {
     tm_sweep *sweep;
     void (*look)(const void *context, size_t n, uint64_t *seen);
     const void *context;
-    uint64_t *seen; /* [runs][words]: which runs a run sees, or is seen by */
+    size_t first_run, past_run; /* of which this rank has nodes */
     size_t words;
-    size_t *colour; /* [runs] */
+    uint64_t *seen;  /* [past_run - first_run][words]: which runs its nodes see */
+    size_t *start;   /* [runs + 1] */
+    uint32_t *other; /* that run r sees, or is seen by: other[start[r]] … */
+    size_t *colour;  /* [runs] */
 } planner;
 
 /* This rank's nodes of a run, [*first, *past) of its own. */
@@ -28,40 +31,59 @@ static void own_of(const tm_sweep *sweep, size_t run, size_t *first, size_t *pas
     *past = end < own_end ? (end > sweep->first ? end - sweep->first : 0) : sweep->count;
 }
 
-static void look_from(void *context, size_t run)
+static void look_from(void *context, size_t i)
 {
     const planner *p = context;
     size_t first, past;
-    own_of(p->sweep, run, &first, &past);
+    own_of(p->sweep, p->first_run + i, &first, &past);
     for (size_t n = first; n < past; n++)
-        p->look(p->context, n, p->seen + run * p->words);
+        p->look(p->context, n, p->seen + i * p->words);
 }
 
-static bool sees(const planner *p, size_t run, size_t other)
+/* The pairs of runs that this rank has seen. */
+static bool list_seen(const planner *p, uint32_t **list, size_t *count)
 {
-    return p->seen[run * p->words + other / BITS] >> other % BITS & 1;
+    size_t room = 0;
+    bool done = true;
+    for (size_t run = p->first_run; run < p->past_run; run++) {
+        const uint64_t *seen = p->seen + (run - p->first_run) * p->words;
+        for (size_t other = 0; other < p->sweep->runs && done; other++)
+            if (seen[other / BITS] >> other % BITS & 1)
+                done = tm_append(list, count, &room, (uint32_t)run) &&
+                       tm_append(list, count, &room, (uint32_t)other);
+    }
+    return done;
 }
 
-/* What all ranks have seen: pairs of runs. */
-static tm_status share_seen(const planner *p, tm_error *error)
+/* Sorts pairs by both of their runs. */
+static tm_status sort_seen(planner *p, const uint32_t *pair, size_t count,
+                           tm_error *error)
+{
+    const size_t runs = p->sweep->runs;
+    p->start = calloc(runs + 2, sizeof *p->start);
+    p->other = tm_new(count, sizeof *p->other);
+    if (!p->start || !p->other)
+        return tm_fail_memory(error);
+    for (size_t i = 0; i < count; i++)
+        p->start[pair[i] + 2]++;
+    for (size_t r = 0; r < runs; r++)
+        p->start[r + 2] += p->start[r + 1];
+    for (size_t i = 0; i < count; i++)
+        p->other[p->start[pair[i] + 1]++] = pair[i ^ 1];
+    return TM_OK;
+}
+
+/* What all ranks have seen. */
+static tm_status share_seen(planner *p, tm_error *error)
 {
     uint32_t *list = NULL;
-    size_t count = 0, room = 0, total = 0;
-    bool done = true;
-    for (size_t run = 0; run < p->sweep->runs && done; run++)
-        for (size_t other = 0; other < p->sweep->runs && done; other++)
-            if (sees(p, run, other))
-                done = tm_append(&list, &count, &room, (uint32_t)run) &&
-                       tm_append(&list, &count, &room, (uint32_t)other);
+    size_t count = 0, total = 0;
     void *got = NULL;
-    tm_status status = done ? TM_OK : tm_fail_memory(error);
-    status = tm_ranks_agree(status, error);
+    tm_status status = tm_ranks_enough(list_seen(p, &list, &count), error);
     if (status == TM_OK)
         status = tm_ranks_share(list, count, sizeof *list, &got, &total, error);
-    const uint32_t *pair = got;
-    for (size_t i = 0; status == TM_OK && i + 1 < total; i += 2)
-        p->seen[pair[i] * p->words + pair[i + 1] / BITS] |= (uint64_t)1
-                                                            << pair[i + 1] % BITS;
+    if (status == TM_OK)
+        status = tm_ranks_agree(sort_seen(p, got, total, error), error);
     free(list);
     free(got);
     return status;
@@ -71,9 +93,9 @@ static tm_status share_seen(const planner *p, tm_error *error)
 static size_t choose_colour(const planner *p, size_t run, size_t *taken)
 {
     size_t colour = 0;
-    for (size_t other = 0; other < run; other++)
-        if (sees(p, run, other) || sees(p, other, run))
-            taken[p->colour[other]] = run;
+    for (size_t i = p->start[run]; i < p->start[run + 1]; i++)
+        if (p->other[i] < run)
+            taken[p->colour[p->other[i]]] = run;
     while (taken[colour] == run)
         colour++;
     return colour;
@@ -107,14 +129,12 @@ static void number_steps(const planner *p, const size_t *begin)
 {
     tm_sweep *sweep = p->sweep;
     const unsigned ranks = tm_ranks_count();
-    size_t *pieces = p->colour; /* for the colours are known: of a run's colour */
+    size_t *steps = sweep->first_step;
     for (size_t run = 0; run < sweep->runs; run++)
         sweep->step[run] = SIZE_MAX;
+    steps[0] = 0;
     for (size_t c = 0; c < sweep->colours; c++)
-        sweep->steps[c] = 1;
-    for (size_t c = 0; c < sweep->colours; c++)
-        for (size_t i = sweep->start[c]; i < sweep->start[c + 1]; i++)
-            pieces[sweep->run[i]] = c;
+        steps[c + 1] = 1;
     size_t last = SIZE_MAX, count = 0;
     for (unsigned r = 0; r < ranks; r++) {
         const size_t end = r + 1 < ranks ? begin[r + 1] : sweep->all;
@@ -126,10 +146,14 @@ static void number_steps(const planner *p, const size_t *begin)
             last = run;
             if (r == tm_rank())
                 sweep->step[run] = count - 1;
-            if (count > sweep->steps[pieces[run]])
-                sweep->steps[pieces[run]] = count;
+            if (count > steps[p->colour[run] + 1])
+                steps[p->colour[run] + 1] = count;
         }
     }
+    for (size_t c = 0; c < sweep->colours; c++)
+        steps[c + 1] += steps[c];
+    for (size_t run = p->first_run; run < p->past_run; run++)
+        sweep->step[run] += steps[p->colour[run]];
 }
 
 static tm_status plan(planner *p, size_t *taken, tm_error *error)
@@ -137,8 +161,8 @@ static tm_status plan(planner *p, size_t *taken, tm_error *error)
     tm_sweep *sweep = p->sweep;
     void *begin = NULL;
     if (sweep->runs > 1)
-        tm_parallel(sweep->threads, sweep->runs, look_from, p);
-    tm_status status = tm_ranks_count() > 1 ? share_seen(p, error) : TM_OK;
+        tm_parallel(sweep->threads, p->past_run - p->first_run, look_from, p);
+    tm_status status = share_seen(p, error);
     if (status == TM_OK)
         status =
             tm_ranks_share(&sweep->first, 1, sizeof sweep->first, &begin, NULL, error);
@@ -164,22 +188,24 @@ tm_status tm_sweep_plan(tm_sweep *sweep, size_t count, unsigned threads,
                         .threads = threads,
                         .start = tm_new(runs + 1, sizeof *sweep->start),
                         .run = tm_new(runs, sizeof *sweep->run),
-                        .steps = tm_new(runs, sizeof *sweep->steps),
+                        .first_step = tm_new(runs + 1, sizeof *sweep->first_step),
                         .step = tm_new(runs, sizeof *sweep->step)};
     planner p = {.sweep = sweep,
                  .look = look,
                  .context = context,
+                 .first_run = count > 0 ? first / TM_SWEEP_RUN : 0,
+                 .past_run = count > 0 ? (first + count - 1) / TM_SWEEP_RUN + 1 : 0,
                  .words = tm_parallel_chunks(runs, BITS),
                  .colour = tm_new(runs, sizeof *p.colour)};
-    p.seen = calloc(runs * p.words + 1, sizeof *p.seen);
+    p.seen = calloc((p.past_run - p.first_run) * p.words + 1, sizeof *p.seen);
     size_t *taken = tm_new(runs, sizeof *taken);
-    tm_status status = TM_OK;
-    if (!sweep->start || !sweep->run || !sweep->steps || !sweep->step || !p.colour ||
-        !p.seen || !taken)
-        status = tm_fail_memory(error);
-    status = tm_ranks_agree(status, error);
+    tm_status status = tm_ranks_enough(sweep->start && sweep->run && sweep->first_step &&
+                                           sweep->step && p.colour && p.seen && taken,
+                                       error);
     if (status == TM_OK)
         status = plan(&p, taken, error);
+    free(p.start);
+    free(p.other);
     free(p.colour);
     free(p.seen);
     free(taken);
@@ -190,10 +216,58 @@ void tm_sweep_free(tm_sweep *sweep)
 {
     free(sweep->start);
     free(sweep->run);
-    free(sweep->steps);
+    free(sweep->first_step);
     free(sweep->step);
     *sweep = (tm_sweep){0};
 }
+
+/* Ghosts ---------------------------------------------------------------------------- */
+
+/* Those of one step after the other: step[nodes of the mesh]. */
+static tm_status cut_ghosts(const tm_mesh_ghosts *ghosts, size_t nodes,
+                            const uint32_t *step, bool *kept, tm_mesh_ghosts *by_step,
+                            size_t steps, tm_error *error)
+{
+    tm_status status = TM_OK;
+    for (size_t s = 0; s < steps && status == TM_OK; s++) {
+        for (size_t n = 0; n < nodes; n++)
+            kept[n] = step[n] == s;
+        status = tm_mesh_ghosts_some(&by_step[s], ghosts, kept, error);
+    }
+    return status;
+}
+
+tm_status tm_sweep_cut_ghosts(const tm_sweep *sweep, const tm_mesh_ghosts *ghosts,
+                              size_t nodes, size_t first, const uint32_t *node,
+                              tm_mesh_ghosts **by_step, tm_error *error)
+{
+    const size_t steps = tm_sweep_steps(sweep);
+    uint32_t *step = tm_new(nodes, sizeof *step);
+    bool *kept = tm_new(nodes, sizeof *kept);
+    *by_step = calloc(steps + 1, sizeof **by_step);
+    tm_status status = tm_ranks_enough(step && kept && *by_step, error);
+    for (size_t n = 0; n < nodes && status == TM_OK; n++)
+        step[n] = TM_NONE;
+    for (size_t n = 0; n < sweep->count && status == TM_OK; n++)
+        step[node ? node[n] : first + n] =
+            (uint32_t)sweep->step[(sweep->first + n) / TM_SWEEP_RUN];
+    if (status == TM_OK)
+        status = tm_mesh_ghosts_fill(ghosts, step, sizeof *step, error);
+    if (status == TM_OK)
+        status = cut_ghosts(ghosts, nodes, step, kept, *by_step, steps, error);
+    free(step);
+    free(kept);
+    return status;
+}
+
+void tm_sweep_free_ghosts(const tm_sweep *sweep, tm_mesh_ghosts *by_step)
+{
+    for (size_t s = 0; by_step && s < tm_sweep_steps(sweep); s++)
+        tm_mesh_ghosts_free(&by_step[s]);
+    free(by_step);
+}
+
+/* Sweeping -------------------------------------------------------------------------- */
 
 typedef struct {
     const tm_sweep *sweep;
@@ -216,17 +290,19 @@ static void work_on(void *context, size_t i)
 
 tm_status tm_sweep_make(const tm_sweep *sweep,
                         void (*work)(void *context, size_t first, size_t past),
-                        tm_status (*exchange)(void *context, tm_error *error),
+                        tm_status (*exchange)(void *context, size_t step,
+                                              tm_error *error),
                         void *context, tm_error *error)
 {
     sweeping s = {.sweep = sweep, .work = work, .context = context};
     tm_status status = TM_OK;
     for (size_t colour = 0; colour < sweep->colours; colour++) {
         s.first = sweep->start[colour];
-        for (s.step = 0; s.step < sweep->steps[colour] && status == TM_OK; s.step++) {
+        for (s.step = sweep->first_step[colour];
+             s.step < sweep->first_step[colour + 1] && status == TM_OK; s.step++) {
             tm_parallel(sweep->threads, sweep->start[colour + 1] - s.first, work_on, &s);
             if (tm_ranks_count() > 1)
-                status = exchange(context, error);
+                status = exchange(context, s.step, error);
         }
     }
     return status;
