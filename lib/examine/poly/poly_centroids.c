@@ -102,8 +102,8 @@ static void measure_cells(const tm_poly_centroids *m)
         finish_centre(&m->cell[c]);
 }
 
-tm_status tm_poly_centroids_find(tm_poly_centroids *c, const tm_poly_arrays *mesh,
-                                 tm_error *error)
+tm_status tm_poly_centroids_find_facets(tm_poly_centroids *c, const tm_poly_arrays *mesh,
+                                        tm_error *error)
 {
     *c = (tm_poly_centroids){.mesh = mesh,
                              .face = tm_new(mesh->facets, sizeof *c->face),
@@ -115,8 +115,16 @@ tm_status tm_poly_centroids_find(tm_poly_centroids *c, const tm_poly_arrays *mes
         if (sum > 0)
             c->max_bend = fmax(c->max_bend, 1 - c->face[f].size / sum);
     }
-    measure_cells(c);
     return TM_OK;
+}
+
+tm_status tm_poly_centroids_find(tm_poly_centroids *c, const tm_poly_arrays *mesh,
+                                 tm_error *error)
+{
+    const tm_status status = tm_poly_centroids_find_facets(c, mesh, error);
+    if (status == TM_OK)
+        measure_cells(c);
+    return status;
 }
 
 void tm_facet_centroid_find(const tm_poly_centroids *c, size_t f)
