@@ -18,6 +18,13 @@ void mesh_share_read(const filter *f, tm_slices *slices)
     filter_agree(f, status, &error);
 }
 
+size_t mesh_share_rows(const tm_slices *slices, const char *name)
+{
+    tm_slice slice = {0};
+    tm_slices_find(slices, name, &slice);
+    return slice.total;
+}
+
 void mesh_share_take(const filter *f, mesh_share *share, const tm_slices *slices,
                      const char *name)
 {

@@ -17,6 +17,9 @@ typedef struct mesh_share {
 /* mesh_input_read_to_compute() of slices. */
 void mesh_share_read(const filter *f, tm_slices *slices);
 
+/* How many rows all ranks have of a block; 0 where there is none. */
+size_t mesh_share_rows(const tm_slices *slices, const char *name);
+
 /* Takes the nodes of a block's rows, .ele or .mix. */
 void mesh_share_take(const filter *f, mesh_share *share, const tm_slices *slices,
                      const char *name);

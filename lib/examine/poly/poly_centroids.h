@@ -37,7 +37,7 @@ tm_status tm_poly_centroids_find(tm_poly_centroids *c, const tm_poly_arrays *mes
                                  tm_error *error);
 void tm_poly_centroids_free(tm_poly_centroids *c);
 
-/* The same of facets only; cells are all 0, for who knows theirs. */
+/* The same of facets only: `cell` is NULL. */
 tm_status tm_poly_centroids_find_facets(tm_poly_centroids *c, const tm_poly_arrays *mesh,
                                         tm_error *error);
 

@@ -34,24 +34,29 @@ tm_status tm_poly_examine_boundary(tm_examination *found, const tm_poly_arrays *
 /* Adds the areas of these facets. */
 void tm_poly_add_boundary_area(tm_sum *sum, const tm_poly_arrays *mesh);
 
-/* Finds in *found how facets and cells fit together: unmatched and repeated facets, those
- * with a node twice, components, unused nodes, Euler number. Expected O(nodes + corners).
- */
+/* Finds in *found how facets and cells fit together: unmatched facets, those with a node
+ * twice, components, unused nodes, Euler number. O(nodes + corners). */
 tm_status tm_poly_examine_facets(tm_examination *found, const tm_poly_arrays *mesh,
                                  tm_error *error);
 
-/* poly_examine_facets.c: its parts. */
+/* poly_examine_facets.c: its parts, and repeated facets. */
 
 /* Finds in *found: unmatched facets, those with a node twice, boundary faces.
  * parent[cells] gets a tree for each component (disjoint_sets.h). O(nodes + corners). */
 tm_status tm_poly_match_facets(tm_examination *found, const tm_poly_arrays *mesh,
                                uint32_t *parent, tm_error *error);
 
-/* Finds in *found: repeated facets, of those whose smallest node is first … past-1;
- * *edges is how many edges have such a smaller node. Expected O(nodes + corners). */
-tm_status tm_poly_match_edges(tm_examination *found, const tm_poly_arrays *mesh,
-                              uint32_t first, uint32_t past, size_t *edges,
-                              tm_error *error);
+/* *edges is how many edges facets have, of those whose smaller node is first … past-1;
+ * edge[*edges], where that is not NULL, gets both nodes of each, the smaller one first,
+ * in the order of these. O(nodes + corners). */
+tm_status tm_poly_find_edges(uint32_t (*edge)[2], size_t *edges,
+                             const tm_poly_arrays *mesh, uint32_t first, uint32_t past,
+                             tm_error *error);
+
+/* Finds in *found: repeated facets, of those whose smallest node is first … past-1.
+ * Expected O(corners). */
+tm_status tm_poly_find_repeated(tm_examination *found, const tm_poly_arrays *mesh,
+                                uint32_t first, uint32_t past, tm_error *error);
 
 /* poly_measure.c: volume and areas of a polyhedron by its boundary. */
 
