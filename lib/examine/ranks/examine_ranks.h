@@ -13,6 +13,7 @@
 #include "../../mesh/poly_arrays.h"
 #include "../examination.h"
 #include "../poly/poly_statistics.h"
+#include "../tet_statistics.h"
 
 TM_EXTERN_C_BEGIN
 
@@ -29,7 +30,15 @@ typedef struct tm_element_slices {
 tm_status tm_element_examine_ranks(tm_examination *found, const tm_element_slices *mesh,
                                    unsigned threads, tm_error *error);
 
-/* The same of polyhedra. */
+/* All ranks: tm_tet_statistics_measure() of all tetrahedra, in *statistics on each of
+ * them, the same numbers; left-handed ones, *turned of all, are measured as if turned.
+ * TM_ERROR_SYSTEM, on all, where memory is out on one. A rank has its slice, and the
+ * places of its nodes. */
+tm_status tm_tet_statistics_ranks(tm_tet_statistics *statistics, size_t *turned,
+                                  const tm_element_slices *mesh, double limit,
+                                  unsigned threads, tm_error *error);
+
+/* Polyhedra, likewise. */
 typedef struct tm_poly_slices {
     tm_poly_arrays own;
     size_t nodes, facets, cells;
