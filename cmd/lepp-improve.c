@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* lepp-improve: tetrahedra in, better tetrahedra out. */
 #include "common/app/filter.h"
+#include "common/input/mesh_share.h"
 #include "common/input/tet_input.h"
 #include "common/input/tet_set.h"
 #include "common/input/tet_share.h"
@@ -557,10 +558,34 @@ static void write_plot(const filter *f, const settings *o, const result *r)
 }
 
 /* Whether ranks can do it together: what improve() may do in parts. */
-static bool is_for_ranks(const filter *f, const settings *o)
+static bool is_for_ranks(const settings *o)
 {
-    return o->is_improve && o->set.rules == 0 && !f->json &&
+    return o->is_improve && o->set.rules == 0 &&
            tm_improve_cuts(&o->improve, TM_TETS_MAX, TM_TETS_MAX);
+}
+
+/* measure() of slices. */
+static void measure_slices(const filter *f, const tm_slices *slices, double limit,
+                           tm_tet_statistics *statistics)
+{
+    tm_error error;
+    size_t turned;
+    const tm_element_slices mesh = mesh_share_tets(slices);
+    if (!f->json)
+        return;
+    filter_stage(f, "measuring");
+    filter_agree(
+        f, tm_tet_statistics_ranks(statistics, &turned, &mesh, limit, f->threads, &error),
+        &error);
+}
+
+/* The processor time of all ranks. */
+static double seconds_of_all(void)
+{
+    const double million = 1e6;
+    size_t microseconds = (size_t)(million * cpu_seconds());
+    tm_ranks_sum(&microseconds, 1);
+    return (double)microseconds / million;
 }
 
 /* Improves the mesh that ranks share; false, with nothing done, where that is better done
@@ -573,17 +598,20 @@ static bool improve_share(filter *f, const settings *o, tm_slices *slices, resul
     tm_share_notes notes;
     tm_error error;
     size_t inner_faces;
+    measure_slices(f, slices, how->angle, &r->before);
     if (!tet_share_from_slices(f, slices, cut->size, &share, &notes))
         return false;
-    bool worse = !tm_improve_cuts(how, share.all_tets,
+    bool alone = !tm_improve_cuts(how, share.all_tets,
                                   tm_improve_ranks_count_bad(&share, how->angle));
-    if (!worse) {
-        filter_agree(
-            f,
-            tm_improve_ranks(&share, how, cut, &r->improve, &worse, &inner_faces, &error),
-            &error);
+    if (!alone) {
+        r->seconds = -seconds_of_all();
+        filter_agree(f,
+                     tm_improve_ranks(&share, how, cut, f->json, &r->improve, &alone,
+                                      &inner_faces, &error),
+                     &error);
+        r->seconds += seconds_of_all();
     }
-    if (worse) {
+    if (alone) {
         tm_tet_share_free(&share);
         return false;
     }
@@ -592,6 +620,7 @@ static bool improve_share(filter *f, const settings *o, tm_slices *slices, resul
                  &error);
     r->changes = tm_improve_operations(&r->improve);
     filter_agree(f, tm_tet_share_give(&share, inner_faces, slices, &error), &error);
+    measure_slices(f, slices, how->angle, &r->after);
     return true;
 }
 
@@ -615,6 +644,8 @@ static bool work_together(filter *f, const settings *o, tm_stream *stream, int *
     tm_slices_find(&slices, ".ele", &tets);
     summarise(o, &r, tets.total, summary, sizeof summary);
     filter_note(f, "%s", summary);
+    if (f->json)
+        write_json(f, o, &r);
     filter_write_slices(f, &slices, "%s", summary);
     tm_forced_free(&r.forced);
     tm_slices_free(&slices);
@@ -639,7 +670,7 @@ int main(int argc, char **argv)
     filter_other_file(&f, "--plot", o.plot);
     tm_stream stream;
     int status;
-    if (!filter_together(&f, is_for_ranks(&f, &o)))
+    if (!filter_together(&f, is_for_ranks(&o)))
         filter_read(&f, &stream);
     else if (work_together(&f, &o, &stream, &status))
         return status;

@@ -90,13 +90,6 @@ static void examine(const filter *f, const tm_stream *stream, tm_examination *fo
         filter_fail(f, &error);
 }
 
-static size_t rows_of_all(const tm_slices *slices, const char *name)
-{
-    tm_slice slice = {0};
-    tm_slices_find(slices, name, &slice);
-    return slice.total;
-}
-
 /* The same by all ranks together. */
 static void examine_slices(const filter *f, const tm_slices *slices,
                            tm_examination *found)
@@ -105,23 +98,23 @@ static void examine_slices(const filter *f, const tm_slices *slices,
     tm_status status;
     const tm_stream *stream = &slices->stream;
     const int chosen = choose(f, stream);
-    const size_t nodes = rows_of_all(slices, ".node");
+    const size_t nodes = mesh_share_rows(slices, ".node");
     filter_stage(f, "examining");
     if (chosen == POLYHEDRA) {
         const tm_poly_slices mesh = {.own = tm_poly_arrays_of(stream),
                                      .nodes = nodes,
-                                     .facets = rows_of_all(slices, ".facet"),
-                                     .cells = rows_of_all(slices, ".cell")};
+                                     .facets = mesh_share_rows(slices, ".facet"),
+                                     .cells = mesh_share_rows(slices, ".cell")};
         status = tm_poly_examine_ranks(found, &mesh, f->threads, &error);
     } else {
         const tm_element_slices mesh = {
             .own = chosen == MIXED ? tm_mesh_view_of_mixed(stream)
                                    : tm_mesh_view_of_tets(stream),
             .nodes = nodes,
-            .elements = rows_of_all(slices, element_block[chosen]),
-            .faces = rows_of_all(slices, ".face"),
-            .edges = rows_of_all(slices, ".edge"),
-            .facets = chosen == MIXED ? rows_of_all(slices, ".facet") : 0};
+            .elements = mesh_share_rows(slices, element_block[chosen]),
+            .faces = mesh_share_rows(slices, ".face"),
+            .edges = mesh_share_rows(slices, ".edge"),
+            .facets = chosen == MIXED ? mesh_share_rows(slices, ".facet") : 0};
         status = tm_element_examine_ranks(found, &mesh, f->threads, &error);
     }
     filter_agree(f, status, &error);

@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* poly-stats: how many polyhedra are simple and star-shaped, and how good they are. */
 #include "common/input/mesh_input.h"
+#include "common/input/mesh_share.h"
 #include "common/plot/plot.h"
+
+#include "../lib/examine/ranks/examine_ranks.h"
 
 #include <stdlib.h>
 
@@ -17,6 +20,8 @@ static const filter_words words[] = {FILTER_WORDS(OPTION_FOR, tm_poly_use_names)
 static void write_plot(const filter *f, const char *file, const tm_poly_statistics *s)
 {
     tm_text script = {0};
+    if (!filter_speaks())
+        return;
     poly_plot_script(&script, s);
     plot_write(f, &script, file);
 }
@@ -32,18 +37,40 @@ static void write_report(filter *f, const tm_poly_statistics *s)
     tm_text_free(&text);
 }
 
-static void measure(const filter *f, const tm_stream *stream, tm_poly_statistics *s)
+static void measure(const filter *f, tm_poly_statistics *s)
 {
     tm_error error;
-    const tm_poly_arrays mesh = tm_poly_arrays_of(stream);
+    tm_stream stream;
+    mesh_input_read_to_compute(f, &stream);
+    const tm_poly_arrays mesh = tm_poly_arrays_of(&stream);
     filter_stage(f, "measuring");
     if (tm_poly_statistics_measure(s, &mesh, f->threads, &error) != TM_OK)
         filter_fail(f, &error);
+    tm_stream_free(&stream);
+}
+
+/* The same of a mesh of which each rank has a slice. */
+static void measure_slices(const filter *f, tm_poly_statistics *s)
+{
+    tm_error error;
+    tm_slices slices;
+    mesh_share_read(f, &slices);
+    const tm_poly_slices mesh = {.own = tm_poly_arrays_of(&slices.stream),
+                                 .nodes = mesh_share_rows(&slices, ".node"),
+                                 .facets = mesh_share_rows(&slices, ".facet"),
+                                 .cells = mesh_share_rows(&slices, ".cell")};
+    filter_stage(f, "measuring");
+    filter_agree(f, tm_poly_statistics_ranks(s, &mesh, f->threads, &error), &error);
+    tm_slices_free(&slices);
+}
+
+static void note_unmatched(const filter *f, const tm_poly_statistics *s)
+{
     if (s->unmatched > 0)
         filter_note(f,
                     "%s: %zu of %zu facets do not belong to the polyhedra that they "
                     "name: see mesh-check",
-                    filter_input_name(f), s->unmatched, mesh.facets);
+                    filter_input_name(f), s->unmatched, s->size.faces);
 }
 
 /* Whether the mesh is fit for what it is wanted for; a note says so, and why not. */
@@ -87,6 +114,7 @@ int main(int argc, char **argv)
         .words = words,
         .letters = FILTER_LETTERS,
         .json_is_output = true,
+        .ranks = true,
     };
     const char *plot = NULL;
     int c, use = TM_POLY_USES;
@@ -99,10 +127,12 @@ int main(int argc, char **argv)
     filter_operands(&f);
     filter_other_file(&f, "--plot", plot);
 
-    tm_stream stream;
     tm_poly_statistics statistics;
-    mesh_input_read_to_compute(&f, &stream);
-    measure(&f, &stream, &statistics);
+    if (filter_together(&f, true))
+        measure_slices(&f, &statistics);
+    else
+        measure(&f, &statistics);
+    note_unmatched(&f, &statistics);
     if (f.json) {
         tm_poly_statistics_json(filter_json_begin(&f), &statistics);
         filter_json_end(&f);
@@ -110,7 +140,6 @@ int main(int argc, char **argv)
     if (plot)
         write_plot(&f, plot, &statistics);
     write_report(&f, &statistics);
-    tm_stream_free(&stream);
     const bool fit = use == TM_POLY_USES || judge(&f, &statistics, (tm_poly_use)use);
     return filter_finish(&f, fit ? EXIT_SUCCESS : EXIT_GOAL);
 }

@@ -62,33 +62,19 @@ static void measure(const filter *f, const mesh *m, const options *o,
         filter_fail(f, &error);
 }
 
-/* The same of ranks that have shares of it; rank 0 knows. */
-static void measure_shares(const filter *f, const options *o, tm_tet_statistics *s)
+/* The same of a mesh of which each rank has a slice. */
+static void measure_slices(const filter *f, const options *o, tm_tet_statistics *s)
 {
     tm_slices slices;
-    mesh_share share;
-    tm_slice nodes = {0, 0};
     tm_error error;
+    size_t turned;
     mesh_share_read(f, &slices);
-    tm_slices_find(&slices, ".node", &nodes);
-    mesh_share_take(f, &share, &slices, ".ele");
-    if (share.block)
-        mesh_share_turn(f, &share, "are counted turned");
+    const tm_element_slices tets = mesh_share_tets(&slices);
     filter_stage(f, "measuring");
-    const size_t tets = share.block ? share.block->count : 0;
-    const uint32_t(*tet)[4] =
-        share.block ? (const uint32_t(*)[4])share.block->integer : NULL;
-    void *chunk = NULL;
-    size_t chunks = 0;
-    filter_agree(f,
-                 tm_tet_statistics_chunks((tm_tet_statistics **)&chunk, &chunks,
-                                          (const double(*)[3])share.xyz, tet, tets,
-                                          o->threshold, f->threads, &error),
-                 &error);
-    mesh_share_gather(f, &chunk, &chunks, sizeof *s);
-    tm_tet_statistics_join(s, chunk, chunks, nodes.total, o->threshold);
-    free(chunk);
-    mesh_share_free(&share);
+    filter_agree(
+        f, tm_tet_statistics_ranks(s, &turned, &tets, o->threshold, f->threads, &error),
+        &error);
+    mesh_note_turned(f, turned, tets.elements, "are counted turned");
     tm_slices_free(&slices);
 }
 
@@ -220,9 +206,9 @@ int main(int argc, char **argv)
     if (o.compare)
         g.input = o.after;
     if (o.together) {
-        measure_shares(&f, &o, &before);
+        measure_slices(&f, &o, &before);
         if (o.compare)
-            measure_shares(&g, &o, &after);
+            measure_slices(&g, &o, &after);
     } else {
         read_mesh(&f, &first);
         measure(&f, &first, &o, &before);

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # mesh-check under a launcher: what 1, 2, 3, 4 and 7 ranks say is what one process says, of
-# good meshes and of those that are wrong in every way that it finds.
+# good meshes and of those that are wrong in every way that it finds; and poly-stats of
+# wrong ones.
 
 bats_require_minimum_version 1.5.0
 load helpers
@@ -181,6 +182,8 @@ print("\n".join(out))'
         non_manifold_vertices duplicate_nodes repeated_faces unclosed_edges unoriented_edges; do
         [ "$(json one.json $defect)" -gt 0 ]
     done
+    RANKS='2 7' ranks_agree wrong.tm poly-stats
+    grep -q 'do not belong to the polyhedra that they name' several.err
 }
 
 @test "meshes so small that ranks have nothing, and what rank 0 does alone" {
@@ -194,6 +197,7 @@ print("\n".join(out))'
     for mesh in cubes mixed six none none-mixed none-cells surface; do
         RANKS=7 ranks_agree $mesh.tm mesh-check
     done
+    RANKS=7 ranks_agree none-cells.tm poly-stats
     surface cube off >cube.off
     RANKS=2 ranks_agree six.tm mesh-check --against cube.off
     [ "$(on_ranks 3 mesh-check <cubes.tm)" = "$(mesh-check <cubes.tm)" ]

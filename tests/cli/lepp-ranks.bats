@@ -121,15 +121,16 @@ END
     cmp "$out/one.txt" "$out/ranks.txt"
 }
 
-# same_in_parts TETS MESH [RANKS]: improved in parts of so many, by ranks and by one.
+# same_in_parts TETS MESH [RANKS [nodes]]: improved in parts of so many, by ranks and by
+# one; nodes: those that may move are counted, too.
 same_in_parts() {
     local small=$TM_BUILD/ranks/improve_small
     : >"$out/one.tm"
-    "$small" "$1" "$2" "$out/one.tm" >"$out/one.txt"
+    "$small" "$1" "$2" "$out/one.tm" ${4:+"$4"} >"$out/one.txt"
     cat "$out/one.txt"
     for n in ${3:-1 2 3 4 7}; do
         : >"$out/ranks.tm"
-        on_ranks "$n" "$small" "$1" "$2" "$out/ranks.tm" >"$out/ranks.txt"
+        on_ranks "$n" "$small" "$1" "$2" "$out/ranks.tm" ${4:+"$4"} >"$out/ranks.txt"
         diff "$out/one.txt" "$out/ranks.txt"
         cmp "$out/one.tm" "$out/ranks.tm"
     done
@@ -142,10 +143,16 @@ same_in_parts() {
     grep -c . "$out/ranks.tm"
 }
 
-@test "parts of a mesh with flat tetrahedra" {
-    troubled_cubes 8 flat >"$out/cubes.tm"
-    same_in_parts 400 "$out/cubes.tm" "2 3"
+@test "parts of a mesh with flat tetrahedra, and what is said of nodes without markers" {
+    troubled_cubes 8 flat | awk '/^\.ele/ { past = 1 } NF == 7 && !past { $7 = 0 } { print }' >"$out/cubes.tm"
+    same_in_parts 400 "$out/cubes.tm" "2 3" nodes
     grep -v ' 0 flat' "$out/one.txt"
+}
+
+@test "what the surface forces, in the order of one process" {
+    troubled_cubes 5 | awk '/^\.ele/ { past = 1 } NF == 7 && !past { $7 = 0; $2 += 2.5 * $4 } { print }' >"$out/sheared.tm"
+    same_in_parts 150 "$out/sheared.tm" "3" nodes
+    grep '"sectors": \[{' "$out/one.txt"
 }
 
 @test "more ranks than parts, and a tetrahedron alone" {

@@ -101,6 +101,21 @@ END
     cmp one.svg several.svg
 }
 
+@test "poly-stats: the same for any number of ranks" {
+    polylla3d --mode edge -o edge.tm "$meshes/tets.tm"
+    [ "$(header .cell edge.tm | cut -d' ' -f1)" -gt 40960 ] # of slices of 8192
+    ranks_agree edge.tm poly-stats
+    RANKS='2 7' ranks_agree "$meshes/cells.tm" poly-stats --for fv
+    polylla3d --star -o star.tm "$meshes/small-tets.tm"
+    for mesh in star.tm "$meshes/small.tm"; do
+        RANKS=7 ranks_agree "$mesh" poly-stats --for vem
+    done
+    poly-stats -o one.out --plot one.svg edge.tm
+    on_ranks 3 poly-stats -o several.out --plot several.svg - <edge.tm
+    cmp one.out several.out
+    cmp one.svg several.svg
+}
+
 @test "left-handed tetrahedra and coordinates too large are found on any rank" {
     sed '/^\.ele/,/^\.face/ s/^\([0-9]*\) \([0-9]*\) \([0-9]*\) \([0-9]*\) \([0-9]*\)$/\1 \3 \2 \4 \5/' \
         "$meshes/tets.tm" >turned.tm

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* improve_small TETS IN OUT: what lepp-improve makes of large meshes, of a small one that
- * is cut into parts of about so many tetrahedra: without a launcher by one process, else
- * by all ranks, which share it. OUT is there. Says in one line what was found and done.
- * Used by tests/cli/lepp-ranks.bats. */
+/* improve_small TETS IN OUT [nodes]: what lepp-improve makes of large meshes, of a small
+ * one that is cut into parts of about so many tetrahedra: without a launcher by one
+ * process, else by all ranks, which share it. OUT is there. Says what was found and done,
+ * in a line, and as the report of lepp-improve has it; of nodes that may move only where
+ * asked. Used by tests/cli/lepp-ranks.bats. */
 #include "../../lib/tet/improve/improve_ranks.h"
 #include "../../lib/tet/share/take.h"
 
@@ -30,9 +31,18 @@ static void say(const tm_share_notes *n, const tm_improve_report *r, size_t tets
            r->bad_before, r->bad_after);
     printf("%zu passes, %zu kicks, %zu operations, %zu forced\n", r->passes, r->kicks,
            tm_improve_operations(r), forced->tets);
+    tm_text text = {0};
+    tm_json json = {&text, 0};
+    tm_json_open(&json, NULL, '{');
+    tm_improve_report_json(&json, r);
+    tm_forced_json(&json, forced);
+    tm_json_close(&json, '}');
+    puts(text.byte ? text.byte : "");
+    tm_text_free(&text);
 }
 
-static void improve_alone(int in, int out, const tm_improve_options *options, size_t size)
+static void improve_alone(int in, int out, const tm_improve_options *options, size_t size,
+                          bool nodes)
 {
     tm_stream stream;
     tm_tet_mesh mesh;
@@ -45,6 +55,8 @@ static void improve_alone(int in, int out, const tm_improve_options *options, si
     const tm_share_notes notes = {mesh.turned, mesh.flat, mesh.dropped_faces,
                                   mesh.locked.count};
     stop_at(tm_improve_parts(&mesh, options, size, tm_improve, &report, &error), &error);
+    for (int d = 0; d < 4 && !nodes; d++)
+        report.nodes_free[d] = 0;
     stop_at(tm_forced_find(&forced, &mesh, angle, &error), &error);
     say(&notes, &report, mesh.tets, &forced);
     stop_at(tm_tet_mesh_to_stream(&mesh, &stream, &error), &error);
@@ -54,7 +66,7 @@ static void improve_alone(int in, int out, const tm_improve_options *options, si
 }
 
 static void improve_together(int in, int out, const tm_improve_options *options,
-                             size_t size)
+                             size_t size, bool nodes)
 {
     tm_slices slices = {0};
     tm_tet_share share;
@@ -62,7 +74,7 @@ static void improve_together(int in, int out, const tm_improve_options *options,
     tm_improve_report report;
     tm_forced forced;
     tm_error error;
-    bool can, worse;
+    bool can, alone;
     size_t inner_faces;
     const tm_improve_cut cut = {size, tm_improve};
     stop_at(tm_ranks_start(&error), &error);
@@ -75,9 +87,9 @@ static void improve_together(int in, int out, const tm_improve_options *options,
         tm_slices_free(&slices);
         return;
     }
-    stop_at(
-        tm_improve_ranks(&share, options, &cut, &report, &worse, &inner_faces, &error),
-        &error);
+    stop_at(tm_improve_ranks(&share, options, &cut, nodes, &report, &alone, &inner_faces,
+                             &error),
+            &error);
     stop_at(tm_improve_ranks_forced(&share, angle, &forced, &error), &error);
     say(&notes, &report, share.all_tets, &forced);
     stop_at(tm_tet_share_give(&share, inner_faces, &slices, &error), &error);
@@ -99,8 +111,8 @@ int main(int argc, char **argv)
     if (in < 0 || out < 0)
         return 2;
     if (tm_launched())
-        improve_together(in, out, &options, size);
+        improve_together(in, out, &options, size, argc > 4);
     else
-        improve_alone(in, out, &options, size);
+        improve_alone(in, out, &options, size, argc > 4);
     return 0;
 }

@@ -279,7 +279,7 @@ static void test_all_geometry(void **state)
     for (size_t i = 0; i < v.mesh.nodes; i++)
         v.xyz[i][0] = fmin(v.xyz[i][0], 4.01);
     tm_poly_finite_volume fv;
-    assert_int_equal(tm_poly_finite_volume_measure(&fv, &v.mesh, NULL), TM_OK);
+    assert_int_equal(tm_poly_finite_volume_measure(&fv, &v.mesh, 1, NULL), TM_OK);
     assert_true(close_to(fv.min_weight, 0.005 / 2.005) && fv.small_weights == 1);
     assert_true(close_to(fv.min_volume_ratio, 0.01 / 4) && fv.small_volume_ratios == 1);
     assert_true(fv.min_determinant == 0 && fv.small_determinants == 2);
@@ -290,7 +290,7 @@ static void test_all_geometry(void **state)
     for (int i = 0; i < 27; i++)
         v.label[i] = i;
     voxels_join(&v);
-    assert_int_equal(tm_poly_finite_volume_measure(&fv, &v.mesh, NULL), TM_OK);
+    assert_int_equal(tm_poly_finite_volume_measure(&fv, &v.mesh, 1, NULL), TM_OK);
     assert_true(close_to(fv.min_determinant, 1.0 / 8) && fv.small_determinants == 0);
     assert_true(close_to(fv.min_weight, 0.5) && close_to(fv.min_volume_ratio, 1));
     assert_true(fv.concave + fv.small_weights + fv.small_volume_ratios == 0);
@@ -299,7 +299,7 @@ static void test_all_geometry(void **state)
      * line from one centroid to the other. */
     v = voxels_of(4, 3, 1, "000001110000");
     voxels_join(&v);
-    assert_int_equal(tm_poly_finite_volume_measure(&fv, &v.mesh, NULL), TM_OK);
+    assert_int_equal(tm_poly_finite_volume_measure(&fv, &v.mesh, 1, NULL), TM_OK);
     assert_true(fv.reversed == 6 && fv.non_orthogonal == 6 && fv.wrong_pyramids == 7);
     assert_true(fv.unseen == 7 && fv.no_fan == 7 && fv.concave == 2);
     voxels_free(&v);

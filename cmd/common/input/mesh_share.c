@@ -18,6 +18,22 @@ void mesh_share_read(const filter *f, tm_slices *slices)
     filter_agree(f, status, &error);
 }
 
+size_t mesh_share_rows(const tm_slices *slices, const char *name)
+{
+    tm_slice slice = {0};
+    tm_slices_find(slices, name, &slice);
+    return slice.total;
+}
+
+tm_element_slices mesh_share_tets(const tm_slices *slices)
+{
+    return (tm_element_slices){.own = tm_mesh_view_of_tets(&slices->stream),
+                               .nodes = mesh_share_rows(slices, ".node"),
+                               .elements = mesh_share_rows(slices, ".ele"),
+                               .faces = mesh_share_rows(slices, ".face"),
+                               .edges = mesh_share_rows(slices, ".edge")};
+}
+
 void mesh_share_take(const filter *f, mesh_share *share, const tm_slices *slices,
                      const char *name)
 {

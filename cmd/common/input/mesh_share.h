@@ -4,6 +4,7 @@
 #ifndef CMD_COMMON_MESH_SHARE_H
 #define CMD_COMMON_MESH_SHARE_H
 
+#include "../../../lib/examine/ranks/examine_ranks.h"
 #include "../app/filter.h"
 
 typedef struct mesh_share {
@@ -16,6 +17,12 @@ typedef struct mesh_share {
 
 /* mesh_input_read_to_compute() of slices. */
 void mesh_share_read(const filter *f, tm_slices *slices);
+
+/* How many rows all ranks have of a block; 0 where there is none. */
+size_t mesh_share_rows(const tm_slices *slices, const char *name);
+
+/* The tetrahedra of a stream. */
+tm_element_slices mesh_share_tets(const tm_slices *slices);
 
 /* Takes the nodes of a block's rows, .ele or .mix. */
 void mesh_share_take(const filter *f, mesh_share *share, const tm_slices *slices,

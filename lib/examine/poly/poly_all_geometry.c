@@ -135,7 +135,8 @@ bool tm_cell_is_concave(const tm_poly_centroids *m, size_t c)
     return false;
 }
 
-static void judge_facet(const tm_poly_centroids *m, size_t f, tm_poly_finite_volume *out)
+void tm_facet_all_geometry(const tm_poly_centroids *m, size_t f,
+                           tm_poly_finite_volume *out)
 {
     out->unseen += !(tm_facet_sights(m, f) > 0);
     out->no_fan += !(tm_facet_fan(m, f, 0) > 0);
@@ -148,24 +149,11 @@ static void judge_facet(const tm_poly_centroids *m, size_t f, tm_poly_finite_vol
     out->small_volume_ratios += ratio < TM_FV_VOLUME_RATIO;
 }
 
-void tm_poly_all_geometry(const tm_poly_centroids *m, tm_poly_finite_volume *out)
+void tm_cell_all_geometry(const tm_poly_centroids *m, size_t c,
+                          tm_poly_finite_volume *out)
 {
-    size_t inside = 0;
-    out->min_weight = out->min_volume_ratio = out->min_determinant = HUGE_VAL;
-    for (size_t f = 0; f < m->mesh->facets; f++) {
-        if (!tm_facet_fits(m->mesh, f))
-            continue;
-        judge_facet(m, f, out);
-        inside += m->mesh->side[f][1] != TM_NONE;
-    }
-    for (size_t c = 0; c < m->mesh->cells; c++) {
-        const double determinant = tm_cell_determinant(m, c);
-        out->min_determinant = fmin(out->min_determinant, determinant);
-        out->small_determinants += determinant < TM_FV_DETERMINANT;
-        out->concave += tm_cell_is_concave(m, c);
-    }
-    if (inside == 0)
-        out->min_weight = out->min_volume_ratio = 0;
-    if (m->mesh->cells == 0)
-        out->min_determinant = 0;
+    const double determinant = tm_cell_determinant(m, c);
+    out->min_determinant = fmin(out->min_determinant, determinant);
+    out->small_determinants += determinant < TM_FV_DETERMINANT;
+    out->concave += tm_cell_is_concave(m, c);
 }

@@ -6,9 +6,14 @@
 #include "poly_centroids.h"
 #include "poly_finite_volume.h"
 
-/* Adds unseen, no_fan, weights, volume ratios, determinants and concave cells.
- * O(corners²) for a facet that is no fan, O(facets²) for a cell that is convex. */
-void tm_poly_all_geometry(const tm_poly_centroids *m, tm_poly_finite_volume *out);
+/* Adds of a facet that fits: unseen, no_fan, weights, volume ratios. O(corners²) where it
+ * is no fan. */
+void tm_facet_all_geometry(const tm_poly_centroids *m, size_t f,
+                           tm_poly_finite_volume *out);
+
+/* Adds of a cell: determinants and concave. O(facets²) where it is convex. */
+void tm_cell_all_geometry(const tm_poly_centroids *m, size_t c,
+                          tm_poly_finite_volume *out);
 
 /* One by one; all but the last are to be above a limit, 0 where no other is named.
  *

@@ -102,19 +102,29 @@ static void measure_cells(const tm_poly_centroids *m)
         finish_centre(&m->cell[c]);
 }
 
-tm_status tm_poly_centroids_find(tm_poly_centroids *c, const tm_poly_arrays *mesh,
-                                 tm_error *error)
+tm_status tm_poly_centroids_find_facets(tm_poly_centroids *c, const tm_poly_arrays *mesh,
+                                        tm_error *error)
 {
-    *c = (tm_poly_centroids){.mesh = mesh,
-                             .face = tm_new(mesh->facets, sizeof *c->face),
-                             .cell = calloc(mesh->cells + 1, sizeof *c->cell)};
-    if (!c->face || !c->cell)
+    *c = (tm_poly_centroids){.mesh = mesh, .face = tm_new(mesh->facets, sizeof *c->face)};
+    if (!c->face)
         return tm_fail_memory(error);
     for (size_t f = 0; f < mesh->facets; f++) {
         const double sum = measure_face(mesh, f, &c->face[f]);
         if (sum > 0)
             c->max_bend = fmax(c->max_bend, 1 - c->face[f].size / sum);
     }
+    return TM_OK;
+}
+
+tm_status tm_poly_centroids_find(tm_poly_centroids *c, const tm_poly_arrays *mesh,
+                                 tm_error *error)
+{
+    const tm_status status = tm_poly_centroids_find_facets(c, mesh, error);
+    if (status != TM_OK)
+        return status;
+    c->cell = calloc(mesh->cells + 1, sizeof *c->cell);
+    if (!c->cell)
+        return tm_fail_memory(error);
     measure_cells(c);
     return TM_OK;
 }

@@ -37,6 +37,10 @@ tm_status tm_poly_centroids_find(tm_poly_centroids *c, const tm_poly_arrays *mes
                                  tm_error *error);
 void tm_poly_centroids_free(tm_poly_centroids *c);
 
+/* The same of facets only: `cell` is NULL. */
+tm_status tm_poly_centroids_find_facets(tm_poly_centroids *c, const tm_poly_arrays *mesh,
+                                        tm_error *error);
+
 /* Finds the centroid of one facet again, and of one cell from those of its facets, as
  * cell_facet has them; where nodes have moved. */
 void tm_facet_centroid_find(const tm_poly_centroids *c, size_t f);

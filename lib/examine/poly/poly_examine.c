@@ -167,8 +167,7 @@ tm_status tm_poly_examine_facets(tm_examination *found, const tm_poly_arrays *me
     if (status == TM_OK)
         status = tm_poly_match_facets(found, mesh, parent, error);
     if (status == TM_OK)
-        status =
-            tm_poly_match_edges(found, mesh, 0, (uint32_t)mesh->nodes, &edges, error);
+        status = tm_poly_find_edges(NULL, &edges, mesh, 0, (uint32_t)mesh->nodes, error);
     if (status == TM_OK) {
         const size_t count = count_used_nodes(mesh, used);
         found->unused_nodes = mesh->nodes - count;
@@ -214,6 +213,8 @@ tm_status tm_poly_examine(tm_examination *found, const tm_poly_arrays *mesh,
     tm_status status = examine_cells(found, mesh, threads, error);
     if (status == TM_OK)
         status = tm_poly_examine_facets(found, mesh, error);
+    if (status == TM_OK)
+        status = tm_poly_find_repeated(found, mesh, 0, (uint32_t)mesh->nodes, error);
     if (status == TM_OK)
         status = tm_poly_examine_boundary(found, mesh, 0, (uint32_t)mesh->nodes, error);
     tm_poly_add_boundary_area(&area, mesh);

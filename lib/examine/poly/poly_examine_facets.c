@@ -133,12 +133,12 @@ static bool equal(const ring *r, const ring *s)
     return true;
 }
 
-static bool look_for_repeated(tm_examination *found, const tm_poly_arrays *mesh,
-                              uint32_t first, uint32_t past)
+tm_status tm_poly_find_repeated(tm_examination *found, const tm_poly_arrays *mesh,
+                                uint32_t first, uint32_t past, tm_error *error)
 {
     tm_hash_table table;
     if (!tm_hash_make(&table, mesh->facets))
-        return false;
+        return tm_fail_memory(error);
     for (uint32_t f = 0; f < mesh->facets; f++) {
         const ring r = ring_of(mesh, f);
         if (at(&r, 0) < first || at(&r, 0) >= past)
@@ -156,7 +156,7 @@ static bool look_for_repeated(tm_examination *found, const tm_poly_arrays *mesh,
                           (uint32_t[TM_DEFECT_NUMBERS]){f, *slot});
     }
     tm_hash_free(&table);
-    return true;
+    return TM_OK;
 }
 
 /* Edges ----------------------------------------------------------------------------- */
@@ -169,10 +169,9 @@ static uint32_t smaller(const uint32_t *node, size_t count, size_t i, uint32_t *
     return a < b ? a : b;
 }
 
-/* Counts the edges at the smaller one of their nodes, which is first … past-1. False
- * where memory is out. */
-static bool count_edges(const tm_poly_arrays *mesh, uint32_t first, uint32_t past,
-                        size_t *edges)
+tm_status tm_poly_find_edges(uint32_t (*edge)[2], size_t *edges,
+                             const tm_poly_arrays *mesh, uint32_t first, uint32_t past,
+                             tm_error *error)
 {
     const size_t all = mesh->facets > 0 ? mesh->facet_start[mesh->facets] : 0;
     size_t *start = calloc(mesh->nodes + 2, sizeof *start);
@@ -196,25 +195,21 @@ static bool count_edges(const tm_poly_arrays *mesh, uint32_t first, uint32_t pas
         memset(stamp, UINT8_MAX, mesh->nodes * sizeof *stamp);
         for (uint32_t v = first; v < past; v++)
             for (size_t i = start[v]; i < start[v + 1]; i++) {
-                *edges += stamp[end[i]] != v;
+                if (stamp[end[i]] == v)
+                    continue;
                 stamp[end[i]] = v;
+                if (edge) {
+                    edge[*edges][0] = v;
+                    edge[*edges][1] = end[i];
+                }
+                ++*edges;
             }
     }
     const bool enough = start && end && stamp;
     free(start);
     free(end);
     free(stamp);
-    return enough;
-}
-
-tm_status tm_poly_match_edges(tm_examination *found, const tm_poly_arrays *mesh,
-                              uint32_t first, uint32_t past, size_t *edges,
-                              tm_error *error)
-{
-    return count_edges(mesh, first, past, edges) &&
-                   look_for_repeated(found, mesh, first, past)
-               ? TM_OK
-               : tm_fail_memory(error);
+    return enough ? TM_OK : tm_fail_memory(error);
 }
 
 tm_status tm_poly_match_facets(tm_examination *found, const tm_poly_arrays *mesh,

@@ -60,11 +60,12 @@ typedef struct tm_poly_finite_volume {
     size_t concave; /* cells with a facet's centroid beyond another's plane, or in it */
 } tm_poly_finite_volume;
 
-/* Measures all facets that belong to the cells that they name. TM_ERROR_SYSTEM where
- * memory is out. O(corners + cells log cells), and O(facets²) for a cell that is convex.
- */
+/* Measures all facets that belong to the cells that they name. The same result for every
+ * number of threads. TM_ERROR_SYSTEM where memory is out. O(corners + cells log cells),
+ * and O(facets²) for a cell that is convex. */
 tm_status tm_poly_finite_volume_measure(tm_poly_finite_volume *measures,
-                                        const tm_poly_arrays *mesh, tm_error *error);
+                                        const tm_poly_arrays *mesh, unsigned threads,
+                                        tm_error *error);
 
 /* The same, but only what checkMesh looks at without -allGeometry. O(corners). */
 tm_status tm_poly_finite_volume_check(tm_poly_finite_volume *measures,

@@ -5,6 +5,8 @@
 
 #include "poly_examine.h"
 #include "poly_boundary.h"
+#include "poly_centroids.h"
+#include "poly_statistics.h"
 #include "../../base/sum.h"
 #include "../../geom/kernel.h"
 
@@ -32,24 +34,29 @@ tm_status tm_poly_examine_boundary(tm_examination *found, const tm_poly_arrays *
 /* Adds the areas of these facets. */
 void tm_poly_add_boundary_area(tm_sum *sum, const tm_poly_arrays *mesh);
 
-/* Finds in *found how facets and cells fit together: unmatched and repeated facets, those
- * with a node twice, components, unused nodes, Euler number. Expected O(nodes + corners).
- */
+/* Finds in *found how facets and cells fit together: unmatched facets, those with a node
+ * twice, components, unused nodes, Euler number. O(nodes + corners). */
 tm_status tm_poly_examine_facets(tm_examination *found, const tm_poly_arrays *mesh,
                                  tm_error *error);
 
-/* poly_examine_facets.c: its parts. */
+/* poly_examine_facets.c: its parts, and repeated facets. */
 
 /* Finds in *found: unmatched facets, those with a node twice, boundary faces.
  * parent[cells] gets a tree for each component (disjoint_sets.h). O(nodes + corners). */
 tm_status tm_poly_match_facets(tm_examination *found, const tm_poly_arrays *mesh,
                                uint32_t *parent, tm_error *error);
 
-/* Finds in *found: repeated facets, of those whose smallest node is first … past-1;
- * *edges is how many edges have such a smaller node. Expected O(nodes + corners). */
-tm_status tm_poly_match_edges(tm_examination *found, const tm_poly_arrays *mesh,
-                              uint32_t first, uint32_t past, size_t *edges,
-                              tm_error *error);
+/* *edges is how many edges facets have, of those whose smaller node is first … past-1;
+ * edge[*edges], where that is not NULL, gets both nodes of each, the smaller one first,
+ * in the order of these. O(nodes + corners). */
+tm_status tm_poly_find_edges(uint32_t (*edge)[2], size_t *edges,
+                             const tm_poly_arrays *mesh, uint32_t first, uint32_t past,
+                             tm_error *error);
+
+/* Finds in *found: repeated facets, of those whose smallest node is first … past-1.
+ * Expected O(corners). */
+tm_status tm_poly_find_repeated(tm_examination *found, const tm_poly_arrays *mesh,
+                                uint32_t first, uint32_t past, tm_error *error);
 
 /* poly_measure.c: volume and areas of a polyhedron by its boundary. */
 
@@ -135,5 +142,69 @@ tm_status tm_poly_ball_measure(tm_poly_shape *shape, tm_poly_shape_memory *memor
  * which calls it; false where memory is out. O(corners²) of each facet. */
 bool tm_poly_indicator(tm_poly_shape *shape, tm_poly_shape_memory *memory,
                        const tm_poly_boundary *b);
+
+/* poly_statistics.c: its parts, for who has the polyhedra in several places. */
+
+/* What some polyhedra add: minima, maxima and counts, where means are not yet divided
+ * sums; sums that are compensated beside it. */
+typedef struct tm_poly_sums {
+    tm_poly_statistics part;
+    tm_sum volume;
+    tm_status status;
+} tm_poly_sums;
+
+/* Whether the first attributes of all cells are numbers of tetrahedra. */
+bool tm_poly_has_tets(const tm_poly_arrays *mesh);
+
+/* Those of each 256 cells: *chunk, to be freed. */
+tm_status tm_poly_sums_measure(tm_poly_sums **chunk, size_t *chunks,
+                               const tm_poly_arrays *mesh, bool with_tets,
+                               unsigned threads, tm_error *error);
+
+/* Nothing, to which chunks are added in their order; the end of all `cells`. */
+void tm_poly_sums_begin(tm_poly_sums *sums);
+void tm_poly_sums_add(tm_poly_sums *sums, const tm_poly_sums *chunk, size_t chunks);
+void tm_poly_sums_finish(tm_poly_statistics *s, const tm_poly_sums *sums, size_t cells);
+
+/* The boundary's facets, if they are all triangles. */
+size_t tm_poly_boundary_triangles(const tm_poly_arrays *mesh, bool *all_are);
+
+/* The sizes of the mesh, by what tm_poly_examine_facets() has found and by
+ * boundary_triangles, 0 where the boundary has other facets, and those before that
+ * follow. */
+void tm_poly_find_sizes(tm_poly_statistics *s, const tm_examination *found, size_t nodes,
+                        size_t facets, size_t cells, size_t boundary_triangles);
+
+/* poly_finite_volume.c: its parts, likewise. */
+
+/* What some facets, or cells, add. */
+typedef struct tm_fv_sums {
+    tm_poly_finite_volume of; /* the mean is a sum */
+    size_t facets;
+    size_t inside; /* of these */
+} tm_fv_sums;
+
+/* What is judged: facets with all that is measured, or only what
+ * tm_poly_finite_volume_check() measures; or what else is measured of cells, by their
+ * facets. */
+typedef enum tm_fv_judged {
+    TM_FV_FACETS,
+    TM_FV_FACETS_CHECKED,
+    TM_FV_CELLS
+} tm_fv_judged;
+
+/* The sums of each 1024 of the first `count` of them: *chunk, to be freed. */
+tm_status tm_fv_judge(tm_fv_sums **chunk, size_t *chunks, const tm_poly_centroids *m,
+                      tm_fv_judged what, size_t count, unsigned threads, tm_error *error);
+
+/* Nothing, to which chunks are added in their order; the end, of a mesh of `cells`. */
+void tm_fv_sums_begin(tm_fv_sums *sums);
+void tm_fv_sums_add(tm_fv_sums *sums, const tm_fv_sums *chunk, size_t chunks);
+void tm_fv_sums_finish(tm_fv_sums *sums, size_t cells);
+
+/* volume_spread is that of the volume that so many are below and the one that so many are
+ * above. */
+size_t tm_fv_few(size_t cells);
+double tm_fv_spread(double low, double high);
 
 #endif

@@ -12,18 +12,10 @@
 /* Polyhedra that one thread measures at a time. */
 enum { CHUNK = 256 };
 
-/* What a chunk of polyhedra adds: minima, maxima and counts in `part`, where means are
- * not yet divided sums; sums that are compensated beside it. */
-typedef struct chunk_sums {
-    tm_poly_statistics part;
-    tm_sum volume;
-    tm_status status;
-} chunk_sums;
-
 typedef struct measuring {
     const tm_poly_arrays *mesh;
     bool with_tets;
-    chunk_sums *chunk; /* one for each CHUNK of cells */
+    tm_poly_sums *chunk; /* one for each CHUNK of cells */
 } measuring;
 
 /* What a thread keeps from one polyhedron to the next. */
@@ -66,18 +58,19 @@ static size_t ratio_bin(double ratio)
     return bin < TM_KERNEL_RATIO_BINS ? (size_t)bin : TM_KERNEL_RATIO_BINS - 1;
 }
 
-static void clear(tm_poly_statistics *s)
+void tm_poly_sums_begin(tm_poly_sums *sums)
 {
-    *s = (tm_poly_statistics){
-        .min_volume = HUGE_VAL,
-        .min_edge = HUGE_VAL,
-        .min_face_area = HUGE_VAL,
-        .min_dihedral = largest_angle,
-        .edge_ratio = {.min = HUGE_VAL},
-        .kernel_radius = {.min = HUGE_VAL},
-        .kernel_ratio = {.min = HUGE_VAL},
-        .centroid_depth = {.min = HUGE_VAL},
-        .rho = {{.min = HUGE_VAL}, {.min = HUGE_VAL}, {.min = HUGE_VAL}}};
+    *sums = (tm_poly_sums){
+        .part = {.min_volume = HUGE_VAL,
+                 .min_edge = HUGE_VAL,
+                 .min_face_area = HUGE_VAL,
+                 .min_dihedral = largest_angle,
+                 .edge_ratio = {.min = HUGE_VAL},
+                 .kernel_radius = {.min = HUGE_VAL},
+                 .kernel_ratio = {.min = HUGE_VAL},
+                 .centroid_depth = {.min = HUGE_VAL},
+                 .rho = {{.min = HUGE_VAL}, {.min = HUGE_VAL}, {.min = HUGE_VAL}}},
+        .status = TM_OK};
 }
 
 static void add_value(tm_poly_range *range, double value)
@@ -97,8 +90,7 @@ static size_t tets_of(const tm_poly_arrays *mesh, size_t c)
     return (size_t)mesh->attribute[c * mesh->attributes];
 }
 
-/* Whether the first attributes of all cells are numbers of tetrahedra. */
-static bool has_tets(const tm_poly_arrays *mesh)
+bool tm_poly_has_tets(const tm_poly_arrays *mesh)
 {
     const double most = 4294967295;
     for (size_t c = 0; mesh->attribute && c < mesh->cells; c++) {
@@ -123,7 +115,7 @@ static void count_tets(tm_poly_statistics *s, size_t tets)
     s->tets[count_bin(tets)]++;
 }
 
-static void add_shape(chunk_sums *sums, const tm_poly_shape *shape)
+static void add_shape(tm_poly_sums *sums, const tm_poly_shape *shape)
 {
     tm_poly_statistics *s = &sums->part;
     tm_sum_add(&sums->volume, shape->volume);
@@ -165,7 +157,7 @@ static size_t chunk_end(const tm_poly_arrays *mesh, size_t first)
     return first + (left < CHUNK ? left : CHUNK);
 }
 
-static void measure_cell(chunk_sums *sums, const measuring *m, workspace *w, size_t c)
+static void measure_cell(tm_poly_sums *sums, const measuring *m, workspace *w, size_t c)
 {
     const tm_poly_arrays *mesh = m->mesh;
     const size_t faces = mesh->cell_start[c + 1] - mesh->cell_start[c];
@@ -191,8 +183,8 @@ static void measure_chunk(void *context, size_t chunk)
     const measuring *m = context;
     const size_t first = chunk * CHUNK, end = chunk_end(m->mesh, first);
     workspace w = {.boundary = {0}};
-    chunk_sums sums = {.status = TM_OK};
-    clear(&sums.part);
+    tm_poly_sums sums;
+    tm_poly_sums_begin(&sums);
     for (size_t c = first; c < end && sums.status == TM_OK; c++)
         measure_cell(&sums, m, &w, c);
     workspace_free(&w);
@@ -253,81 +245,109 @@ static void divide(tm_poly_statistics *s, size_t polyhedra)
     s->vem_indicator = sqrt(s->vem_indicator / count);
 }
 
-static tm_status measure_cells(tm_poly_statistics *s, const tm_poly_arrays *mesh,
+void tm_poly_sums_add(tm_poly_sums *sums, const tm_poly_sums *chunk, size_t chunks)
+{
+    for (size_t i = 0; i < chunks; i++) {
+        add(&sums->part, &chunk[i].part);
+        tm_sum_add(&sums->volume, chunk[i].volume.high);
+        tm_sum_add(&sums->volume, chunk[i].volume.low);
+    }
+}
+
+void tm_poly_sums_finish(tm_poly_statistics *s, const tm_poly_sums *sums, size_t cells)
+{
+    *s = (tm_poly_statistics){0};
+    if (cells == 0)
+        return;
+    *s = sums->part;
+    divide(s, cells);
+    s->volume = tm_sum_value(sums->volume);
+}
+
+tm_status tm_poly_sums_measure(tm_poly_sums **chunk, size_t *chunks,
+                               const tm_poly_arrays *mesh, bool with_tets,
                                unsigned threads, tm_error *error)
 {
-    const size_t chunks = mesh->cells / CHUNK + (mesh->cells % CHUNK != 0);
-    measuring m = {mesh, has_tets(mesh), tm_new(chunks, sizeof *m.chunk)};
+    *chunks = tm_parallel_chunks(mesh->cells, CHUNK);
+    measuring m = {mesh, with_tets, tm_new(*chunks, sizeof *m.chunk)};
+    *chunk = m.chunk;
     if (!m.chunk)
         return tm_fail_memory(error);
-    tm_parallel(threads, chunks, measure_chunk, &m);
-    tm_status status = TM_OK;
-    tm_sum volume = {0};
-    clear(s);
-    for (size_t i = 0; i < chunks; i++) {
-        add(s, &m.chunk[i].part);
-        tm_sum_add(&volume, m.chunk[i].volume.high);
-        tm_sum_add(&volume, m.chunk[i].volume.low);
-        status = m.chunk[i].status != TM_OK ? m.chunk[i].status : status;
-    }
-    free(m.chunk);
-    if (status != TM_OK)
-        return tm_fail_memory(error);
-    if (mesh->cells > 0)
-        divide(s, mesh->cells);
-    else
-        *s = (tm_poly_statistics){0};
-    s->volume = tm_sum_value(volume);
+    tm_parallel(threads, *chunks, measure_chunk, &m);
+    for (size_t i = 0; i < *chunks; i++)
+        if (m.chunk[i].status != TM_OK)
+            return tm_fail_memory(error);
     return TM_OK;
 }
 
-/* The boundary's facets, or 0 where they are not all triangles. */
-static size_t boundary_triangles(const tm_poly_arrays *mesh)
+static tm_status measure_cells(tm_poly_statistics *s, const tm_poly_arrays *mesh,
+                               unsigned threads, tm_error *error)
+{
+    tm_poly_sums sums, *chunk;
+    size_t chunks;
+    const tm_status status = tm_poly_sums_measure(&chunk, &chunks, mesh,
+                                                  tm_poly_has_tets(mesh), threads, error);
+    if (status == TM_OK) {
+        tm_poly_sums_begin(&sums);
+        tm_poly_sums_add(&sums, chunk, chunks);
+        tm_poly_sums_finish(s, &sums, mesh->cells);
+    }
+    free(chunk);
+    return status;
+}
+
+size_t tm_poly_boundary_triangles(const tm_poly_arrays *mesh, bool *all_are)
 {
     size_t triangles = 0;
+    *all_are = true;
     for (size_t f = 0; f < mesh->facets; f++) {
         if (mesh->side[f][1] != TM_NONE)
             continue;
-        if (mesh->facet_start[f + 1] - mesh->facet_start[f] != 3)
-            return 0;
+        *all_are &= mesh->facet_start[f + 1] - mesh->facet_start[f] == 3;
         triangles++;
     }
     return triangles;
 }
 
-static void find_input_sizes(tm_poly_statistics *s, const tm_poly_arrays *mesh,
+static void find_input_sizes(tm_poly_statistics *s, size_t nodes, size_t boundary,
                              int64_t euler)
 {
-    const size_t boundary = boundary_triangles(mesh), tets = s->input.elements;
+    const size_t tets = s->input.elements;
     if (tets == 0)
         return;
-    s->input.nodes = mesh->nodes;
+    s->input.nodes = nodes;
     if (boundary == 0 || s->unmatched > 0)
         return;
     s->input.faces = (4 * tets + boundary) / 2;
     const int64_t edges =
-        (int64_t)mesh->nodes + (int64_t)s->input.faces - (int64_t)tets - euler;
+        (int64_t)nodes + (int64_t)s->input.faces - (int64_t)tets - euler;
     if (s->non_simple == 0 && edges > 0)
         s->input.edges = (size_t)edges;
 }
 
-/* The sizes of the mesh, and those before that follow. */
+void tm_poly_find_sizes(tm_poly_statistics *s, const tm_examination *found, size_t nodes,
+                        size_t facets, size_t cells, size_t boundary_triangles)
+{
+    s->swallowed = found->unused_nodes;
+    s->unmatched = found->defect[TM_UNMATCHED_FACE].count;
+    s->size = (tm_poly_sizes){
+        .elements = cells, .faces = facets, .nodes = nodes - found->unused_nodes};
+    s->size.edges = (size_t)((int64_t)s->size.nodes + (int64_t)facets - (int64_t)cells -
+                             found->euler);
+    find_input_sizes(s, nodes, boundary_triangles, found->euler);
+}
+
 static tm_status find_sizes(tm_poly_statistics *s, const tm_poly_arrays *mesh,
                             tm_error *error)
 {
     tm_examination found = {0};
+    bool all_triangles;
+    const size_t boundary = tm_poly_boundary_triangles(mesh, &all_triangles);
     const tm_status status = tm_poly_examine_facets(&found, mesh, error);
-    if (status != TM_OK)
-        return status;
-    s->swallowed = found.unused_nodes;
-    s->unmatched = found.defect[TM_UNMATCHED_FACE].count;
-    s->size = (tm_poly_sizes){.elements = mesh->cells,
-                              .faces = mesh->facets,
-                              .nodes = mesh->nodes - found.unused_nodes};
-    s->size.edges = (size_t)((int64_t)s->size.nodes + (int64_t)mesh->facets -
-                             (int64_t)mesh->cells - found.euler);
-    find_input_sizes(s, mesh, found.euler);
-    return TM_OK;
+    if (status == TM_OK)
+        tm_poly_find_sizes(s, &found, mesh->nodes, mesh->facets, mesh->cells,
+                           all_triangles ? boundary : 0);
+    return status;
 }
 
 tm_status tm_poly_statistics_measure(tm_poly_statistics *statistics,
@@ -338,7 +358,7 @@ tm_status tm_poly_statistics_measure(tm_poly_statistics *statistics,
     if (status == TM_OK)
         status = find_sizes(statistics, mesh, error);
     if (status == TM_OK)
-        status = tm_poly_finite_volume_measure(&statistics->fv, mesh, error);
+        status = tm_poly_finite_volume_measure(&statistics->fv, mesh, threads, error);
     return status;
 }
 
@@ -387,7 +407,7 @@ tm_status tm_poly_measure_each(double *volume, double *kernel_radius,
                                const tm_poly_arrays *mesh, unsigned threads,
                                tm_error *error)
 {
-    const size_t chunks = mesh->cells / CHUNK + (mesh->cells % CHUNK != 0);
+    const size_t chunks = tm_parallel_chunks(mesh->cells, CHUNK);
     measuring_each m = {mesh, volume, kernel_radius, tm_new(chunks, sizeof *m.status)};
     if (!m.status)
         return tm_fail_memory(error);

@@ -111,7 +111,7 @@ typedef struct boundary {
     const double (*xyz)[3];
 } boundary;
 
-static void add_area(const void *context, tm_sum *sum)
+static void add_area(const void *context, void *sum)
 {
     const boundary *b = context;
     tm_add_boundary_area(sum, b->xyz, (const uint32_t(*)[4])b->faces->node,
@@ -131,8 +131,8 @@ static tm_status measure_area(const examining *x, tm_boundary_faces *faces,
     const tm_status status =
         tm_part_nodes_make(&nodes, list, items, &x->nodes, x->mesh->own.xyz, x->error);
     if (status == TM_OK) {
-        tm_sum area;
-        tm_sum_in_turn(&area, add_area,
+        tm_sum area = {0, 0};
+        tm_sum_in_turn(&area, sizeof area, add_area,
                        &(boundary){faces, (const double(*)[3])nodes.xyz});
         x->found->area = tm_sum_value(area);
     }

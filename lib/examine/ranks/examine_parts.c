@@ -88,21 +88,20 @@ tm_status tm_count_used_nodes(const tm_rows *rows, const uint32_t *node, size_t 
 
 /* Sums ----------------------------------------------------------------------------- */
 
-void tm_sum_in_turn(tm_sum *sum, void (*add)(const void *context, tm_sum *sum),
+void tm_sum_in_turn(void *sum, size_t size, void (*add)(const void *context, void *sum),
                     const void *context)
 {
     const unsigned rank = tm_rank(), last = tm_ranks_count() - 1;
-    size_t size;
-    *sum = (tm_sum){0, 0};
+    size_t got;
     if (rank > 0)
-        tm_ranks_receive(rank - 1, sum, sizeof *sum, &size);
+        tm_ranks_receive(rank - 1, sum, size, &got);
     add(context, sum);
     if (last == 0)
         return;
-    tm_ranks_send(rank < last ? rank + 1 : 0, sum, sizeof *sum);
+    tm_ranks_send(rank < last ? rank + 1 : 0, sum, size);
     if (rank == 0)
-        tm_ranks_receive(last, sum, sizeof *sum, &size);
-    tm_ranks_broadcast(sum, sizeof *sum);
+        tm_ranks_receive(last, sum, size, &got);
+    tm_ranks_broadcast(sum, size);
 }
 
 tm_status tm_sum_of_chunks(const tm_sum *chunk, size_t chunks, double *sum,

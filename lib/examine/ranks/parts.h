@@ -30,6 +30,37 @@ tm_status tm_element_part_make(tm_element_part *part, const tm_element_slices *m
                                const int8_t *sign, tm_error *error);
 void tm_element_part_free(tm_element_part *part);
 
+/* poly_part.c: facets on this rank, with their nodes, which are numbered anew; all in the
+ * order that they have in the whole. */
+typedef struct tm_poly_part {
+    tm_poly_arrays mesh; /* of these arrays, with cells where that is said */
+    uint32_t *number;    /* [facets]: in the whole; NULL of those of the slice */
+    uint32_t (*side)[2]; /* [facets]: in the whole, where nothing else is said */
+    size_t *start;
+    uint32_t *node;
+    uint32_t *list; /* of cells */
+    tm_part_nodes nodes;
+} tm_poly_part;
+
+/* Those of this rank's slice. */
+tm_status tm_poly_part_of_slice(tm_poly_part *part, const tm_poly_slices *mesh,
+                                tm_error *error);
+
+/* This rank's cells, and all facets that they list or that name them. Sides are cells
+ * here; where they are on other ranks, all of them are mesh.cells. */
+tm_status tm_poly_part_of_cells(tm_poly_part *part, const tm_poly_slices *mesh,
+                                tm_error *error);
+
+/* Those that have a node of this rank's slice; nodes have no places. */
+tm_status tm_poly_part_of_nodes(tm_poly_part *part, const tm_poly_slices *mesh,
+                                tm_error *error);
+void tm_poly_part_free(tm_poly_part *part);
+
+/* poly_examine_ranks.c: finds in *found, on all ranks, what of tm_poly_examine_facets()
+ * sizes are told by: unmatched facets, unused nodes, Euler number. */
+tm_status tm_poly_count_ranks(tm_examination *found, const tm_poly_slices *mesh,
+                              tm_error *error);
+
 /* examine_parts.c */
 
 /* Nodes with equal coordinates, of which this rank has some: in *found, as
@@ -41,9 +72,9 @@ tm_status tm_examine_nodes_ranks(tm_examination *found, const tm_rows *rows,
 tm_status tm_count_used_nodes(const tm_rows *rows, const uint32_t *node, size_t count,
                               size_t *used, tm_error *error);
 
-/* The sum of all ranks' sums, each as if it went on where the one before ended: *sum is
- * that of those before, then add(context, sum) is called, then it is that of all. */
-void tm_sum_in_turn(tm_sum *sum, void (*add)(const void *context, tm_sum *sum),
+/* What is added up in the order of ranks: *sum, rank 0's, goes from one to the next, each
+ * of which calls add(context, sum); all have the last one's then. */
+void tm_sum_in_turn(void *sum, size_t size, void (*add)(const void *context, void *sum),
                     const void *context);
 
 /* The sum of all chunks of all ranks. */

@@ -436,7 +436,7 @@ static tm_status measure(const writer *w, tm_poly_finite_volume *measures,
                                  .cells = faces->cells,
                                  .cell_start = faces->cell_start,
                                  .cell_facet = faces->cell_facet};
-    return all_geometry ? tm_poly_finite_volume_measure(measures, &mesh, w->error)
+    return all_geometry ? tm_poly_finite_volume_measure(measures, &mesh, 1, w->error)
                         : tm_poly_finite_volume_check(measures, &mesh, w->error);
 }
 

@@ -25,14 +25,16 @@ bool tm_improve_cuts(const tm_improve_options *options, size_t tets, size_t bad)
 size_t tm_improve_ranks_count_bad(const tm_tet_share *share, double degrees);
 
 /* Improves a mesh that ranks have taken (share/take.h), as tm_improve_parts() does; of
- * report->nodes_free nothing is said. *worse: more is bad than before, so that one
- * process would have kept what it had. *inner_faces is for tm_tet_share_give(). All ranks
- * call it. */
+ * report->nodes_free only with count_nodes something is said. *alone: one process is to
+ * do it, as more is bad than before, so that it would have kept what it had; or as nodes
+ * are to be counted, and their markers differ in a face that stays, where that takes the
+ * whole mesh. *inner_faces is for tm_tet_share_give(). All ranks call it. */
 tm_status tm_improve_ranks(tm_tet_share *share, const tm_improve_options *options,
-                           const tm_improve_cut *cut, tm_improve_report *report,
-                           bool *worse, size_t *inner_faces, tm_error *error);
+                           const tm_improve_cut *cut, bool count_nodes,
+                           tm_improve_report *report, bool *alone, size_t *inner_faces,
+                           tm_error *error);
 
-/* tm_forced_find() of all ranks' mesh: the numbers of all, and this one's sectors. */
+/* tm_forced_find() of all ranks' mesh: the numbers of all, and on rank 0 the sectors. */
 tm_status tm_improve_ranks_forced(tm_tet_share *share, double degrees, tm_forced *forced,
                                   tm_error *error);
 

@@ -294,12 +294,12 @@ static tm_status find_places(tm_features *features, const tm_tet_mesh *mesh,
     return TM_OK;
 }
 
-tm_status tm_features_find(tm_features *features, const tm_tet_mesh *mesh,
-                           const tm_surface_limits *limits, tm_tet_marks *marks,
-                           tm_error *error)
+static tm_status find(tm_features *features, const tm_tet_mesh *mesh,
+                      const tm_surface_limits *limits, double flatness,
+                      tm_tet_marks *marks, tm_error *error)
 {
     tm_edge_map edges = {0};
-    *features = (tm_features){.flatness = tm_facet_flatness(mesh)};
+    *features = (tm_features){.flatness = flatness};
     if (!tm_features_reserve(features, mesh->nodes + 1, 0))
         return tm_fail_memory(error);
     memset(features->dimension, INSIDE, mesh->nodes);
@@ -308,6 +308,19 @@ tm_status tm_features_find(tm_features *features, const tm_tet_mesh *mesh,
     tm_status status = find_places(features, mesh, limits, &edges, error);
     tm_edge_map_free(&edges);
     return status == TM_OK ? fix_touching(features, mesh, marks, error) : status;
+}
+
+tm_status tm_features_find(tm_features *features, const tm_tet_mesh *mesh,
+                           const tm_surface_limits *limits, tm_tet_marks *marks,
+                           tm_error *error)
+{
+    return find(features, mesh, limits, tm_facet_flatness(mesh), marks, error);
+}
+
+tm_status tm_features_find_in_part(tm_features *features, const tm_tet_mesh *part,
+                                   double flatness, tm_tet_marks *marks, tm_error *error)
+{
+    return find(features, part, NULL, flatness, marks, error);
 }
 
 /* The normal of the facet that the node of a ball is in, of unit length. */

@@ -33,6 +33,11 @@ tm_status tm_features_find(tm_features *features, const tm_tet_mesh *mesh,
                            tm_error *error);
 void tm_features_free(tm_features *features);
 
+/* The same of a part of a mesh that has that flatness; of nodes all of whose tetrahedra
+ * are in it, if no marker differs from that of a neighbour. */
+tm_status tm_features_find_in_part(tm_features *features, const tm_tet_mesh *part,
+                                   double flatness, tm_tet_marks *marks, tm_error *error);
+
 /* Room for so many nodes, and faces, in all; false where memory is out. */
 bool tm_features_reserve(tm_features *features, size_t nodes, size_t faces);
 
