@@ -44,6 +44,24 @@ all_headers() {
     ./all-cc
 }
 
+@test "all functions of the installed headers link, from C and from C++" {
+    nm --defined-only -D "$LD_LIBRARY_PATH/libtermesh.so" |
+        awk '$2 == "T" { print $3 }' | sort >exported
+    all_headers | (cd "$headers/.." && xargs cat) | cc -fpreprocessed -E -P - |
+        grep -o 'tm_[a-z0-9_]*(' | tr -d '(' | sort -u | comm -12 exported - >functions
+    [ "$(wc -l <functions)" -gt 300 ]
+    { all_headers | sed 's|.*|#include <&>|'
+        echo 'typedef void function(void);'
+        echo 'extern function *const functions[];'
+        echo 'function *const functions[] = {'
+        sed 's/.*/    (function *)&,/' functions
+        echo '}; int main(void) { return functions[0] == 0; }'
+    } >all.c
+    cp all.c all.cc
+    cc -std=c17 -o all-c all.c $(pkg-config --cflags --libs termesh)
+    c++ -std=c++17 -o all-cc all.cc $(pkg-config --cflags --libs termesh)
+}
+
 @test "every installed header stands alone, as C and as C++" {
     all_headers >list
     [ "$(wc -l <list)" -gt 50 ]

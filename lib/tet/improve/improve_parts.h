@@ -3,8 +3,11 @@
 #ifndef TM_IMPROVE_IMPROVE_PARTS_H
 #define TM_IMPROVE_IMPROVE_PARTS_H
 
+#include "../../base/extern_c.h"
 #include "../parts/parts.h"
 #include "improve.h"
+
+TM_EXTERN_C_BEGIN
 
 /* What improves one mesh as a whole. */
 typedef tm_status tm_improve_engine(tm_tet_mesh *mesh, const tm_improve_options *options,
@@ -52,5 +55,7 @@ bool tm_improve_is_worse(const tm_improve_report *report, size_t tets);
 /* How many tetrahedra have a dihedral angle below so many degrees, or above 180 less
  * that. */
 size_t tm_improve_count_bad_angles(const tm_tet_mesh *mesh, double degrees);
+
+TM_EXTERN_C_END
 
 #endif
