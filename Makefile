@@ -226,7 +226,7 @@ define link
 	$(CC) $(TM_CFLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(LDFLAGS) $(LDLIBS)
 endef
 $(gmsh_filters:%=$(BUILD)/bin/%): $(gmsh_objects)
-$(gmsh_filters:%=$(BUILD)/bin/%): private LDLIBS += -lgmsh -lstdc++
+$(gmsh_filters:%=$(BUILD)/bin/%): private LDLIBS += -lgmsh -ldl
 $(filter %-import,$(bin)): $(BUILD)/bin/%: $(BUILD)/cmd/import/%.o $(common) $(library)
 	$(link)
 $(filter %-export,$(bin)): $(BUILD)/bin/%: $(BUILD)/cmd/export/%.o $(common) $(library)

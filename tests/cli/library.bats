@@ -127,3 +127,33 @@ all_headers() {
     run -3 ./in-cc <points.node
     [[ $output == *"library: "* ]]
 }
+
+@test "all that is linked with is of packages that tests/packages.sh installs" {
+    command -v dpkg-query >/dev/null || skip "this is not Debian"
+    . "$root/tests/packages.sh"
+    make -n -B -C "$root" BUILD="$TM_BUILD" all 2>/dev/null | grep -o -e ' -l[^ ]*' |
+        sort -u | sed 's/ -l//' >linked
+    grep -qx gmp linked
+    dpkg-query -W -f='${Package} ${Depends} ${Pre-Depends}\n' |
+        sed 's/([^)]*)//g; s/:[a-z0-9]*//g; s/[,|]/ /g' >depends
+    awk -v first="$build_packages" '
+        { needs[$1] = $0 }
+        END {
+            for (waiting = split(first, wait); waiting > 0;) {
+                package = wait[waiting--]
+                if (there[package]++ || !(package in needs))
+                    continue
+                print package
+                for (n = split(needs[package], more); n > 1; n--)
+                    wait[++waiting] = more[n]
+            }
+        }' depends | sort >installed
+    while read -r library; do
+        { dpkg-query -S "*/lib$library.so" || dpkg-query -S "*/lib$library.a"; } 2>/dev/null |
+            sed 's/: .*//; s/, /\n/g' | sed 's/:.*//' | sort -u | comm -12 - installed >owner
+        [ -s owner ] || {
+            echo "$library"
+            false
+        }
+    done <linked
+}
