@@ -394,6 +394,7 @@ uninstall:
 		$(filters:%=$(DESTDIR)$(BASHCOMPLETIONDIR)/%) \
 		$(filters:%=$(DESTDIR)$(ZSHCOMPLETIONDIR)/_%)
 	rm -rf $(DESTDIR)$(INCLUDEDIR)/termesh
+	rmdir $(DESTDIR)$(LIBEXECDIR) $(DESTDIR)$(dir $(LIBEXECDIR)) 2>/dev/null || :
 	for page in $(pages); do \
 		rm -f $(DESTDIR)$(MANDIR)/man$${page##*.}/$${page#man/} || exit; \
 	done
