@@ -27,12 +27,13 @@ typedef struct tm_element_slices {
 tm_status tm_element_examine_ranks(tm_examination *found, const tm_element_slices *mesh,
                                    unsigned threads, tm_error *error);
 
-/* The same of polyhedra. */
+/* Polyhedra. */
 typedef struct tm_poly_slices {
     tm_poly_arrays own;
     size_t nodes, facets, cells;
 } tm_poly_slices;
 
+/* tm_poly_examine() of all, as above. */
 tm_status tm_poly_examine_ranks(tm_examination *found, const tm_poly_slices *mesh,
                                 unsigned threads, tm_error *error);
 

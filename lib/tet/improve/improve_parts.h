@@ -39,6 +39,7 @@ typedef struct tm_improve_round_of {
 tm_status tm_improve_round(const tm_improve_round_of *what, const tm_tet_parts *parts,
                            tm_improve_report *report, tm_error *error);
 
+/* Adds what was done in a part to the report of the whole. */
 void tm_improve_report_add(tm_improve_report *to, const tm_improve_report *more);
 
 /* Makes (*due)[nodes] what is due after a round: what was before it, when there were so
