@@ -226,7 +226,7 @@ define link
 	$(CC) $(TM_CFLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(LDFLAGS) $(LDLIBS)
 endef
 $(gmsh_filters:%=$(BUILD)/bin/%): $(gmsh_objects)
-$(gmsh_filters:%=$(BUILD)/bin/%): private LDLIBS += -lgmsh -lstdc++
+$(gmsh_filters:%=$(BUILD)/bin/%): private LDLIBS += -lgmsh -ldl
 $(filter %-import,$(bin)): $(BUILD)/bin/%: $(BUILD)/cmd/import/%.o $(common) $(library)
 	$(link)
 $(filter %-export,$(bin)): $(BUILD)/bin/%: $(BUILD)/cmd/export/%.o $(common) $(library)
@@ -394,6 +394,7 @@ uninstall:
 		$(filters:%=$(DESTDIR)$(BASHCOMPLETIONDIR)/%) \
 		$(filters:%=$(DESTDIR)$(ZSHCOMPLETIONDIR)/_%)
 	rm -rf $(DESTDIR)$(INCLUDEDIR)/termesh
+	rmdir $(DESTDIR)$(LIBEXECDIR) $(DESTDIR)$(dir $(LIBEXECDIR)) 2>/dev/null || :
 	for page in $(pages); do \
 		rm -f $(DESTDIR)$(MANDIR)/man$${page##*.}/$${page#man/} || exit; \
 	done

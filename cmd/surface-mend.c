@@ -41,6 +41,10 @@ static const struct {
                         "pieces had triangles that are turned"},
 };
 
+static const char open_help[] = " (--fill D closes holes that are at most so large, "
+                                "--weld D joins nodes that are so close)";
+static const char crossing_help[] = " (octree-mesh --lenient takes it as it is)";
+
 static void read_options(filter *f, tm_mend_options *o)
 {
     for (int c; (c = filter_option(f)) != -1;) {
@@ -108,6 +112,9 @@ static bool is_good(const filter *f, const tm_stream *stream, tm_mend_report *re
         if (status == TM_OK)
             tm_mend_turn_outward(tm_stream_find(stream, ".face"), &surface, &polygons,
                                  &report->step[TM_MEND_TURNED]);
+        else
+            surface_input_add_help(error, &polygons, &options,
+                                   report->open_edges > 0 ? open_help : crossing_help);
         tm_surface_free(&surface);
     }
     tm_polygon_surface_free(&polygons);

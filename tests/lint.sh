@@ -145,6 +145,21 @@ arrows() {
     return "$found"
 }
 
+# A function that a program may call stands under a comment, in the same paragraph; what
+# base/error.h says of all _free() functions need not be said again.
+contracts() {
+    sed -n 's|^#include "\(.*\)"|lib/\1|p' lib/termesh.h >"$list"
+    [ -s "$list" ] || return 1
+    found=0
+    while read -r file; do
+        awk -v RS= '!/\/\*/ && match($0, /(^|\n)[a-z][^;{=#]* \**tm_[a-z0-9_]+\([^{]*;/) &&
+            !/^(static|typedef|#|extern "C")/ && !/tm_[a-z0-9_]+_free\(/ {
+                print FILENAME ": has no comment: " $0; bad = 1 }
+            END { exit bad }' "$file" || found=1
+    done <"$list"
+    return "$found"
+}
+
 # What a folder can show at a glance.
 sizes() {
     most=30
@@ -166,6 +181,7 @@ step "mandoc" manual
 step "notices" notices
 step "errors may be NULL" errors
 step "floors of lib/" arrows
+step "contracts" contracts
 step "sizes of folders" sizes
 step "clang-tidy" tidy
 exit "$failed"

@@ -36,7 +36,8 @@ install_packages() {
         if ! command -v sudo >/dev/null; then
             echo "These packages are missing:$missing" >&2
             echo "Run this as root, or install sudo, or install them yourself:" >&2
-            echo "    apt-get install$missing" >&2
+            echo "    apt-get update" >&2
+            echo "    apt-get install --no-install-recommends$missing" >&2
             return 1
         fi
     fi

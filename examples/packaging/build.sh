@@ -10,7 +10,7 @@ mkdir -p "${1:-.}"
 to=$(cd "${1:-.}" && pwd)
 for program in dpkg-buildpackage dh; do
     command -v "$program" >/dev/null || {
-        echo "$0: needs $program: install the Debian packages dpkg-dev and debhelper" >&2
+        echo "$0: needs $program: install the Debian packages build-essential and debhelper" >&2
         exit 4
     }
 done

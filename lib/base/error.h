@@ -1,6 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Errors are values: a function of the library that can fail returns a tm_status and
- * fills a tm_error with the place and the cause. Only the filters in cmd/ print them. */
+ * fills a tm_error with the place and the cause. Only the filters in cmd/ print them.
+ *
+ * What holds in all headers, where they do not say otherwise:
+ *   - `error` may be NULL. What it says is for a status that is not TM_OK.
+ *   - The only error is TM_ERROR_SYSTEM: memory is out, or there would be more of
+ *     something than 32 bits can number.
+ *   - tm_X_free() gives back all that *x holds, which may be freed again then; {0} holds
+ *     nothing.
+ *   - Arrays that are returned are malloc'ed, and to be freed by the caller.
+ *   - The cost is O(n), or O(n log n) where something is sorted or searched, in what a
+ *     function reads and what it makes. What repeats steps until nothing gets better, as
+ *     tm_improve(), tm_lepp_improve(), tm_repair() and tm_octree_mesh_choose(), has no
+ *     such bound: options limit it. */
 #ifndef TM_BASE_ERROR_H
 #define TM_BASE_ERROR_H
 

@@ -26,6 +26,7 @@ typedef struct tm_mixed_corners {
     unsigned negative, zero, positive;
 } tm_mixed_corners;
 
+/* Those of an element of k nodes. */
 tm_mixed_corners tm_mixed_corners_of(const double (*xyz)[3], const uint32_t *node,
                                      size_t k);
 

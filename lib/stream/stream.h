@@ -96,12 +96,14 @@ void tm_stream_free(tm_stream *stream);
 tm_status tm_stream_read(tm_stream *stream, int fd, const char *name, unsigned threads,
                          tm_error *error);
 
-/* Writes a stream to fd; threads >= 1 format it, always the same bytes. O(bytes). */
+/* Writes a stream to fd; threads >= 1 format it, always the same bytes. TM_ERROR_SYSTEM
+ * where writing fails, or memory is out: a part may be written then, without .end.
+ * O(bytes). */
 tm_status tm_stream_write(const tm_stream *stream, int fd, unsigned threads,
                           tm_error *error);
 
 /* Writes a block as a file of its own: its header and its rows, numbered from base. What
- * that gives for .node, .ele, .face and .edge is a TetGen file. */
+ * that gives for .node, .ele, .face and .edge is a TetGen file. Errors as above. */
 tm_status tm_block_write(const tm_block *block, unsigned base, int fd, unsigned threads,
                          tm_error *error);
 

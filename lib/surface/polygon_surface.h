@@ -88,11 +88,12 @@ tm_status tm_polygon_surface_add_region(tm_polygon_surface *surface,
                                         const tm_region *region, tm_error *error);
 
 /* The nodes of a .node block become those of the surface, which must have none. The
- * arrays of attributes and markers are taken from the block. */
+ * arrays of attributes and markers are taken from the block. Errors as above. */
 tm_status tm_polygon_surface_nodes_from_stream(tm_polygon_surface *surface,
                                                tm_block *node, tm_error *error);
 
-/* Appends the triangles of a .face block as facets with their markers. */
+/* Appends the triangles of a .face block as facets with their markers. Errors as above.
+ */
 tm_status tm_polygon_surface_add_faces(tm_polygon_surface *surface, const tm_block *face,
                                        tm_error *error);
 

@@ -10,7 +10,8 @@
 TM_EXTERN_C_BEGIN
 
 /* Appends all that is left to read to *text, of gzip data what is in them (input.h).
- * `name` is for the message. */
+ * `name` is for the message. TM_ERROR_SYSTEM where reading fails or memory is out,
+ * TM_ERROR_INPUT where gzip data is damaged. */
 tm_status tm_read_all(int fd, const char *name, tm_text *text, tm_error *error);
 
 /* Writes all bytes. TM_ERROR_SYSTEM with errno's message where that fails. */

@@ -288,7 +288,7 @@ examples() {
     [ -f to/usr/share/man/man5/termesh-stream.5 ]
     [ -f to/usr/share/man/man7/termesh.7 ]
     make -s -C "$root" "${variables[@]}" uninstall
-    run -0 find to -type f
+    run -0 find to -type f -o -type l -o -name '*termesh*'
     [ "$output" = "" ]
 }
 

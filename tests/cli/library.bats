@@ -44,6 +44,24 @@ all_headers() {
     ./all-cc
 }
 
+@test "all functions of the installed headers link, from C and from C++" {
+    nm --defined-only -D "$LD_LIBRARY_PATH/libtermesh.so" |
+        awk '$2 == "T" { print $3 }' | sort >exported
+    all_headers | (cd "$headers/.." && xargs cat) | cc -fpreprocessed -E -P - |
+        grep -o 'tm_[a-z0-9_]*(' | tr -d '(' | sort -u | comm -12 exported - >functions
+    [ "$(wc -l <functions)" -gt 300 ]
+    { all_headers | sed 's|.*|#include <&>|'
+        echo 'typedef void function(void);'
+        echo 'extern function *const functions[];'
+        echo 'function *const functions[] = {'
+        sed 's/.*/    (function *)&,/' functions
+        echo '}; int main(void) { return functions[0] == 0; }'
+    } >all.c
+    cp all.c all.cc
+    cc -std=c17 -o all-c all.c $(pkg-config --cflags --libs termesh)
+    c++ -std=c++17 -o all-cc all.cc $(pkg-config --cflags --libs termesh)
+}
+
 @test "every installed header stands alone, as C and as C++" {
     all_headers >list
     [ "$(wc -l <list)" -gt 50 ]
@@ -108,4 +126,34 @@ all_headers() {
     done
     run -3 ./in-cc <points.node
     [[ $output == *"library: "* ]]
+}
+
+@test "all that is linked with is of packages that tests/packages.sh installs" {
+    command -v dpkg-query >/dev/null || skip "this is not Debian"
+    . "$root/tests/packages.sh"
+    make -n -B -C "$root" BUILD="$TM_BUILD" all 2>/dev/null | grep -o -e ' -l[^ ]*' |
+        sort -u | sed 's/ -l//' >linked
+    grep -qx gmp linked
+    dpkg-query -W -f='${Package} ${Depends} ${Pre-Depends}\n' |
+        sed 's/([^)]*)//g; s/:[a-z0-9]*//g; s/[,|]/ /g' >depends
+    awk -v first="$build_packages" '
+        { needs[$1] = $0 }
+        END {
+            for (waiting = split(first, wait); waiting > 0;) {
+                package = wait[waiting--]
+                if (there[package]++ || !(package in needs))
+                    continue
+                print package
+                for (n = split(needs[package], more); n > 1; n--)
+                    wait[++waiting] = more[n]
+            }
+        }' depends | sort >installed
+    while read -r library; do
+        { dpkg-query -S "*/lib$library.so" || dpkg-query -S "*/lib$library.a"; } 2>/dev/null |
+            sed 's/: .*//; s/, /\n/g' | sed 's/:.*//' | sort -u | comm -12 - installed >owner
+        [ -s owner ] || {
+            echo "$library"
+            false
+        }
+    done <linked
 }

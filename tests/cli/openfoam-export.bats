@@ -175,15 +175,31 @@ $volume" ]
     cmp mesh/points points
 }
 
+@test "the folders that it is in are made, too" {
+    cubes >cubes.tm
+    openfoam-export mesh cubes.tm
+    openfoam-export new/constant/polyMesh cubes.tm
+    diff -r mesh new/constant/polyMesh
+    openfoam-export "$PWD/new/other/polyMesh/" cubes.tm
+    diff -r mesh new/other/polyMesh
+}
+
 @test "whole or not at all" {
     sheared_boxes 8 >boxes.tm
     run -4 --separate-stderr bash -c \
         'ulimit -f 4; trap "" XFSZ; openfoam-export mesh boxes.tm'
     [[ "$stderr" == *'openfoam-export: mesh/'*': cannot write: '* ]]
     [ ! -e mesh ]
-    run -4 --separate-stderr openfoam-export -q no/mesh boxes.tm
-    [[ "$stderr" == 'openfoam-export: no/mesh: cannot make the folder: '* ]]
+    run -4 --separate-stderr bash -c \
+        'ulimit -f 4; trap "" XFSZ; openfoam-export new/constant/polyMesh boxes.tm'
+    [ ! -e new ]
+    mkdir old
+    run -4 --separate-stderr bash -c \
+        'ulimit -f 4; trap "" XFSZ; openfoam-export old/constant//polyMesh/ boxes.tm'
+    [ -z "$(ls old)" ]
     touch file
+    run -4 --separate-stderr openfoam-export -q file/mesh boxes.tm
+    [[ "$stderr" == 'openfoam-export: file/mesh: cannot make the folder: '* ]]
     run -4 --separate-stderr openfoam-export file boxes.tm
     mkdir -p mesh/points/in.the.way
     run -4 --separate-stderr openfoam-export mesh boxes.tm

@@ -75,6 +75,8 @@ selective, improve" lepp-improve --algorithm x
     is_told "one FILE at most, but there is also 'x.tm' (if 10 belongs to the option: \
 --merge-coplanar=10)" polylla3d --merge-coplanar 10 x.tm
     is_told "one FILE at most, but there is also 'b.off'" tetgen-mesh -q cube.off b.off
+    run -4 --separate-stderr tetgen-mesh -q none.off
+    [ "$stderr" = 'tetgen-mesh: none.off: cannot open: No such file or directory' ]
     run -4 --separate-stderr tetgen-mesh -q 1.4 <cube.off
     [ "$stderr" = 'tetgen-mesh: 1.4: cannot open: No such file or directory (if 1.4 belongs '\
 'to the option: -q1.4)' ]

@@ -93,7 +93,7 @@ END
 @test "holes: only those that are small enough, and with the marker beside them" {
     broken hole >hole.stl
     run -1 --separate-stderr surface-mend --fill 0.1 --json report -o mended.tm hole.stl
-    [[ "$stderr" == 'surface-mend: hole.stl: still: '*'edges with one triangle: 4'* ]]
+    [[ "$stderr" == 'surface-mend: hole.stl: still: '*'edges with one triangle: 4'*' (--fill D '*'--weld D '*')' ]]
     grep -q '"filled": 0, .*"open_edges": 4, "good": false' report
     surface-import hole.stl | ply-export | sed 's/^property list.*/&\nproperty int marker/
         /^3 /s/$/ 5/' >hole.ply
@@ -121,7 +121,7 @@ for b in (0, 4):
         print(3, *(b + v for v in f))
 END
     run -1 --separate-stderr surface-mend -o cross.tm cross.off
-    [[ "$stderr" == 'surface-mend: cross.off: still: two pieces of the surface cross: faces '*' meet near ('* ]]
+    [[ "$stderr" == 'surface-mend: cross.off: still: two pieces of the surface cross: faces '*' meet near ('*' (octree-mesh --lenient takes it as it is)' ]]
     [ "$(header .face cross.tm | cut -d ' ' -f 1)" -eq 8 ]
 }
 

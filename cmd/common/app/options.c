@@ -6,6 +6,7 @@
 #include "../../../lib/number/number.h"
 #include "../../../lib/ranks/ranks.h"
 
+#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -223,10 +224,18 @@ int filter_option(filter *f)
     }
 }
 
+/* A path, or a name with a suffix, is no number and no word of an option. */
+static bool looks_like_file(const char *operand)
+{
+    const char *dot = strrchr(operand, '.');
+    return strchr(operand, '/') || (dot && isalpha((unsigned char)dot[1]));
+}
+
 void filter_explain_apart(const filter *f, const char *operand, char text[FILTER_APART])
 {
     *text = '\0';
-    if (operand && operand == f->apart && access(operand, F_OK) != 0)
+    if (operand && operand == f->apart && !looks_like_file(operand) &&
+        access(operand, F_OK) != 0)
         snprintf(text, FILTER_APART, " (if %s belongs to the option: %s%s)", operand,
                  f->apart_option, operand);
 }

@@ -222,22 +222,54 @@ static int open_file(output_files *files, output_file *file)
     return fd;
 }
 
-tm_status output_files_make_folder(output_files *files, const char *name, tm_error *error)
+/* Makes files->folder and those that it is in; false with errno. files->made is 0 where
+ * all are there. */
+static bool make_folders(output_files *files)
 {
     const mode_t everyone = S_IRWXU | S_IRWXG | S_IRWXO;
-    char *folder = strdup(name);
-    if (!folder)
+    char *name = files->folder;
+    for (size_t at = 1; at <= strlen(name); at++) {
+        const char end = name[at];
+        if (end != '/' && end != '\0')
+            continue;
+        name[at] = '\0';
+        const bool is_made = mkdir(name, everyone) == 0, is_there = errno == EEXIST;
+        name[at] = end;
+        if (is_made && files->made == 0)
+            files->made = at;
+        if (!is_made && !is_there)
+            return false;
+    }
+    return true;
+}
+
+/* Removes those that were made, the innermost first. */
+static void remove_folders(output_files *files)
+{
+    char *name = files->folder;
+    for (size_t at = strlen(name); files->made > 0 && at >= files->made; at--)
+        if (name[at] == '/' || name[at] == '\0') {
+            name[at] = '\0';
+            rmdir(name);
+        }
+}
+
+tm_status output_files_make_folder(output_files *files, const char *name, tm_error *error)
+{
+    tm_status status = TM_OK;
+    files->folder = strdup(name);
+    if (!files->folder)
         return tm_fail_memory(error);
     hold_signals(files);
-    if (mkdir(name, everyone) == 0) {
-        files->folder = folder;
-        return TM_OK;
-    }
-    tm_status status = TM_OK;
-    if (errno != EEXIST)
+    if (!make_folders(files))
         status = tm_fail_at(error, TM_ERROR_SYSTEM, name, 0, NULL,
                             "cannot make the folder: %s", strerror(errno));
-    free(folder);
+    if (status == TM_OK && files->made > 0)
+        return TM_OK;
+    remove_folders(files);
+    free(files->folder);
+    files->folder = NULL;
+    files->made = 0;
     release_signals(files);
     return status;
 }
@@ -301,7 +333,7 @@ void output_files_abandon(output_files *files)
             unlink(file->temporary);
     }
     if (files->folder)
-        rmdir(files->folder);
+        remove_folders(files);
     release(files);
 }
 

@@ -29,7 +29,8 @@ typedef struct output_file {
 typedef struct output_files {
     size_t count;
     output_file *file;
-    char *folder; /* that was made for them, or NULL */
+    char *folder; /* that was made for them, or NULL; */
+    size_t made;  /* and those that it is in, from this length of its name on */
     bool named;   /* none is to be without a name while it is written */
     bool held;    /* signals: something has a name that is not to stay (private.h) */
 } output_files;

@@ -4,6 +4,7 @@
 #include "../process/become.h"
 #include "../process/private.h"
 
+#include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <gmshc.h>
@@ -131,9 +132,8 @@ static tm_status silence(tm_error *error)
     return TM_OK;
 }
 
-/* std::set_new_handler() of the C++ library. */
 typedef void new_handler(void);
-new_handler *set_new_handler(new_handler *handler) __asm__("_ZSt15set_new_handlerPFvvE");
+typedef new_handler *new_handler_setter(new_handler *handler);
 
 /* Gmsh catches what is thrown where memory is out, and goes on with a part of the mesh.
  * New is asked again once; then the child ends. */
@@ -143,6 +143,17 @@ static void end_without_memory(void)
     if (again)
         end_for_memory();
     again = true;
+}
+
+/* Calls std::set_new_handler() of the C++ library that Gmsh came with. Nothing is linked
+ * with it, as a C compiler may have come without. */
+static void watch_memory(void)
+{
+    void *found = dlsym(RTLD_DEFAULT, "_ZSt15set_new_handlerPFvvE");
+    new_handler_setter *set;
+    memcpy(&set, &found, sizeof set);
+    if (found)
+        set(end_without_memory);
 }
 
 static tm_status start_gmsh(tm_error *error)
@@ -171,7 +182,7 @@ _Noreturn static void be_child(gmsh_work *work, void *context, const gmsh_limits
         signal(ends[i], SIG_DFL);
     private_signals_unblock();
     to_leave = left;
-    set_new_handler(end_without_memory);
+    watch_memory();
     left->status = silence(&left->error);
     if (left->status == TM_OK)
         left->status = start_gmsh(&left->error);

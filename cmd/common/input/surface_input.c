@@ -296,6 +296,26 @@ static void leave_out(const filter *f, const tm_polygon_surface *polygons,
         filter_leave_out(f, "%zu names of another mesh (.group)", other->count);
 }
 
+void surface_input_add_help(tm_error *error, const tm_polygon_surface *polygons,
+                            const tm_surface_options *options, const char *help)
+{
+    const tm_surface_options lenient = {
+        .feature_angle = options->feature_angle,
+        .lenient = true,
+        .regions = options->regions,
+    };
+    const size_t size = strlen(error->what);
+    tm_surface taken;
+    tm_surface_defects defects;
+    if (error->status != TM_ERROR_INPUT || options->lenient ||
+        tm_surface_find_defects(polygons, &defects, NULL) != TM_OK)
+        return;
+    const bool walls = defects.open_edges == 0 && defects.odd_edges > 0;
+    if (tm_surface_build(&taken, polygons, &lenient, NULL) == TM_OK && !walls)
+        snprintf(error->what + size, sizeof error->what - size, "%s", help);
+    tm_surface_free(&taken);
+}
+
 void surface_input_build(const filter *f, const tm_surface_options *options,
                          tm_surface *surface, tm_stream *history)
 {
@@ -309,6 +329,9 @@ void surface_input_build(const filter *f, const tm_surface_options *options,
         (status == TM_OK && surface->open_edges > 0))
         refuse_walls(f, &polygons);
     if (status != TM_OK) {
+        surface_input_add_help(
+            &error, &polygons, options,
+            " (surface-mend may mend it; --lenient takes it as it is)");
         if (!error.file[0])
             snprintf(error.file, sizeof error.file, "%s", filter_input_name(f));
         filter_fail(f, &error);

@@ -25,6 +25,11 @@ tm_format surface_input_read_any(const filter *f, tm_polygon_surface *surface,
 void surface_input_build(const filter *f, const tm_surface_options *options,
                          tm_surface *surface, tm_stream *history);
 
+/* Adds what helps to the error of tm_surface_build(), if that takes the surface as it is
+ * with options.lenient. */
+void surface_input_add_help(tm_error *error, const tm_polygon_surface *polygons,
+                            const tm_surface_options *options, const char *help);
+
 /* Copies nodes and triangles of blocks, which are numbered from base, to *surface, which
  * is initialised; face may be NULL. */
 tm_status surface_input_of_blocks(const tm_block *node, const tm_block *face,

@@ -22,14 +22,14 @@ static bool contains(const char *line, int size, const char *words)
     return memmem(line, (size_t)size, words, strlen(words)) != NULL;
 }
 
-/* Progress, not a complaint. */
+/* Progress, not a complaint; or how the C++ library says that TetGen broke off. */
 static bool is_progress(const char *line, int size)
 {
-    static const char *const words[] = {"Opening ",     "Delaunizing", "Creating ",
-                                        "Constrained ", "Removing ",   "Refining ",
-                                        "Optimizing ",  "Writing ",    "Jettisoning ",
-                                        " seconds:",    "Detecting",   "Recovering",
-                                        "Statistics"};
+    static const char *const words[] = {"Opening ",     "Delaunizing",     "Creating ",
+                                        "Constrained ", "Removing ",       "Refining ",
+                                        "Optimizing ",  "Writing ",        "Jettisoning ",
+                                        " seconds:",    "Detecting",       "Recovering",
+                                        "Statistics",   "terminate called"};
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
         if (contains(line, size, words[i]))
             return true;
@@ -109,21 +109,34 @@ static void place_of(const tm_polygon_surface *surface, const size_t a[3],
     }
 }
 
+/* TetGen finds some pairs twice. */
+static bool is_shown(const size_t (*pair)[2], size_t pairs, size_t first, size_t second)
+{
+    for (size_t i = 0; i < pairs; i++)
+        if (pair[i][0] == first && pair[i][1] == second)
+            return true;
+    return false;
+}
+
 size_t tetgen_show_pairs(const filter *f, const tm_text *output,
                          const tm_polygon_surface *surface)
 {
     enum { PAIRS_MAX = 5 };
     static const char begin[] = "Facet #";
-    size_t pairs = 0;
+    size_t pairs = 0, shown[PAIRS_MAX][2];
     const char *at = output->byte;
     while (at && (at = strstr(at, begin))) {
         size_t first, second, a[3], b[3];
         double p[3];
         if (sscanf(at, "Facet #%zu intersects facet #%zu at", &first, &second) != 2 ||
+            is_shown((const size_t(*)[2])shown, pairs < PAIRS_MAX ? pairs : PAIRS_MAX,
+                     first, second) ||
             pairs++ >= PAIRS_MAX) {
             at += strlen(begin);
             continue;
         }
+        shown[pairs - 1][0] = first;
+        shown[pairs - 1][1] = second;
         const char *rest = read_triangle(strpbrk(at, "\r\n") + 1, surface, a);
         at += strlen(begin);
         if (!rest || !read_triangle(rest, surface, b))

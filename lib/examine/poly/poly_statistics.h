@@ -81,6 +81,7 @@ typedef enum tm_poly_use {
 
 extern const char *const tm_poly_use_names[TM_POLY_USES];
 
+/* Whether they are, by what was measured. */
 bool tm_poly_is_fit(const tm_poly_statistics *statistics, tm_poly_use use);
 
 /* The first count of a bin: 1, 2, 3, 4, 6, 8, 12, 16, 24 … two for each power of 2. */

@@ -38,12 +38,13 @@ tm_status tm_tet_statistics_ranks(tm_tet_statistics *statistics, size_t *turned,
                                   const tm_element_slices *mesh, double limit,
                                   unsigned threads, tm_error *error);
 
-/* Polyhedra, likewise. */
+/* Polyhedra. */
 typedef struct tm_poly_slices {
     tm_poly_arrays own;
     size_t nodes, facets, cells;
 } tm_poly_slices;
 
+/* tm_poly_examine() of all, as above. */
 tm_status tm_poly_examine_ranks(tm_examination *found, const tm_poly_slices *mesh,
                                 unsigned threads, tm_error *error);
 

@@ -35,7 +35,8 @@ const char *tm_format_name(tm_format format);
 tm_status tm_format_read(tm_polygon_surface *surface, tm_format format, const char *bytes,
                          size_t size, const char *name, tm_error *error);
 
-/* The readers. *surface must be empty; after an error it is again. O(size). */
+/* The readers. *surface must be empty; after an error it is again. TM_ERROR_INPUT, with
+ * `name` and where there are lines the line, for what is wrong in the file. O(size). */
 
 /* OFF of Geomview, text: OFF, and with colours, normals or texture coordinates per
  * vertex COFF, NOFF, STOFF and their combinations. One vertex and one face a line;

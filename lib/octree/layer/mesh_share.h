@@ -4,8 +4,11 @@
 #ifndef TM_LAYER_MESH_SHARE_H
 #define TM_LAYER_MESH_SHARE_H
 
+#include "../../base/extern_c.h"
 #include "../share/mesh_ghosts.h"
 #include "assemble.h"
+
+TM_EXTERN_C_BEGIN
 
 /* Own things, which are next to each other: first … past - 1 here; in the whole mesh the
  * first of them has a number, and there are `all`. */
@@ -41,5 +44,7 @@ void tm_mesh_share_free(tm_mesh_share *share);
 /* The node here that has that number, or TM_NONE. O(log nodes). */
 uint32_t tm_mesh_share_node(const tm_mesh_share *share, const tm_assembly *assembly,
                             uint32_t number);
+
+TM_EXTERN_C_END
 
 #endif

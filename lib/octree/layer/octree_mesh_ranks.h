@@ -3,8 +3,11 @@
 #ifndef TM_LAYER_OCTREE_MESH_RANKS_H
 #define TM_LAYER_OCTREE_MESH_RANKS_H
 
+#include "../../base/extern_c.h"
 #include "mesh_choice.h"
 #include "mesh_share.h"
+
+TM_EXTERN_C_BEGIN
 
 /* The same as tm_octree_mesh_make_of(), of a share with one ring of ghosts, of which
  * *interior says what is chosen, of ghosts too. *alone says that it is not made: where
@@ -22,5 +25,7 @@ tm_status tm_octree_mesh_choose_on_ranks(tm_octree_mesh *mesh, tm_octree_share *
 
 /* The deepest level of a leaf of any rank. */
 unsigned tm_octree_share_deepest(const tm_octree_share *share);
+
+TM_EXTERN_C_END
 
 #endif

@@ -83,6 +83,7 @@ typedef struct tm_repair_points {
     tm_node_rule *rule;
 } tm_repair_points;
 
+/* Keeps them in *places, to be freed, after an error too; puts them back. */
 tm_status tm_repair_save(tm_repair_points *places, const tm_repair_state *state,
                          tm_error *error);
 void tm_repair_restore(const tm_repair_points *places, tm_repair_state *state);

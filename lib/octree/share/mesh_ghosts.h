@@ -4,7 +4,10 @@
 #ifndef TM_SHARE_MESH_GHOSTS_H
 #define TM_SHARE_MESH_GHOSTS_H
 
+#include "../../base/extern_c.h"
 #include "octree_share.h"
+
+TM_EXTERN_C_BEGIN
 
 typedef struct tm_mesh_ghosts {
     unsigned ranks;
@@ -33,5 +36,7 @@ tm_status tm_mesh_ghosts_fill(const tm_mesh_ghosts *ghosts, void *value, size_t 
 
 /* Marks everywhere what any rank has marked. */
 tm_status tm_mesh_ghosts_mark(const tm_mesh_ghosts *ghosts, bool *mark, tm_error *error);
+
+TM_EXTERN_C_END
 
 #endif

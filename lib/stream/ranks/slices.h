@@ -29,7 +29,7 @@ void tm_slices_free(tm_slices *slices);
 tm_block *tm_slices_find(const tm_slices *slices, const char *name, tm_slice *slice);
 
 /* Writes the stream as tm_stream_write() does, the same bytes: rank 0 to fd, which others
- * need not have, in order. */
+ * need not have, in order. Errors are those of tm_stream_write(), on all ranks. */
 tm_status tm_slices_write(const tm_slices *slices, int fd, unsigned threads,
                           tm_error *error);
 

@@ -3,8 +3,11 @@
 #ifndef TM_IMPROVE_IMPROVE_PARTS_H
 #define TM_IMPROVE_IMPROVE_PARTS_H
 
+#include "../../base/extern_c.h"
 #include "../parts/parts.h"
 #include "improve.h"
+
+TM_EXTERN_C_BEGIN
 
 /* What improves one mesh as a whole. */
 typedef tm_status tm_improve_engine(tm_tet_mesh *mesh, const tm_improve_options *options,
@@ -36,6 +39,7 @@ typedef struct tm_improve_round_of {
 tm_status tm_improve_round(const tm_improve_round_of *what, const tm_tet_parts *parts,
                            tm_improve_report *report, tm_error *error);
 
+/* Adds what was done in a part to the report of the whole. */
 void tm_improve_report_add(tm_improve_report *to, const tm_improve_report *more);
 
 /* Makes (*due)[nodes] what is due after a round: what was before it, when there were so
@@ -52,5 +56,7 @@ bool tm_improve_is_worse(const tm_improve_report *report, size_t tets);
 /* How many tetrahedra have a dihedral angle below so many degrees, or above 180 less
  * that. */
 size_t tm_improve_count_bad_angles(const tm_tet_mesh *mesh, double degrees);
+
+TM_EXTERN_C_END
 
 #endif
