@@ -241,8 +241,10 @@ class Tests:
         self.healthy = {}
 
     def of(self, source, line):
-        found = [test for test, run in self.lines.items()
-                 if line in run.get(source, ()) and self.seconds.get(test, 0) <= SLOW]
+        """Tests that run the line, or where none does, as tables have no code, the file."""
+        found = [test for test, run in self.lines.items() if line in run.get(source, ())]
+        found = found or [test for test, run in self.lines.items() if source in run]
+        found = [test for test in found if self.seconds.get(test, 0) <= SLOW]
         return sorted(found, key=lambda test: (test.endswith(".bats"),
                                                self.seconds.get(test, 0), test))
 
