@@ -44,9 +44,8 @@ for name; do
     echo "$found" >>"$logs/all"
 done
 
-# As the filters set it (lib/octree/forest/mpi_start.h): MPI for one process.
-export OMPI_MCA_pml=ob1 OMPI_MCA_btl=self OMPI_MCA_ess_singleton_isolated=1 \
-    OMPI_MCA_orte_create_session_dirs=0 OMPI_MCA_shmem=mmap OMPI_MCA_memory=^patcher OMPI_MCA_osc=^ucx HWLOC_COMPONENTS=no_os,stop
+# shellcheck source=tests/mpi.sh
+. "$here/mpi.sh"
 
 passed=0
 failed=0
@@ -103,19 +102,23 @@ reporter=$!
 trap 'kill "$reporter" 2>/dev/null; rm -rf "$logs"' EXIT
 
 # Each leaves NAME.log and then NAME.status. With TM_COUNTS, a folder, what the compiler
-# was told to count (make coverage) goes to a folder in it, for each test, and how long they
-# took to TM_COUNTS.seconds.
+# was told to count (make coverage) goes to a folder in it, for each test, and what they
+# took of processors to TM_COUNTS.seconds.
 # shellcheck disable=SC2016 # expanded by the inner shell
 tr '\n' '\0' <"$logs/all" | xargs -0 -n 1 -P $(($(nproc) + 1)) sh -c '
     log=$logs/${1##*/}
     [ -z "${TM_COUNTS:-}" ] || export GCOV_PREFIX="$TM_COUNTS/${1##*/}"
-    begin=$(date +%s)
     case $1 in
     *.bats) bats --tap "$1" >"$log.log" 2>&1 </dev/null ;;
     *) "$1" >"$log.log" 2>&1 </dev/null ;;
     esac
     echo $? >"$log.new"
-    [ -z "${TM_COUNTS:-}" ] || echo "${1##*/} $(($(date +%s) - begin))" >>"$TM_COUNTS.seconds"
+    if [ -n "${TM_COUNTS:-}" ]; then
+        times >"$log.times"
+        sed -n "2s/[ms]/ /gp" "$log.times" | while read -r minutes seconds more rest; do
+            echo "${1##*/} $((60 * (minutes + more) + ${seconds%.*} + ${rest%%.*}))"
+        done >>"$TM_COUNTS.seconds"
+    fi
     mv "$log.new" "$log.status"' sh
 
 # What was not run, as xargs was killed, has failed.

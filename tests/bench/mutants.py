@@ -3,31 +3,39 @@
 """Whether tests see a fault: mutants.py BUILD COUNT [SEED [FOLDER]]
 
 Changes one token of a .c file of lib/ (or of FOLDER in it) at a time, at random: < to <=,
-+ to -, && to ||, a number to the next one. The change is killed where a test fails that
-runs its line, as `make coverage` in BUILD has found; those that take the least time are run
-first, until they have taken so long together that it is not worth it (LIMIT seconds).
++ to -, && to ||, a number to the next one; in each folder as often as in the others. The
+change is killed where a test fails that runs its line, as `make coverage` in BUILD has
+found: programs of tests/unit first, then files of tests/cli, those first that take the
+least time, until they have taken so long together that it is not worth it (LIMIT seconds of
+processor time). A test ends where its first case fails. Random tests have the seed SEED.
 Prints one line for each change, and how many were killed.
 
 A copy of the tree, with what is built in it, is in a temporary folder, with the library
-shared there, so that a change needs one compilation and one link. Tests that fail there without any change do not count.
+shared there, so that a change needs one compilation and one link. Tests that fail there
+without any change do not count.
 """
 
-import concurrent.futures
+import collections
 import json
 import os
 import random
 import re
+import resource
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
-import time
+import threading
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-LIMIT = 180  # seconds of tests for one change
-SLOW = 30  # a test that took longer is not run
-AT_ONCE = 6  # tests
-ONE_TEST = 100  # seconds after which a test that hangs has failed
+LIMIT = 60  # seconds of processor time of the tests of one change
+SLOW = 60  # a test that took longer is not run
+HANGS = 60  # seconds of processor time after which a program hangs,
+STALLS = 400  # seconds of the clock after which a test does
+MEMORY = 8 << 30  # bytes, the most of a program
+
+FAILED = ("not ok", "[  FAILED  ]")  # what bats says of a case, and cmocka
 
 NOT_LINKED = ("lib/ranks/mpi/ranks.c",)  # of the programs under a launcher only
 
@@ -77,13 +85,16 @@ class Tree:
         self.folder = folder
         self.build = os.path.join(folder, "build")
         shutil.copytree(ROOT, folder, dirs_exist_ok=True,
-                        ignore=shutil.ignore_patterns("san", "san-*", "coverage", ".git"))
-        self.make("tests")
+                        ignore=shutil.ignore_patterns("san", "san-*", "coverage",
+                                                      "determinism", ".git"))
+        self.make("build/libtermesh.a")
         archive = os.path.join(self.build, "libtermesh.a")
         self.shared = os.path.join(self.build, "libchanged.so")
+        self.good = os.path.join(self.build, "libgood.so")
         self.objects = [self.object_of(source) for source in sources("lib")
                         if os.path.exists(self.object_of(source))]
-        self.link(None, None)
+        self.link()
+        shutil.copy(self.shared, self.good)
         with open(archive, "w", encoding="ascii") as script:
             script.write(f"INPUT({self.shared})\n")
         self.make("tests")
@@ -97,15 +108,23 @@ class Tree:
 
     def make(self, target):
         flags = dict(os.environ, LDFLAGS="-Wl,-rpath," + self.build)
-        self.run(["make", "-s", "-j4", target], env=flags)
+        self.run(["make", "-s", "-j2", target], env=flags)
 
-    def link(self, without, instead):
+    def link(self, without=None, instead=None):
+        """The shared library, with one object instead of another one."""
         objects = [instead if o == without else o for o in self.objects]
         flags = subprocess.run(["mpicc", "--showme:link"], capture_output=True, text=True,
                                check=False).stdout.split()
         self.run(["cc", "-shared", "-o", self.shared + ".new", *objects, "-lgmp", "-lz",
                   "-lm", "-lpthread", "-lexpat", "-lp4est", "-lsc", *flags])
         os.replace(self.shared + ".new", self.shared)
+
+    def exchange(self):
+        """The library without a change and that with it change their places."""
+        third = self.good + ".third"
+        os.rename(self.shared, third)
+        os.rename(self.good, self.shared)
+        os.rename(third, self.good)
 
     def object_of(self, source):
         return os.path.join(self.build, source[:-1] + "o")
@@ -125,20 +144,51 @@ class Tree:
 
     def passes(self, test):
         """Whether a test passes."""
-        run = subprocess.Popen(["sh", "tests/run.sh", "build", test], cwd=self.folder,
-                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                               start_new_session=True)
-        try:
-            return run.wait(ONE_TEST) == 0
-        except subprocess.TimeoutExpired:
-            os.killpg(run.pid, 15)
-            run.wait()
-            return False
+        if test.endswith(".bats"):
+            command = ["bats", "--tap", "tests/cli/" + test]
+        else:
+            command = [os.path.join(self.build, "tests", test)]
+        path = os.path.join(self.build, "bin") + ":" + os.environ["PATH"]
+        within = ["sh", "-c", '. tests/mpi.sh && exec "$@"', "sh"]
+        run = subprocess.Popen(within + command, cwd=self.folder, text=True, errors="replace",
+                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                               stderr=subprocess.STDOUT, preexec_fn=set_limits,
+                               env=dict(os.environ, PATH=path, TM_BUILD=self.build))
+        clock = threading.Timer(STALLS, end_group, [run.pid])
+        clock.start()
+        failed = any(line.startswith(FAILED) for line in run.stdout)
+        if failed:
+            end_group(run.pid)
+        run.stdout.close()
+        status = run.wait()
+        clock.cancel()
+        return status == 0 and not failed
+
+
+def set_limits():
+    """Of a test, which is a group of processes: what hangs or takes all memory ends."""
+    os.setsid()
+    resource.setrlimit(resource.RLIMIT_CPU, (HANGS, HANGS))
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+
+def end_group(group):
+    try:
+        os.killpg(group, signal.SIGKILL)
+    except ProcessLookupError:
+        pass
+
+
+def seconds_taken():
+    """Processor time of all that was run."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
 
 
 def mutate(tree, source, place):
-    """Puts the change into the library. Its object; None where it does not compile, or to
-    the same code."""
+    """Puts the change into the library; False where it does not compile, or to the same
+    code."""
     line, column, token, other = place
     path = os.path.join(tree.folder, source)
     with open(path, encoding="utf-8") as file:
@@ -153,8 +203,8 @@ def mutate(tree, source, place):
         file.write(text)
     if made and not same_code(tree.object_of(source), made):
         tree.link(tree.object_of(source), made)
-        return made
-    return None
+        return True
+    return False
 
 
 def same_code(a, b):
@@ -191,60 +241,71 @@ class Tests:
         self.healthy = {}
 
     def of(self, source, line):
-        found = [test for test, run in self.lines.items()
-                 if line in run.get(source, ()) and self.seconds.get(test, 0) <= SLOW]
-        return sorted(found, key=lambda test: (self.seconds.get(test, 0), test))
+        """Tests that run the line, or where none does, as tables have no code, the file."""
+        found = [test for test, run in self.lines.items() if line in run.get(source, ())]
+        found = found or [test for test, run in self.lines.items() if source in run]
+        found = [test for test in found if self.seconds.get(test, 0) <= SLOW]
+        return sorted(found, key=lambda test: (test.endswith(".bats"),
+                                               self.seconds.get(test, 0), test))
 
     def is_healthy(self, tree, test):
         """Whether it passes without any change."""
         if test not in self.healthy:
-            tree.link(None, None)
+            tree.exchange()
             self.healthy[test] = tree.passes(test)
+            tree.exchange()
         return self.healthy[test]
 
 
-def judge(tree, tests, source, place, changed_object):
+def judge(tree, tests, source, line):
     """What became of the change."""
-    begin = time.monotonic()
-    able = tests.of(source, place[0])
+    able = tests.of(source, line)
     if not able:
         return "survived: no test runs it"
-    done = 0
-    while done < len(able) and time.monotonic() - begin < LIMIT:
-        some = able[done:done + AT_ONCE]
-        done += len(some)
-        with concurrent.futures.ThreadPoolExecutor(AT_ONCE) as pool:
-            passed = dict(zip(some, pool.map(tree.passes, some)))
-        for test in some:
-            if not passed[test] and tests.is_healthy(tree, test):
-                return f"killed by {test}"
-        tree.link(tree.object_of(source), changed_object)
-    return f"survived {done} of {len(able)} tests"
+    begin = seconds_taken()
+    for done, test in enumerate(able):
+        if seconds_taken() - begin > LIMIT:
+            return f"survived {done} of {len(able)} tests"
+        if not tree.passes(test) and tests.is_healthy(tree, test):
+            return f"killed by {test}"
+    return f"survived all {len(able)} tests"
+
+
+def in_turn(folder, rng):
+    """All places, at random, one of each folder after the other."""
+    of_folder = collections.defaultdict(list)
+    for source in sorted(sources(folder)):
+        of_folder[os.path.dirname(source)] += [
+            (source, place) for place in places(os.path.join(ROOT, source))]
+    for some in of_folder.values():
+        rng.shuffle(some)
+    while any(of_folder.values()):
+        for name in rng.sample(sorted(of_folder), len(of_folder)):
+            if of_folder[name]:
+                yield of_folder[name].pop()
 
 
 def main():
     build, count = os.path.abspath(sys.argv[1]), int(sys.argv[2])
-    rng = random.Random(int(sys.argv[3]) if len(sys.argv) > 3 else 1)
+    seed = sys.argv[3] if len(sys.argv) > 3 else "1"
     folder = sys.argv[4] if len(sys.argv) > 4 else "lib"
+    os.environ["TM_SEED"] = seed
     tests = Tests(build)
-    everything = [(source, place) for source in sorted(sources(folder))
-                  for place in places(os.path.join(ROOT, source))]
-    rng.shuffle(everything)
     killed = done = 0
     with tempfile.TemporaryDirectory() as work:
+        os.environ["TMPDIR"] = work  # of the tests that are ended
         tree = Tree(os.path.join(work, "tree"))
-        for source, place in everything:
+        for source, place in in_turn(folder, random.Random(int(seed))):
             if done == count:
                 break
-            made = mutate(tree, source, place)
-            if not made:
+            if not mutate(tree, source, place):
                 continue  # it does not compile, or to the same
-            verdict = judge(tree, tests, source, place, made)
+            verdict = judge(tree, tests, source, place[0])
             done += 1
             killed += verdict.startswith("killed")
             print(f"{source}:{place[0]}:{place[1] + 1}: {place[2]} -> {place[3]}: {verdict}",
                   flush=True)
-    print(f"{killed} of {done} killed")
+    print(f"{killed} of {done} killed, seed {seed}")
 
 
 if __name__ == "__main__":

@@ -86,6 +86,24 @@ commands() {
         "$TM_BUILD/faults/preload.so" <cases
 }
 
+# Libraries say in their own way that there is no memory; it is not what is wrong with a file.
+@test "zlib and expat have no memory, at each of their calls: exit 4, out of memory" {
+    case ${TM_BUILD:?} in */san*) skip "the sanitizers have an allocator of their own" ;; esac
+    make_inputs
+    for file in tets.vtu cube.off cells.vtk; do
+        gzip -c "$file" >"small.$file.gz"
+    done
+    cat >cases <<LIST
+vtu-import --quiet --threads 1 in/tets.vtu
+vtu-import --quiet --threads 1 in/small.tets.vtu.gz
+vtk-import --quiet --threads 1 in/small.cells.vtk.gz
+surface-import --quiet --threads 1 in/small.cube.off.gz
+vtu-export --quiet --threads 1 in/tets.tm
+mesh-view --quiet --threads 1 in/tets.tm
+LIST
+    python3 "$root/tests/faults/run.py" -k memory "$TM_BUILD/faults/preload.so" <cases
+}
+
 large_commands() {
     [ "$1" != tetgen-mesh ] || return 0 # TetGen is another program
     # shellcheck disable=SC2046 # words

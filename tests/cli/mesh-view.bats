@@ -32,6 +32,33 @@ assert head['history'] == ['made by a test']
 END
 }
 
+@test "edges of the stream, none, one or more, with markers or without" {
+    for edges in 0 1 2; do
+        for markers in 0 1; do
+            {
+                printf 'termesh 1\n.node\n4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n'
+                printf '.ele\n1 4 0\n1 1 2 3 4\n.edge\n%d %d\n' "$edges" "$markers"
+                [ "$markers" = 1 ] && marker=' 7' || marker=
+                printf "1 2 4$marker\n2 3 1$marker\n" | head -n "$edges"
+                echo .end
+            } >"$edges$markers.tm"
+            mesh-view -o "$edges$markers.html" "$edges$markers.tm"
+        done
+    done
+    look <<'END'
+for edges in range(3):
+    for markers in range(2):
+        page = Page('%d%d.html' % (edges, markers))
+        arrays = page.header['meshes'][0]['arrays']
+        assert ('edge' in arrays) == (edges > 0)
+        assert ('edgeMarker' in arrays) == (edges > 0 and markers > 0)
+        if 'edge' in arrays:
+            assert page.array(arrays['edge']) == [1, 3, 2, 0][:2 * edges]
+        if 'edgeMarker' in arrays:
+            assert page.array(arrays['edgeMarker']) == [7] * edges
+END
+}
+
 @test "measures are those of tet-stats and jens-stats, to five digits" {
     many 300 >many.tm
     mesh-view -q many.tm >page.html

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Each call of a program that may fail fails once: run.py [-a] [-j JOBS] PRELOAD <CASES
+"""Each call of a program that may fail fails once:
+run.py [-a | -k KIND] [-j JOBS] PRELOAD <CASES
 
 With -m memory is limited instead, to ten sizes from that with which it says its version
 to that with which it comes to its end.
@@ -8,7 +9,8 @@ to that with which it comes to its end.
 CASES has a command a line, "<FILE command" for one with standard input; `in/` is the
 folder where run.py was started, the working folder is another one, in which there is a
 file `old`. PRELOAD is preload.c as a library. With -a all calls of all kinds fail, one by
-one and all from there on, otherwise a sample of them; TM_SEED repeats it.
+one and all from there on, with -k all those of that kind, otherwise a sample of all;
+TM_SEED repeats it.
 
 A command is right where it does as if nothing had failed; or ends with status 4, one
 line on standard error that says why, nothing on standard output that could be taken for
@@ -138,10 +140,13 @@ def wrong(case, fault, right, got):
 
 
 def faults_of(counts, every, chance):
-    """What is to fail in a case with so many calls of each kind."""
-    faults = [(kind, 0, 0) for kind in DISTURBED]
+    """What is to fail in a case with so many calls of each kind: all calls of those in
+    `every`, or a sample."""
+    faults = [(kind, 0, 0) for kind in DISTURBED if not every or len(every) > 1]
     for kind, count in counts.items():
         numbers = range(1, count + 1)
+        if every and kind not in every:
+            continue
         if not every:
             some = MORE if kind == 'memory' else SAMPLE
             numbers = sorted(chance.sample(numbers, min(count, some)))
@@ -184,7 +189,8 @@ class Tests:
         return [('limit', low + (high - low) * step // STEPS, 0) for step in range(STEPS)]
 
     def test(self, pool, case, every, chance):
-        """Runs a case with all its faults; every None: with little memory."""
+        """Runs a case with all its faults; `every` is as in faults_of(), or None: with
+        little memory."""
         right, counts = self.run(case, ('none', 0, 0))
         if right.status not in (0, 1) or right.left:
             print('%s: ends with %s: %s' % (case, right.status, right.message.decode()))
@@ -204,7 +210,9 @@ class Tests:
 
 def main():
     words = sys.argv[1:]
-    every = None if '-m' in words else '-a' in words
+    every = None if '-m' in words else tuple(KINDS) if '-a' in words else ()
+    if '-k' in words:
+        every = (words[words.index('-k') + 1],)
     jobs = int(words[words.index('-j') + 1]) if '-j' in words else 1
     seed = os.environ.get('TM_SEED') or str(random.randrange(10 ** 9))
     cases = [line.strip() for line in sys.stdin if line.strip()]

@@ -14,9 +14,8 @@ here=$(dirname "$0")
 found=$build/fuzz/found
 failed=0
 
-# As the filters set it (lib/octree/forest/mpi_start.h): MPI for one process.
-export OMPI_MCA_pml=ob1 OMPI_MCA_btl=self OMPI_MCA_ess_singleton_isolated=1 \
-    OMPI_MCA_orte_create_session_dirs=0 OMPI_MCA_shmem=mmap OMPI_MCA_memory=^patcher OMPI_MCA_osc=^ucx HWLOC_COMPONENTS=no_os,stop
+# shellcheck source=tests/mpi.sh
+. "$here/../mpi.sh"
 export CMOCKA_TEST_ABORT=1
 export ASAN_OPTIONS="${ASAN_OPTIONS:-allocator_may_return_null=1}"
 

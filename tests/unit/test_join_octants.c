@@ -4,6 +4,7 @@
 #include "../../lib/examine/poly/poly_examine.h"
 #include "../../lib/octree/layer/octree_mesh_stream.h"
 #include "../../lib/poly/octant/join_octants.h"
+#include "../../lib/poly/octant/octant_faces.h"
 #include "../../lib/poly/octant/octant_points.h"
 #include "octree_fixture.h"
 
@@ -85,6 +86,83 @@ static uint32_t (*find_core(const solid *s))[TM_LEAF_NODES]
     return core;
 }
 
+/* The corners of an octant that are around point p of it, in the order of their bits. */
+static int corners_around(int p, const uint32_t *node, uint32_t around[4])
+{
+    int count = 0;
+    for (int c = 0; c < TM_LEAF_EDGE; c++) {
+        bool is = true;
+        for (int i = 0; i < 3; i++)
+            is = is &&
+                 (tm_leaf_point[p][i] == 1 || tm_leaf_point[p][i] == tm_leaf_point[c][i]);
+        if (is)
+            around[count++] = node[c];
+    }
+    return count;
+}
+
+/* Middles of edges are there; those of faces outside of the plane through the middle of
+ * the corners by what makes the facets around them convex, but for rounding. */
+static void check_level(const uint32_t *node, double (*xyz)[3])
+{
+    double centre[3] = {0};
+    for (int c = 0; c < TM_LEAF_EDGE; c++)
+        for (int i = 0; i < 3; i++)
+            centre[i] += xyz[node[c]][i] / TM_LEAF_EDGE;
+    for (int p = TM_LEAF_EDGE; p < TM_LEAF_NODES; p++) {
+        uint32_t n[4];
+        double mean[3] = {0}, along[3], across[3], normal[3], outward[3], saddle[3];
+        if (node[p] == TM_NONE)
+            continue;
+        const int count = corners_around(p, node, n);
+        for (int k = 0; k < count; k++)
+            for (int i = 0; i < 3; i++)
+                mean[i] += xyz[n[k]][i] / count;
+        double off[3];
+        tm_subtract(off, xyz[node[p]], mean);
+        if (count == 2) {
+            assert_true(tm_norm(off) <= 1e-12 * (1 + tm_norm(mean)));
+            continue;
+        }
+        tm_subtract(along, xyz[n[3]], xyz[n[0]]);
+        tm_subtract(across, xyz[n[2]], xyz[n[1]]);
+        tm_cross(normal, along, across);
+        tm_subtract(outward, mean, centre);
+        const double sign = tm_dot(normal, outward) < 0 ? -1 : 1;
+        for (int i = 0; i < 3; i++)
+            saddle[i] = (xyz[n[0]][i] + xyz[n[3]][i] - xyz[n[1]][i] - xyz[n[2]][i]) / 4;
+        assert_true(sign * tm_dot(off, normal) >=
+                    fabs(tm_dot(saddle, normal)) - 1e-12 * tm_norm(normal));
+    }
+}
+
+/* Where no node is held. */
+static void check_faces_level(const tm_stream *stream)
+{
+    tm_error error;
+    tm_octant_points points;
+    const tm_block *node = tm_stream_find(stream, ".node");
+    const tm_block *octant = tm_stream_find(stream, ".octant");
+    double(*xyz)[3] = malloc((node->count + 1) * sizeof *xyz);
+    bool *outer = calloc(node->count + 1, sizeof *outer);
+    size_t moved;
+    assert_true(xyz && outer);
+    memcpy(xyz, node->real, node->count * sizeof *xyz);
+    assert_ok(tm_octant_points_make(&points, tm_stream_find(stream, ".mix"), octant,
+                                    tm_stream_find(stream, ".root"), &error),
+              &error);
+    assert_ok(tm_octant_faces_level(&points, xyz, node->count, outer, &moved, &error),
+              &error);
+    for (size_t o = 0; o < octant->count; o++) {
+        uint32_t at[TM_OCTANT_POINTS];
+        if (tm_octant_is_filled(&points, o) && tm_octant_points_find(&points, o, at))
+            check_level(at, xyz);
+    }
+    tm_octant_points_free(&points);
+    free(outer);
+    free(xyz);
+}
+
 static void check_joined(const tm_stream *stream, const tm_octant_join *join,
                          const double (*before)[3])
 {
@@ -124,6 +202,7 @@ static void random_solids(void **state)
                                            &error),
                   &error);
         found += check_points(&s, &stream, core);
+        check_faces_level(&stream);
         for (size_t l = 0; l < s.octree.leaves; l++)
             filled += part_of(&s, l) < s.mesh.parts;
         const tm_block *node = tm_stream_find(&stream, ".node");

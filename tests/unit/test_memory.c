@@ -1,8 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Memory runs out in the middle of the work, at every allocation once, that one alone or
  * all later ones too: what is improved is still a valid mesh then, of the same volume,
- * surface and markers. The program is linked with --wrap for malloc, calloc and realloc.
+ * surface and markers; what is found or made is the same, or there is no memory for it.
+ * The program is linked with --wrap for malloc, calloc and realloc.
  */
+#include "../../lib/examine/element_examine.h"
+#include "../../lib/mesh/face_table.h"
+#include "../../lib/poly/dual/dual.h"
+#include "../../lib/poly/partition.h"
 #include "../../lib/tet/improve/improve.h"
 #include "../../lib/tet/lepp/lepp.h"
 #include "tet_fixture.h"
@@ -145,11 +150,139 @@ static void test_delaunay(void **state)
     test_all(insert_delaunay);
 }
 
+/* Finds or makes something of a mesh, and says what by take(). */
+typedef tm_status maker(const tm_tet_mesh *mesh, tm_error *error);
+
+static uint64_t taken; /* FNV-1a */
+
+static void take(const void *bytes, size_t size)
+{
+    const uint64_t prime = 0x100000001b3;
+    for (size_t i = 0; i < size; i++)
+        taken = (taken ^ ((const uint8_t *)bytes)[i]) * prime;
+}
+
+static tm_mesh_view view_of(const tm_tet_mesh *mesh)
+{
+    return (tm_mesh_view){.nodes = mesh->nodes,
+                          .xyz = (const double(*)[3])mesh->xyz,
+                          .elements = mesh->slots,
+                          .item = mesh->tet[0]};
+}
+
+static tm_status find_mates(const tm_tet_mesh *mesh, tm_error *error)
+{
+    const tm_mesh_view view = view_of(mesh);
+    uint32_t *mate;
+    const tm_status status = tm_face_mates(&mate, &view, error);
+    if (status == TM_OK)
+        take(mate, tm_half_faces(&view) * sizeof *mate);
+    free(mate);
+    return status;
+}
+
+static tm_status examine(const tm_tet_mesh *mesh, tm_error *error)
+{
+    const tm_mesh_view view = view_of(mesh);
+    tm_examination found;
+    const tm_status status = tm_element_examine(&found, &view, 1, error);
+    if (status != TM_OK)
+        return status;
+    take(&found.boundary_faces, sizeof found.boundary_faces);
+    take(&found.components, sizeof found.components);
+    take(&found.euler, sizeof found.euler);
+    take(&found.area, sizeof found.area);
+    for (int d = 0; d < TM_DEFECTS; d++)
+        take(&found.defect[d].count, sizeof found.defect[d].count);
+    return TM_OK;
+}
+
+static tm_status cut_as(const tm_tet_mesh *mesh, const tm_poly_options *o,
+                        tm_error *error)
+{
+    tm_partition partition;
+    tm_poly_report report;
+    const tm_status status = tm_partition_make(&partition, mesh, o, &report, error);
+    if (status == TM_OK)
+        take(partition.cell, mesh->slots * sizeof *partition.cell);
+    tm_partition_free(&partition);
+    return status;
+}
+
+static tm_status cut(const tm_tet_mesh *mesh, tm_error *error)
+{
+    return cut_as(mesh,
+                  &(tm_poly_options){.repair = true,
+                                     .star = TM_STAR_CENTROID,
+                                     .absorb = true,
+                                     .no_swallow = true,
+                                     .threads = 1},
+                  error);
+}
+
+static tm_status cut_compact(const tm_tet_mesh *mesh, tm_error *error)
+{
+    return cut_as(mesh,
+                  &(tm_poly_options){.mode = TM_POLY_COMPACT,
+                                     .cells = 6,
+                                     .repair = true,
+                                     .star = TM_STAR_BALL,
+                                     .threads = 1},
+                  error);
+}
+
+static tm_status make_dual(const tm_tet_mesh *mesh, tm_error *error)
+{
+    tm_dual_blocks made;
+    tm_dual_report report;
+    const tm_dual_options options = {.feature_angle = 30, .convex = true};
+    const tm_status status = tm_dual_make(&made, mesh, &options, &report, error);
+    if (status == TM_OK) {
+        take(made.node.real, 3 * made.node.count * sizeof *made.node.real);
+        take(made.facet.item, made.facet.start[made.facet.count] * sizeof(uint32_t));
+        take(made.cell.item, made.cell.start[made.cell.count] * sizeof(uint32_t));
+    }
+    tm_dual_blocks_free(&made);
+    return status;
+}
+
+static void test_results(void **state)
+{
+    (void)state;
+    static maker *const makers[] = {find_mates, examine, cut, cut_compact, make_dual};
+    const uint64_t begin = 0xcbf29ce484222325;
+    tm_stream stream;
+    tm_tet_mesh mesh;
+    tm_error error = {0};
+    make_mesh(&mesh, &stream, 2, 0.3, true);
+    for (size_t m = 0; m < sizeof makers / sizeof *makers; m++) {
+        allocations = 0;
+        taken = begin;
+        assert_int_equal(makers[m](&mesh, &error), TM_OK);
+        const uint64_t right = taken;
+        const size_t count = allocations;
+        assert_int_not_equal(right, begin);
+        assert_true(count > 2);
+        for (size_t k = 1; k <= 2 * count; k++) {
+            all_later = k > count;
+            allocations = 0;
+            taken = begin;
+            fails_at = all_later ? k - count : k;
+            const tm_status status = makers[m](&mesh, &error);
+            fails_at = 0;
+            assert_true(status == TM_OK ? taken == right : status == TM_ERROR_SYSTEM);
+        }
+    }
+    tm_tet_mesh_free(&mesh);
+    tm_stream_free(&stream);
+}
+
 int main(void)
 {
     random_start();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_improve), cmocka_unit_test(test_size),
-        cmocka_unit_test(test_paths), cmocka_unit_test(test_delaunay)};
+        cmocka_unit_test(test_paths), cmocka_unit_test(test_delaunay),
+        cmocka_unit_test(test_results)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

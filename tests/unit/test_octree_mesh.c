@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Whole meshes: what is sharp at turned boxes, and whether the elements of random solids
- * are valid, fit together, and end on the surface. */
+/* Whole meshes: what is sharp at turned boxes, which of two boxes is worth edges, and
+ * whether the elements of random solids are valid, fit together, and end on the surface.
+ */
 #include "../../lib/element/jens.h"
 #include "../../lib/examine/element_examine.h"
+#include "../../lib/octree/feature/feature_parts.h"
 #include "../../lib/octree/layer/adaptive_refinement.h"
 #include "../../lib/octree/repair/repair_stream.h"
 #include "octree_fixture.h"
@@ -384,11 +386,56 @@ static void test_repair_without_octree(void **state)
     tm_polygon_surface_free(&box);
 }
 
+/* Curves and corners of a cube of this side beside one of side 8 get paths and nodes, or
+ * not; those of the large one always do. */
+static void check_choice(const double at[3], double side, bool wanted)
+{
+    tm_polygon_surface p;
+    tm_surface surface;
+    tm_feature_choice choice;
+    tm_error error;
+    const double large = 8;
+    const tm_surface_options options = {.feature_angle = TM_FEATURE_ANGLE};
+    tm_polygon_surface_init(&p);
+    add_cube(&p, at[0], at[1], at[2], large);
+    add_cube(&p, at[0] + large + 1, at[1] + 1, at[2] + 1, side);
+    assert_ok(tm_surface_build(&surface, &p, &options, &error), &error);
+    assert_int_equal(surface.curves, 2 * BOX_CURVES);
+    assert_int_equal(surface.corners, 2 * BOX_CORNERS);
+    double size[2 * BOX_CURVES];
+    for (size_t c = 0; c < surface.curves; c++)
+        size[c] = 1;
+    assert_ok(tm_feature_choose(&choice, &surface, size, &error), &error);
+    for (size_t c = 0; c < surface.curves; c++) {
+        const double *end = surface.xyz[surface.curve_node[surface.curve_start[c]]];
+        assert_int_equal(choice.curve[c], wanted || end[0] <= at[0] + large);
+    }
+    for (size_t c = 0; c < surface.corners; c++)
+        assert_int_equal(choice.corner[c],
+                         wanted || surface.xyz[surface.corner[c]][0] <= at[0] + large);
+    tm_feature_choice_free(&choice);
+    tm_surface_free(&surface);
+    tm_polygon_surface_free(&p);
+}
+
+/* What is less than two leaves across is left out, wherever it is. */
+static void test_choice(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 27; i++) {
+        const double at[3] = {64.0 * (i % 3 - 1), 64.0 * (i / 3 % 3 - 1),
+                              64.0 * (i / 9 - 1)};
+        check_choice(at, 1.75, false);
+        check_choice(at, 2, true);
+    }
+}
+
 int main(void)
 {
     random_start();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_boxes),
+        cmocka_unit_test(test_choice),
         cmocka_unit_test(test_random),
         cmocka_unit_test(test_resolve),
         cmocka_unit_test(test_repair_without_octree),

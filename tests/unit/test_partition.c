@@ -323,14 +323,50 @@ static void test_partitions(void **state)
     }
 }
 
+static size_t cells_of(const tm_tet_mesh *mesh, const tm_poly_options *o)
+{
+    tm_partition partition;
+    tm_poly_report report;
+    tm_error error;
+    assert_int_equal(tm_partition_make(&partition, mesh, o, &report, &error), TM_OK);
+    const size_t cells = partition.cells;
+    tm_partition_free(&partition);
+    return cells;
+}
+
+/* Cells of few tetrahedra are absorbed, but compact ones of even size. */
+static void test_absorb(void **state)
+{
+    (void)state;
+    for (int round = 0; round < 5; round++) {
+        tm_stream stream;
+        tm_tet_mesh mesh;
+        make_mesh(&mesh, &stream, GRID, 0.3, false);
+        tm_poly_options o = {.repair = true, .threads = 1};
+        const size_t fans = cells_of(&mesh, &o);
+        o.absorb = true;
+        const size_t fewer = cells_of(&mesh, &o);
+        o = (tm_poly_options){.mode = TM_POLY_COMPACT,
+                              .cells = mesh.slots / 5,
+                              .repair = true,
+                              .threads = 1};
+        const size_t even = cells_of(&mesh, &o);
+        o.absorb = true;
+        const size_t spared = cells_of(&mesh, &o);
+        assert_true(2 * fewer < fans);
+        assert_true(3 * spared > 2 * even);
+        tm_tet_mesh_free(&mesh);
+        tm_stream_free(&stream);
+    }
+}
+
 int main(void)
 {
     random_start();
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_simple),
-        cmocka_unit_test(test_number_used_again),
-        cmocka_unit_test(test_sort),
-        cmocka_unit_test(test_partitions),
+        cmocka_unit_test(test_simple), cmocka_unit_test(test_number_used_again),
+        cmocka_unit_test(test_sort),   cmocka_unit_test(test_partitions),
+        cmocka_unit_test(test_absorb),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -97,6 +97,63 @@ static void test_nothing_done(void **state)
     }
 }
 
+/* Moves a node that is inside of a part; its number in the whole, or TM_NONE. */
+static uint32_t move_one(tm_tet_part *part)
+{
+    tm_tet_mesh *mesh = &part->mesh;
+    tm_error error;
+    for (uint32_t v = 0; v < mesh->nodes; v++) {
+        bool inside = true;
+        for (size_t f = 0; f < mesh->faces; f++)
+            for (int i = 0; i < 3; i++)
+                inside = inside && mesh->face[f].node[i] != v;
+        const double old = mesh->xyz[v][0];
+        if (!inside)
+            continue;
+        mesh->xyz[v][0] += 0x1p-10;
+        if (tm_tet_mesh_check(mesh, &error) == TM_OK)
+            return part->node[v];
+        mesh->xyz[v][0] = old;
+    }
+    return TM_NONE;
+}
+
+/* What has changed in a part has changed in the whole, and nothing else. */
+static void test_one_moved(void **state)
+{
+    (void)state;
+    size_t all = 0;
+    for (int round = 0; round < 4 * KINDS; round++) {
+        tm_stream stream;
+        tm_tet_mesh mesh, old = {0};
+        tm_tet_parts parts;
+        tm_error error;
+        make(&mesh, &stream, round % KINDS);
+        assert_int_equal(tm_tet_mesh_copy(&old, &mesh, NULL), TM_OK);
+        assert_int_equal(tm_tet_parts_cut(&parts, &mesh, PART, (unsigned)round, &error),
+                         TM_OK);
+        bool *moved = calloc(mesh.nodes, sizeof *moved);
+        assert_non_null(moved);
+        for (size_t p = 0; p < parts.count; p++) {
+            assert_int_equal(tm_tet_part_take(&parts, p, &mesh, &error), TM_OK);
+            const uint32_t v = move_one(&parts.part[p]);
+            if (v != TM_NONE)
+                moved[v] = true;
+            all += v != TM_NONE;
+        }
+        assert_int_equal(tm_tet_parts_join(&parts, &mesh, 2, &error), TM_OK);
+        assert_int_equal(mesh.nodes, old.nodes);
+        for (uint32_t v = 0; v < old.nodes; v++)
+            if (tm_node_lives(&old, v))
+                assert_true(mesh.xyz[v][0] == old.xyz[v][0] + (moved[v] ? 0x1p-10 : 0));
+        free(moved);
+        tm_tet_mesh_free(&old);
+        tm_tet_mesh_free(&mesh);
+        tm_stream_free(&stream);
+    }
+    assert_true(all > 0);
+}
+
 static double least_sine2(const tm_tet_mesh *mesh)
 {
     double least = 1;
@@ -168,6 +225,7 @@ int main(void)
 {
     random_start();
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_nothing_done),
+                                       cmocka_unit_test(test_one_moved),
                                        cmocka_unit_test(test_improved)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

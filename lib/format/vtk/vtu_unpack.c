@@ -38,7 +38,7 @@ typedef struct blocks {
     const char *packed;
     size_t *begin; /* [count + 1]: in packed */
     char *to;
-    bool *failed; /* [count] */
+    int *done; /* [count]: what zlib says of each */
 } blocks;
 
 static tm_status fail(const source *s, const char *what)
@@ -188,10 +188,10 @@ static void inflate_block(void *context, size_t i)
     const blocks *b = context;
     const size_t size = size_of_block(b, i);
     uLongf got = (uLongf)size;
-    b->failed[i] = uncompress((unsigned char *)b->to + i * b->size, &got,
-                              (const unsigned char *)b->packed + b->begin[i],
-                              (uLong)(b->begin[i + 1] - b->begin[i])) != Z_OK ||
-                   got != size;
+    const int done = uncompress((unsigned char *)b->to + i * b->size, &got,
+                                (const unsigned char *)b->packed + b->begin[i],
+                                (uLong)(b->begin[i + 1] - b->begin[i]));
+    b->done[i] = done == Z_OK && got != size ? Z_DATA_ERROR : done;
 }
 
 /* How many blocks there are, of what sizes; *total is what they unpack to. */
@@ -213,8 +213,8 @@ static tm_status take_sizes(source *s, blocks *b, size_t *total)
     if (b->last > 0)
         *total -= b->size - b->last;
     b->begin = tm_new(b->count + 1, sizeof *b->begin);
-    b->failed = tm_new(b->count, sizeof *b->failed);
-    if (!b->begin || !b->failed)
+    b->done = tm_new(b->count, sizeof *b->done);
+    if (!b->begin || !b->done)
         return tm_fail_memory(s->error);
     b->begin[0] = 0;
     for (size_t i = 0; i < b->count && status == TM_OK; i++) {
@@ -241,8 +241,10 @@ static tm_status inflate_all(source *s, blocks *b, size_t total, unsigned thread
         b->to = numbers->own.byte;
         tm_parallel(threads, b->count, inflate_block, b);
         for (size_t i = 0; i < b->count && status == TM_OK; i++)
-            if (b->failed[i])
-                status = fail(s, "a compressed block is damaged");
+            if (b->done[i] != Z_OK)
+                status = b->done[i] == Z_MEM_ERROR
+                             ? tm_fail_memory(s->error)
+                             : fail(s, "a compressed block is damaged");
     }
     numbers->own.size = total;
     numbers->bytes = numbers->own.byte;
@@ -278,7 +280,7 @@ static tm_status unpack(source *s, unsigned threads, tm_numbers *numbers, size_t
     if (status == TM_OK && b.count > 0)
         status = inflate_all(s, &b, *size, threads, numbers);
     free(b.begin);
-    free(b.failed);
+    free(b.done);
     return status;
 }
 

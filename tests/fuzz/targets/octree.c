@@ -11,8 +11,8 @@
 static void make_octree(tm_octree *octree, const tm_surface *surface)
 {
     tm_error error;
-    tm_octree_rule rule[2] = {{.kind = TM_RULE_SURFACE, .level = random_below(8) ? 1 : 2},
-                              {.kind = TM_RULE_BOX, .level = random_below(3)}};
+    tm_octree_rule rule[2] = {{.kind = TM_RULE_SURFACE, .level = random_below(8) > 6},
+                              {.kind = TM_RULE_BOX, .level = random_below(2)}};
     for (int i = 0; i < 3; i++) {
         const double a = random_between(surface->low[i], surface->high[i]);
         rule[1].low[i] = a;

@@ -17,7 +17,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
         give_up("MPI");
     tm_polygon_surface_init(&p);
     add_random_solid(&p);
-    start_case(&c, &p, 2);
+    start_case(&c, &p, 1);
     damage(&c, random_below(5), random_below(3));
     const tm_repair_options options = {.method = random_below(4) ? TM_REPAIR_FULL
                                                                  : TM_REPAIR_REFINE,
