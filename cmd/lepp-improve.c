@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* lepp-improve: tetrahedra in, better tetrahedra out. */
 #include "common/app/filter.h"
+#include "common/input/mesh_share.h"
 #include "common/input/tet_input.h"
 #include "common/input/tet_set.h"
 #include "common/input/tet_share.h"
@@ -607,7 +608,7 @@ static bool work_together(filter *f, const settings *o, tm_stream *stream, int *
     tm_slices_find(&slices, ".ele", &tets);
     if (!tm_improve_cuts(&o->improve, tets.total, tets.total) ||
         !improve_share(f, o, &slices, &r)) {
-        tet_share_leave(f, &slices, stream);
+        mesh_share_leave(f, &slices, stream);
         return false;
     }
     if (r.changes > 0)
