@@ -258,41 +258,23 @@ static tm_status split_off_surface(maker *m, bool *better, tm_error *error)
     return status;
 }
 
-/* The losses are found by rank 0, which has the skin of all. */
-static tm_status find_losses(const maker *m, const tm_boundary_share *b, tm_error *error)
+/* What of its ghosts a rank needs for that, and later, is as it became. */
+static tm_status find_losses(const maker *m, tm_error *error)
 {
     tm_octree_mesh *mesh = m->mesh;
-    const tm_mesh_share *s = mesh->share;
-    tm_octree_mesh skin = {.report = mesh->report};
-    void *xyz = NULL, *at = NULL, *lost = NULL;
-    size_t own = 0, losts = 0;
-    tm_leaf *list =
-        tm_octree_mesh_lost_leaves(mesh->part, &m->share->octree, m->surface,
-                                   m->share->own_first, m->share->own_past, &own);
-    tm_status status = tm_ranks_enough(list, error);
+    double(*outer)[3] = mesh->assembly.mesh.xyz + mesh->assembly.outer;
+    tm_boundary_share b;
+    tm_status status = tm_boundary_share_find(&b, m->share, &mesh->boundary, error);
     if (status == TM_OK)
-        status = tm_ranks_gather(list, own, sizeof *list, &lost, &losts, error);
+        status = tm_mesh_ghosts_fill(&b.ghosts, mesh->at, sizeof *mesh->at, error);
     if (status == TM_OK)
-        status = tm_skin_gather(&skin.boundary, b, &mesh->boundary, false, error);
+        status = tm_mesh_ghosts_fill(&b.ghosts, outer, sizeof *outer, error);
+    const tm_mesh_own own = {m->share->own_first, m->share->own_past, b.faces.first,
+                             b.faces.past};
     if (status == TM_OK)
-        status = tm_own_gather(s->outer, mesh->assembly.mesh.xyz + mesh->assembly.outer,
-                               sizeof *mesh->assembly.mesh.xyz, false, &xyz, error);
-    if (status == TM_OK)
-        status = tm_own_gather(s->outer, mesh->at, sizeof *mesh->at, false, &at, error);
-    if (status == TM_OK && tm_rank() == 0) {
-        skin.assembly.mesh.xyz = xyz;
-        skin.at = at;
-        status = tm_octree_mesh_find_losses(&skin, &m->share->octree, m->surface,
-                                            m->level, lost, losts, error);
-        mesh->report = skin.report;
-    }
-    status = tm_ranks_agree(status, error);
-    tm_ranks_broadcast(&mesh->report, sizeof mesh->report);
-    tm_interior_boundary_free(&skin.boundary);
-    free(list);
-    free(xyz);
-    free(at);
-    free(lost);
+        status = tm_octree_mesh_find_losses(mesh, &m->share->octree, m->surface, m->level,
+                                            &own, error);
+    tm_boundary_share_free(&b);
     return status;
 }
 
@@ -308,15 +290,7 @@ static tm_status make(maker *m, tm_error *error)
     if (status != TM_OK || *m->alone)
         return status;
     tm_progress_stage(m->plan->progress, "looking for losses");
-    tm_boundary_share boundary;
-    status = tm_boundary_share_find(&boundary, m->share, &m->mesh->boundary, error);
-    if (status == TM_OK)
-        status = find_losses(m, &boundary, error);
-    if (status == TM_OK)
-        status = tm_mesh_ghosts_fill(&boundary.ghosts, m->mesh->at, sizeof *m->mesh->at,
-                                     error);
-    tm_boundary_share_free(&boundary);
-    return status;
+    return find_losses(m, error);
 }
 
 unsigned tm_octree_share_deepest(const tm_octree_share *share)

@@ -273,7 +273,8 @@ tm_status tm_octree_mesh_refine_lost(tm_octree_mesh *mesh, tm_octree *octree,
         free(split);
     }
     tm_progress_stage(progress, "looking for losses");
+    const tm_mesh_own own = {0, octree->leaves, 0, mesh->boundary.faces};
     return status == TM_OK
-               ? tm_octree_mesh_find_losses(mesh, octree, surface, level, NULL, 0, error)
+               ? tm_octree_mesh_find_losses(mesh, octree, surface, level, &own, error)
                : status;
 }

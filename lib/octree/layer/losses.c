@@ -4,6 +4,7 @@
 #include "../../base/array.h"
 #include "../../base/disjoint_sets.h"
 #include "../../geom/vector.h"
+#include "../../ranks/ranks.h"
 #include "../../surface/measure/surface_distance.h"
 #include "../../surface/surface_tree.h"
 
@@ -18,8 +19,10 @@ typedef struct {
     tm_octree_mesh *mesh;
     const tm_octree *octree;
     const tm_surface *surface;
-    unsigned level;      /* smaller leaves are taken for leaves of this one */
-    tm_surface boundary; /* of the mesh, when it is needed: two triangles for each face */
+    unsigned level; /* smaller leaves are taken for leaves of this one */
+    const tm_mesh_own *own;
+    double farthest;     /* that any own face may be from a point of the surface */
+    tm_surface boundary; /* the own faces, when they are needed: two triangles for each */
     uint32_t *hint;      /* [nodes of the surface]: a boundary node close by */
     double *distance; /* [nodes of the surface]: to the mesh, of those that are missed */
 } finder;
@@ -41,22 +44,6 @@ static void half_of(const tm_interior_boundary *boundary, size_t face, int k,
         corner[i] = boundary->face[face][tm_cut_triangles[cut][half][i]];
 }
 
-static tm_status make_boundary(finder *f, tm_error *error)
-{
-    const tm_interior_boundary *boundary = &f->mesh->boundary;
-    const tm_assembly *a = &f->mesh->assembly;
-    uint32_t(*triangle)[3] = tm_new(2 * boundary->faces, sizeof *triangle);
-    if (!triangle)
-        return tm_fail_memory(error);
-    for (size_t i = 0; i < 2 * boundary->faces; i++)
-        half_of(boundary, i / 2, (int)(i % 2), triangle[i]);
-    const tm_status status = tm_surface_of_triangles(
-        &f->boundary, (const double(*)[3])a->mesh.xyz + a->outer, boundary->nodes,
-        (const uint32_t(*)[3])triangle, NULL, 2 * boundary->faces, error);
-    free(triangle);
-    return status;
-}
-
 /* The side of a leaf, or of the one of f->level that it is in. */
 static double side_of(const finder *f, unsigned level)
 {
@@ -70,10 +57,33 @@ static double reach_of(const finder *f, size_t face)
     return missed * fmax(boundary->size[boundary->face[face][0]], side_of(f, f->level));
 }
 
-/* How far a point of the surface is from the mesh; *guess becomes the triangle there. */
+static tm_status make_boundary(finder *f, tm_error *error)
+{
+    const tm_interior_boundary *boundary = &f->mesh->boundary;
+    const tm_assembly *a = &f->mesh->assembly;
+    const size_t first = f->own->first_face, faces = f->own->past_face - first;
+    uint32_t(*triangle)[3] = tm_new(2 * faces, sizeof *triangle);
+    if (!triangle)
+        return tm_fail_memory(error);
+    for (size_t i = 0; i < 2 * faces; i++)
+        half_of(boundary, first + i / 2, (int)(i % 2), triangle[i]);
+    for (size_t i = 0; i < faces; i++)
+        f->farthest = fmax(f->farthest, reach_of(f, first + i));
+    const tm_status status = tm_surface_of_triangles(
+        &f->boundary, (const double(*)[3])a->mesh.xyz + a->outer, boundary->nodes,
+        (const uint32_t(*)[3])triangle, NULL, 2 * faces, error);
+    free(triangle);
+    return status;
+}
+
+/* How far a point of the surface is from the own faces, which are infinitely far where
+ * there is none; *guess becomes the triangle there. */
 static tm_status distance_from(finder *f, const double point[3], uint32_t *guess,
                                double *distance, tm_error *error)
 {
+    *distance = INFINITY;
+    if (f->own->first_face == f->own->past_face)
+        return TM_OK;
     if (!f->boundary.tree) {
         const tm_status status = make_boundary(f, error);
         if (status != TM_OK)
@@ -123,45 +133,94 @@ static void spread_hints(finder *f)
     }
 }
 
-/* Whether a face around its boundary node is close enough to node v of the surface. */
-static bool is_near(const finder *f, uint32_t v)
+/* Whether a point is no farther from a face than it may be. */
+static bool is_in_reach(const finder *f, size_t face, const double point[3])
+{
+    const double reach = reach_of(f, face);
+    for (int k = 0; k < 2; k++) {
+        uint32_t corner[3];
+        double xyz[3][3];
+        half_of(&f->mesh->boundary, face, k, corner);
+        for (int c = 0; c < 3; c++)
+            memcpy(xyz[c], place_of(f, corner[c]), sizeof xyz[c]);
+        if (tm_corners_distance2((const double(*)[3])xyz, point) <= reach * reach)
+            return true;
+    }
+    return false;
+}
+
+/* Whether node v of the surface is in reach of an own face around its boundary node. */
+static bool is_near_hint(const finder *f, uint32_t v)
 {
     const tm_interior_boundary *boundary = &f->mesh->boundary;
     const uint32_t s = f->hint[v];
     if (s == TM_NONE)
         return false;
     for (size_t i = boundary->around_start[s]; i < boundary->around_start[s + 1]; i++) {
-        const double reach = reach_of(f, boundary->around[i]);
-        for (int k = 0; k < 2; k++) {
-            uint32_t corner[3];
-            double xyz[3][3];
-            half_of(boundary, boundary->around[i], k, corner);
-            for (int c = 0; c < 3; c++)
-                memcpy(xyz[c], place_of(f, corner[c]), sizeof xyz[c]);
-            if (tm_corners_distance2((const double(*)[3])xyz, f->surface->xyz[v]) <=
-                reach * reach)
+        const uint32_t face = boundary->around[i];
+        if (face >= f->own->first_face && face < f->own->past_face &&
+            is_in_reach(f, face, f->surface->xyz[v]))
+            return true;
+    }
+    return false;
+}
+
+/* Whether a point is in reach of any own face, by the boxes of these. */
+static bool is_near(const finder *f, const double point[3])
+{
+    const tm_surface_tree *tree = f->boundary.tree;
+    uint32_t stack[TM_TREE_DEPTH], depth = 0;
+    stack[depth++] = 0;
+    while (depth > 0) {
+        const tm_tree_node *box = &tree->node[stack[--depth]];
+        double d2 = 0;
+        for (int i = 0; i < 3; i++) {
+            const double d =
+                fmax(fmax(box->low[i] - point[i], point[i] - box->high[i]), 0);
+            d2 += d * d;
+        }
+        if (d2 > f->farthest * f->farthest)
+            continue;
+        for (uint32_t t = 0; t < box->count; t++)
+            if (is_in_reach(f, f->own->first_face + tree->triangle[box->first + t].id / 2,
+                            point))
                 return true;
+        if (box->count == 0) {
+            stack[depth++] = box->first;
+            stack[depth++] = box->first + 1;
         }
     }
     return false;
 }
 
-/* Measures from each node of the surface: a tip has one at its end. */
-static tm_status measure_nodes(finder *f, tm_error *error)
+/* The distance of those nodes of the surface that no own face is in reach of; 0 of the
+ * others. */
+static tm_status measure_far(finder *f, tm_error *error)
 {
     uint32_t guess = TM_NONE;
-    spread_hints(f);
-    for (uint32_t v = 0; v < f->surface->nodes; v++) {
-        double d;
-        if (is_near(f, v))
+    tm_status status = TM_OK;
+    for (uint32_t v = 0; status == TM_OK && v < f->surface->nodes; v++) {
+        const double *point = f->surface->xyz[v];
+        if (f->distance[v] == 0)
             continue;
-        const tm_status status = distance_from(f, f->surface->xyz[v], &guess, &d, error);
-        if (status != TM_OK)
-            return status;
-        if (d > reach_of(f, guess / 2))
-            f->distance[v] = d;
+        status = distance_from(f, point, &guess, &f->distance[v], error);
+        if (status == TM_OK && f->distance[v] <= f->farthest && is_near(f, point))
+            f->distance[v] = 0;
     }
-    return TM_OK;
+    return status;
+}
+
+/* Measures from each node of the surface: a tip has one at its end. It is missed where
+ * no face is in reach: most are near one that is easily found. */
+static tm_status measure_nodes(finder *f, tm_error *error)
+{
+    spread_hints(f);
+    for (uint32_t v = 0; v < f->surface->nodes; v++)
+        f->distance[v] = is_near_hint(f, v) ? 0 : INFINITY;
+    tm_ranks_least(f->distance, f->surface->nodes);
+    const tm_status status = tm_ranks_agree(measure_far(f, error), error);
+    tm_ranks_least(f->distance, f->surface->nodes);
+    return status;
 }
 
 /* Counts what hangs together of the nodes that are missed. */
@@ -201,43 +260,61 @@ static bool is_same(const finder *f, const tm_leaf *a, const tm_leaf *b)
     return a->level > f->level && b->level > f->level;
 }
 
+/* How far the surface at the centre of each leaf is from the mesh. */
+static tm_status measure_leaves(finder *f, const tm_leaf *lost, size_t count,
+                                double (*place)[3], double *distance, tm_error *error)
+{
+    uint32_t guess = TM_NONE;
+    tm_surface_point at = {.triangle = TM_NONE};
+    tm_status status = TM_OK;
+    for (size_t l = 0; status == TM_OK && l < count; l++) {
+        double centre[3];
+        tm_leaf_centre(f->octree, &lost[l], centre);
+        tm_surface_closest(f->surface, centre, TM_NONE, &at);
+        memcpy(place[l], at.xyz, sizeof place[l]);
+        status = distance_from(f, at.xyz, &guess, &distance[l], error);
+    }
+    status = tm_ranks_agree(status, error);
+    tm_ranks_least(distance, count);
+    return status;
+}
+
 /* Of these leaves, without boundary close by, those whose surface is missed. */
 static tm_status count_leaves(finder *f, const tm_leaf *lost, size_t count,
                               tm_error *error)
 {
     tm_octree_mesh_report *r = &f->mesh->report;
     const tm_leaf *last = NULL;
-    uint32_t guess = TM_NONE;
-    tm_surface_point at = {.triangle = TM_NONE};
-    for (size_t l = 0; l < count; l++) {
-        const tm_leaf *leaf = &lost[l];
-        if (last && is_same(f, last, leaf))
-            continue;
-        double centre[3], distance;
-        tm_leaf_centre(f->octree, leaf, centre);
-        tm_surface_closest(f->surface, centre, TM_NONE, &at);
-        const tm_status status = distance_from(f, at.xyz, &guess, &distance, error);
-        if (status != TM_OK)
-            return status;
-        if (distance <= missed * side_of(f, leaf->level))
+    double(*place)[3] = tm_new(count, sizeof *place);
+    double *distance = tm_new(count, sizeof *distance);
+    tm_status status = tm_ranks_enough(place && distance, error);
+    if (status == TM_OK)
+        status = measure_leaves(f, lost, count, place, distance, error);
+    for (size_t l = 0; status == TM_OK && l < count; l++) {
+        if (distance[l] <= missed * side_of(f, lost[l].level) ||
+            (last && is_same(f, last, &lost[l])))
             continue;
         if (r->lost++ == 0)
-            memcpy(r->lost_at, at.xyz, sizeof at.xyz);
-        last = leaf;
+            memcpy(r->lost_at, place[l], sizeof r->lost_at);
+        last = &lost[l];
     }
-    return TM_OK;
+    free(place);
+    free(distance);
+    return status;
 }
 
-tm_leaf *tm_octree_mesh_lost_leaves(const tm_interior *interior, const tm_octree *octree,
-                                    const tm_surface *surface, size_t first, size_t past,
-                                    size_t *count)
+/* The own leaves with surface but no boundary close by; NULL where memory is out. */
+static tm_leaf *list_lost(const finder *f, size_t *count)
 {
+    const tm_octree *octree = f->octree;
+    const tm_interior *interior = f->mesh->part;
     uint8_t *lost = tm_new(octree->leaves, sizeof *lost);
-    tm_leaf *list = lost ? tm_new(tm_interior_find_lost(interior, octree, surface, lost),
-                                  sizeof *list)
-                         : NULL;
+    tm_leaf *list =
+        lost ? tm_new(tm_interior_find_lost(interior, octree, f->surface, lost),
+                      sizeof *list)
+             : NULL;
     *count = 0;
-    for (size_t l = first; list && l < past; l++)
+    for (size_t l = f->own->first_leaf; list && l < f->own->past_leaf; l++)
         if (lost[l])
             list[(*count)++] = octree->leaf[l];
     free(lost);
@@ -247,11 +324,15 @@ tm_leaf *tm_octree_mesh_lost_leaves(const tm_interior *interior, const tm_octree
 static tm_status find_lost(finder *f, tm_error *error)
 {
     size_t count;
-    tm_leaf *lost = tm_octree_mesh_lost_leaves(f->mesh->part, f->octree, f->surface, 0,
-                                               f->octree->leaves, &count);
-    const tm_status status =
-        lost ? count_leaves(f, lost, count, error) : tm_fail_memory(error);
+    void *all = NULL;
+    tm_leaf *lost = list_lost(f, &count);
+    tm_status status = tm_ranks_enough(lost, error);
+    if (status == TM_OK)
+        status = tm_ranks_share(lost, count, sizeof *lost, &all, &count, error);
+    if (status == TM_OK)
+        status = count_leaves(f, all, count, error);
     free(lost);
+    free(all);
     return status;
 }
 
@@ -260,42 +341,43 @@ static tm_status find_dropped(finder *f, tm_error *error)
 {
     const tm_surface *s = f->surface;
     tm_octree_mesh_report *r = &f->mesh->report;
-    bool *there = calloc(s->components + 1, sizeof *there);
-    if (!there)
-        return tm_fail_memory(error);
-    for (size_t i = 0; i < f->mesh->boundary.nodes; i++)
-        there[s->shell[f->mesh->at[i].triangle]] = true;
-    for (size_t t = 0; t < s->triangles; t++) {
+    size_t *there = calloc(s->components + 1, sizeof *there);
+    const tm_status status = tm_ranks_enough(there, error);
+    for (size_t i = 0; status == TM_OK && i < f->mesh->boundary.nodes; i++)
+        there[s->shell[f->mesh->at[i].triangle]] = 1;
+    if (status == TM_OK)
+        tm_ranks_sum(there, s->components);
+    for (size_t t = 0; status == TM_OK && t < s->triangles; t++) {
         if (there[s->shell[t]])
             continue;
-        there[s->shell[t]] = true;
+        there[s->shell[t]] = 1;
         if (r->dropped++ == 0)
             memcpy(r->dropped_at, s->xyz[s->triangle[t][0]], sizeof r->dropped_at);
     }
     free(there);
-    return TM_OK;
+    return status;
 }
 
 tm_status tm_octree_mesh_find_losses(tm_octree_mesh *mesh, const tm_octree *octree,
                                      const tm_surface *surface, unsigned level,
-                                     const tm_leaf *lost, size_t losts, tm_error *error)
+                                     const tm_mesh_own *own, tm_error *error)
 {
     finder f = {.mesh = mesh,
                 .octree = octree,
                 .surface = surface,
                 .level = level,
+                .own = own,
                 .hint = tm_new(surface->nodes, sizeof *f.hint),
                 .distance = calloc(surface->nodes + 1, sizeof *f.distance)};
-    tm_status status = f.hint && f.distance ? TM_OK : tm_fail_memory(error);
+    tm_status status = tm_ranks_enough(f.hint && f.distance, error);
     if (status == TM_OK)
         status = find_dropped(&f, error);
     if (status == TM_OK && !surface->by_winding) {
         status = measure_nodes(&f, error);
         if (status == TM_OK)
-            status = count_rounded(&f, error);
+            status = tm_ranks_agree(count_rounded(&f, error), error);
         if (status == TM_OK)
-            status =
-                mesh->part ? find_lost(&f, error) : count_leaves(&f, lost, losts, error);
+            status = find_lost(&f, error);
     }
     tm_surface_free(&f.boundary);
     free(f.hint);

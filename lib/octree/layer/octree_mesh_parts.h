@@ -88,22 +88,22 @@ tm_status tm_lattice_points(const tm_assembly *assembly, const tm_octree *octree
 
 /* losses.c: what of the surface the mesh misses. */
 
-/* Fills lost, rounded and dropped of the report, which are 0 before: by the distance to
- * the boundary of the mesh, in sides of the leaves there, of which those below `level`
- * are taken for such of it. Only `dropped` where the inside is by the winding number:
- * there surface may be within the mesh. `lost` are so many leaves without boundary close
- * by, which a mesh that has no interior must be told. TM_ERROR_SYSTEM where memory is
- * out. O(n log n).
+/* What is this rank's of a mesh that ranks have parts of: all leaves of the octree and
+ * all faces of the interior boundary of a mesh of one process. */
+typedef struct tm_mesh_own {
+    size_t first_leaf, past_leaf, first_face, past_face;
+} tm_mesh_own;
+
+/* Fills lost, rounded and dropped of the report, which are 0 before, by all ranks
+ * together: nodes of the surface that no face is in reach of, by the sides of the leaves
+ * there, of which those below `level` are taken for such of it; and leaves with surface
+ * but no boundary close by. Only `dropped` where the inside is by the winding number:
+ * there surface may be within the mesh. Places of all nodes of own faces are to be known.
+ * TM_ERROR_SYSTEM where memory is out. O(n log n).
  */
 tm_status tm_octree_mesh_find_losses(tm_octree_mesh *mesh, const tm_octree *octree,
                                      const tm_surface *surface, unsigned level,
-                                     const tm_leaf *lost, size_t losts, tm_error *error);
-
-/* Of leaves [first, past) those without boundary close by (tm_interior_find_lost()), to
- * be freed; NULL where memory is out. */
-tm_leaf *tm_octree_mesh_lost_leaves(const tm_interior *interior, const tm_octree *octree,
-                                    const tm_surface *surface, size_t first, size_t past,
-                                    size_t *count);
+                                     const tm_mesh_own *own, tm_error *error);
 
 /* untangling.c: the last step of the mesh: no element is inverted. */
 

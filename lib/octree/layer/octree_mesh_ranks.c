@@ -224,10 +224,9 @@ static tm_status find_features(maker *m, tm_error *error)
     status = tm_ranks_agree(status, error);
     if (status != TM_OK || m->surface->corners + m->surface->curves == 0)
         return status;
-    status = tm_skin_gather(&skin, &m->boundary, &mesh->boundary, true, error);
+    status = tm_skin_share(&skin, &m->boundary, &mesh->boundary, error);
     if (status == TM_OK)
-        status = tm_own_gather(m->boundary.nodes, mesh->at, sizeof *mesh->at, true, &at,
-                               error);
+        status = tm_own_share(m->boundary.nodes, mesh->at, sizeof *mesh->at, &at, error);
     if (status == TM_OK)
         status = tm_ranks_agree(tm_feature_find(&feature, &skin, m->surface, at, error),
                                 error);

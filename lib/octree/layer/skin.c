@@ -71,19 +71,16 @@ void tm_boundary_share_free(tm_boundary_share *s)
     *s = (tm_boundary_share){0};
 }
 
-tm_status tm_own_gather(tm_own_range own, const void *items, size_t size, bool on_all,
-                        void **all, tm_error *error)
+tm_status tm_own_share(tm_own_range own, const void *items, size_t size, void **all,
+                       tm_error *error)
 {
     const char *from = (const char *)items + own.first * size;
-    const size_t count = own.past - own.first;
-    return on_all ? tm_ranks_share(from, count, size, all, NULL, error)
-                  : tm_ranks_gather(from, count, size, all, NULL, error);
+    return tm_ranks_share(from, own.past - own.first, size, all, NULL, error);
 }
 
 /* The faces by the numbers of their nodes. */
-static tm_status gather_faces(tm_interior_boundary *skin, const tm_boundary_share *s,
-                              const tm_interior_boundary *boundary, bool on_all,
-                              tm_error *error)
+static tm_status share_faces(tm_interior_boundary *skin, const tm_boundary_share *s,
+                             const tm_interior_boundary *boundary, tm_error *error)
 {
     const size_t count = s->faces.past - s->faces.first;
     uint32_t(*face)[4] = tm_new(count, sizeof *face);
@@ -95,20 +92,19 @@ static tm_status gather_faces(tm_interior_boundary *skin, const tm_boundary_shar
             face[f][i] = n == TM_NONE ? n : s->number[n];
         }
     if (status == TM_OK)
-        status = tm_own_gather((tm_own_range){.past = count}, face, sizeof *face, on_all,
-                               &faces, error);
+        status = tm_own_share((tm_own_range){.past = count}, face, sizeof *face, &faces,
+                              error);
     if (status == TM_OK)
-        status = tm_own_gather(s->faces, boundary->cut, sizeof *boundary->cut, on_all,
-                               &cut, error);
+        status =
+            tm_own_share(s->faces, boundary->cut, sizeof *boundary->cut, &cut, error);
     free(face);
     skin->face = faces;
     skin->cut = cut;
     return status;
 }
 
-tm_status tm_skin_gather(tm_interior_boundary *skin, const tm_boundary_share *s,
-                         const tm_interior_boundary *boundary, bool on_all,
-                         tm_error *error)
+tm_status tm_skin_share(tm_interior_boundary *skin, const tm_boundary_share *s,
+                        const tm_interior_boundary *boundary, tm_error *error)
 {
     double coarsest = boundary->faces > 0 ? boundary->coarsest : boundary->finest;
     void *grid = NULL, *size = NULL;
@@ -117,19 +113,17 @@ tm_status tm_skin_gather(tm_interior_boundary *skin, const tm_boundary_share *s,
                                    .finest = boundary->finest,
                                    .coarsest = (unsigned)coarsest};
     memcpy(skin->low, boundary->low, sizeof skin->low);
-    tm_status status = tm_own_gather(s->nodes, boundary->grid, sizeof *boundary->grid,
-                                     on_all, &grid, error);
+    tm_status status =
+        tm_own_share(s->nodes, boundary->grid, sizeof *boundary->grid, &grid, error);
     if (status == TM_OK)
-        status = tm_own_gather(s->nodes, boundary->size, sizeof *boundary->size, on_all,
-                               &size, error);
+        status =
+            tm_own_share(s->nodes, boundary->size, sizeof *boundary->size, &size, error);
     if (status == TM_OK)
-        status = gather_faces(skin, s, boundary, on_all, error);
+        status = share_faces(skin, s, boundary, error);
     skin->grid = grid;
     skin->size = size;
-    if (on_all || tm_rank() == 0) {
-        skin->nodes = s->nodes.all;
-        skin->faces = s->faces.all;
-    }
+    skin->nodes = s->nodes.all;
+    skin->faces = s->faces.all;
     if (status == TM_OK)
         status = tm_interior_boundary_find_around(skin, error);
     return tm_ranks_agree(status, error);

@@ -21,14 +21,13 @@ tm_status tm_boundary_share_find(tm_boundary_share *share, const tm_octree_share
                                  const tm_interior_boundary *boundary, tm_error *error);
 void tm_boundary_share_free(tm_boundary_share *share);
 
-/* The whole one, without what only an octree has (grid_node, leaf, piece), on all ranks
- * or on rank 0; others have one of nothing then. */
-tm_status tm_skin_gather(tm_interior_boundary *skin, const tm_boundary_share *share,
-                         const tm_interior_boundary *boundary, bool on_all,
-                         tm_error *error);
+/* The whole one, without what only an octree has (grid_node, leaf, piece), on all ranks.
+ */
+tm_status tm_skin_share(tm_interior_boundary *skin, const tm_boundary_share *share,
+                        const tm_interior_boundary *boundary, tm_error *error);
 
-/* Of own items, `size` bytes each, of all ranks: as above, *all to be freed. */
-tm_status tm_own_gather(tm_own_range own, const void *items, size_t size, bool on_all,
-                        void **all, tm_error *error);
+/* Of own items, `size` bytes each, of all ranks: *all, on all ranks, to be freed. */
+tm_status tm_own_share(tm_own_range own, const void *items, size_t size, void **all,
+                       tm_error *error);
 
 #endif

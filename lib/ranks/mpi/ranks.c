@@ -8,6 +8,7 @@
 #include <mpi.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 enum { PIECE = 1 << 30, TAG = 7 };
 
@@ -56,26 +57,60 @@ void tm_ranks_end(int status)
     abort(); /* MPI_Abort() does not return */
 }
 
+/* Waits, and soon sleeps while it does: MPI's own waiting takes a core that other ranks
+ * and threads may have use for. */
+static void wait_with(MPI_Request *request, MPI_Status *status)
+{
+    const struct timespec nap = {.tv_nsec = 20000};
+    const unsigned awake = 100; /* looks */
+    int done = 0;
+    for (unsigned looks = 0;; looks++) {
+        MPI_Test(request, &done, status);
+        if (done)
+            return;
+        if (looks >= awake)
+            nanosleep(&nap, NULL);
+    }
+}
+
+static void wait_for(MPI_Request *request)
+{
+    wait_with(request, MPI_STATUS_IGNORE);
+}
+
+static void broadcast(void *bytes, size_t size, int from)
+{
+    for (size_t at = 0; at < size && world.count > 1; at += PIECE) {
+        MPI_Request request;
+        MPI_Ibcast((char *)bytes + at, (int)(size - at < PIECE ? size - at : PIECE),
+                   MPI_BYTE, from, MPI_COMM_WORLD, &request);
+        wait_for(&request);
+    }
+}
+
+static void reduce(void *value, size_t count, MPI_Datatype type, MPI_Op op)
+{
+    MPI_Request request;
+    if (world.count == 1)
+        return;
+    MPI_Iallreduce(MPI_IN_PLACE, value, (int)count, type, op, MPI_COMM_WORLD, &request);
+    wait_for(&request);
+}
+
 tm_status tm_ranks_first_error(tm_status status, tm_error *error)
 {
     int first = status == TM_OK ? world.count : world.rank;
     if (world.count == 1)
         return status;
-    MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+    reduce(&first, 1, MPI_INT, MPI_MIN);
     if (first == world.count)
         return TM_OK;
     int of_all = (int)status;
     tm_error cause = tm_error_of(status, error);
-    MPI_Bcast(&of_all, 1, MPI_INT, first, MPI_COMM_WORLD);
-    MPI_Bcast(&cause, (int)sizeof cause, MPI_BYTE, first, MPI_COMM_WORLD);
+    broadcast(&of_all, sizeof of_all, first);
+    broadcast(&cause, sizeof cause, first);
     cause.status = (tm_status)of_all;
     return tm_fail_as(error, &cause);
-}
-
-static void reduce(void *value, size_t count, MPI_Datatype type, MPI_Op op)
-{
-    if (world.count > 1)
-        MPI_Allreduce(MPI_IN_PLACE, value, (int)count, type, op, MPI_COMM_WORLD);
 }
 
 void tm_ranks_sum(size_t *value, size_t count)
@@ -107,19 +142,19 @@ size_t tm_ranks_before(size_t value, size_t *all)
         *all = value;
     if (world.count == 1)
         return 0;
-    MPI_Scan(&value, &sum, 1, MPI_UNSIGNED_LONG, MPI_SUM, MPI_COMM_WORLD);
+    MPI_Request request;
+    MPI_Iscan(&value, &sum, 1, MPI_UNSIGNED_LONG, MPI_SUM, MPI_COMM_WORLD, &request);
+    wait_for(&request);
     if (all) {
         *all = sum;
-        MPI_Bcast(all, 1, MPI_UNSIGNED_LONG, world.count - 1, MPI_COMM_WORLD);
+        broadcast(all, sizeof *all, world.count - 1);
     }
     return sum - value;
 }
 
 void tm_ranks_broadcast(void *bytes, size_t size)
 {
-    for (size_t at = 0; at < size && world.count > 1; at += PIECE)
-        MPI_Bcast((char *)bytes + at, (int)(size - at < PIECE ? size - at : PIECE),
-                  MPI_BYTE, 0, MPI_COMM_WORLD);
+    broadcast(bytes, size, 0);
 }
 
 /* Messages under way. */
@@ -147,10 +182,10 @@ static void begin(messages *m, char *bytes, size_t size, int other, bool send)
     }
 }
 
-static void wait_for(const messages *m)
+static void wait_for_all(const messages *m)
 {
     for (size_t i = 0; i < m->count; i++)
-        MPI_Wait(&m->request[i], MPI_STATUS_IGNORE);
+        wait_for(&m->request[i]);
 }
 
 /* The same where got_count and the room for what comes are there. */
@@ -176,7 +211,7 @@ static void send_and_receive(const char *send, const size_t *send_count, char *g
             memcpy(from, to, bytes);
         to += bytes;
     }
-    wait_for(m);
+    wait_for_all(m);
 }
 
 tm_status tm_ranks_exchange(const void *send, const size_t *send_count, size_t size,
@@ -193,9 +228,12 @@ tm_status tm_ranks_exchange(const void *send, const size_t *send_count, size_t s
     size_t *from = to + count, items = 0, pieces = 0;
     memcpy(to, send_count, count * sizeof *to);
     from[0] = to[0];
-    if (count > 1)
-        MPI_Alltoall(to, 1, MPI_UNSIGNED_LONG, from, 1, MPI_UNSIGNED_LONG,
-                     MPI_COMM_WORLD);
+    if (count > 1) {
+        MPI_Request request;
+        MPI_Ialltoall(to, 1, MPI_UNSIGNED_LONG, from, 1, MPI_UNSIGNED_LONG,
+                      MPI_COMM_WORLD, &request);
+        wait_for(&request);
+    }
     for (unsigned r = 0; r < count; r++) {
         items += from[r];
         pieces += pieces_of(to[r] * size) + pieces_of(from[r] * size);
@@ -231,9 +269,12 @@ static tm_status collect(const void *mine, size_t count, size_t size, bool share
         return tm_fail_memory(error);
     }
     counts[0] = count;
-    if (ranks > 1)
-        MPI_Allgather(&count, 1, MPI_UNSIGNED_LONG, counts, 1, MPI_UNSIGNED_LONG,
-                      MPI_COMM_WORLD);
+    if (ranks > 1) {
+        MPI_Request request;
+        MPI_Iallgather(&count, 1, MPI_UNSIGNED_LONG, counts, 1, MPI_UNSIGNED_LONG,
+                       MPI_COMM_WORLD, &request);
+        wait_for(&request);
+    }
     size_t pieces = 0;
     for (unsigned r = 0; r < ranks; r++) {
         sum += counts[r];
@@ -257,7 +298,7 @@ static tm_status collect(const void *mine, size_t count, size_t size, bool share
                 begin(&m, (char *)mine, count * size, (int)r, true);
         if (receives && count > 0)
             memcpy(to + before * size, mine, count * size);
-        wait_for(&m);
+        wait_for_all(&m);
     }
     *all = to;
     free(counts);
@@ -279,7 +320,9 @@ tm_status tm_ranks_share(const void *mine, size_t count, size_t size, void **all
 
 void tm_ranks_send(unsigned to, const void *bytes, size_t size)
 {
-    MPI_Send(bytes, (int)size, MPI_BYTE, (int)to, TAG, MPI_COMM_WORLD);
+    MPI_Request request;
+    MPI_Isend(bytes, (int)size, MPI_BYTE, (int)to, TAG, MPI_COMM_WORLD, &request);
+    wait_for(&request);
     world.sent.messages++;
     world.sent.bytes += size;
 }
@@ -288,7 +331,9 @@ void tm_ranks_receive(unsigned from, void *bytes, size_t room, size_t *size)
 {
     MPI_Status status;
     int got = 0;
-    MPI_Recv(bytes, (int)room, MPI_BYTE, (int)from, TAG, MPI_COMM_WORLD, &status);
+    MPI_Request request;
+    MPI_Irecv(bytes, (int)room, MPI_BYTE, (int)from, TAG, MPI_COMM_WORLD, &request);
+    wait_with(&request, &status);
     MPI_Get_count(&status, MPI_BYTE, &got);
     *size = (size_t)got;
 }
