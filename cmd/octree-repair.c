@@ -12,6 +12,7 @@
 #include "../lib/format/mesh_format.h"
 #include "../lib/format/oct.h"
 #include "../lib/format/vtk/vtk.h"
+#include "../lib/octree/forest/mpi_start.h"
 #include "../lib/octree/shared_repair/repair_share.h"
 #include "../lib/octree/repair/repair.h"
 #include "../lib/octree/repair/repair_forced.h"
@@ -564,6 +565,14 @@ static bool repair_share(program *p, tm_repair_share *share, size_t *forced)
     return can;
 }
 
+/* Rank 0 goes on alone; p4est starts as long as there is MPI. */
+static void leave(const program *p, tm_slices *slices, tm_stream *stream)
+{
+    tm_error error;
+    filter_agree(&p->f, tm_mpi_start(&error), &error);
+    mesh_share_leave(&p->f, slices, stream);
+}
+
 /* The work of ranks together, to its end; or *stream is what rank 0 goes on with alone.
  */
 static bool work_together(program *p, tm_stream *stream)
@@ -586,7 +595,7 @@ static bool work_together(program *p, tm_stream *stream)
         filter_write_slices(&p->f, &slices, "%zu elements of %zu, bad 0 of %zu", elements,
                             elements, bad - forced);
     else
-        mesh_share_leave(&p->f, &slices, stream);
+        leave(p, &slices, stream);
     if (can)
         tm_slices_free(&slices);
     return can;
