@@ -14,6 +14,7 @@
 #include "../lib/format/vtk/vtk.h"
 #include "../lib/octree/forest/mpi_start.h"
 #include "../lib/octree/shared_repair/repair_share.h"
+#include "../lib/ranks/ranks.h"
 #include "../lib/octree/repair/repair.h"
 #include "../lib/octree/repair/repair_forced.h"
 #include "../lib/octree/repair/repair_shape.h"
@@ -589,7 +590,7 @@ static bool work_together(program *p, tm_stream *stream)
                                       &can, &error),
                  &error);
     can = can && repair_share(p, &share, &forced);
-    const size_t elements = share.elements.total, bad = share.score.bad;
+    const size_t elements = share.elements, bad = share.score.bad;
     tm_repair_share_free(&share);
     if (can)
         filter_write_slices(&p->f, &slices, "%zu elements of %zu, bad 0 of %zu", elements,

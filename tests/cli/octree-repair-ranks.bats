@@ -78,7 +78,7 @@ together() {
     same_on "$meshes/spoiled.tm" 3 7 -- -t 0.1
     together
     run -0 jens-stats --fail-below 0.1 --certify many.tm
-    ! grep -q '^[0-9]* [^ ]* [^ ]* [^ ]* -1$' many.tm
+    run ! grep -q '^[0-9]* [^ ]* [^ ]* [^ ]* -1$' many.tm
     awk '/^\.node/ { nodes = 1; print; getline; print $1, 3, 0, 0; next }
         /^\.mix/ { nodes = 0 }
         nodes { print $1, $2, $3, $4; next }

@@ -37,15 +37,14 @@ static tm_status measure(tm_repair_share *s, double threshold, tm_error *error)
     tm_repair_state state = {.mesh = s->mesh};
     state.rule = calloc(s->mesh.nodes + 1, sizeof *state.rule);
     const tm_status status = tm_ranks_enough(state.rule, error);
-    if (status != TM_OK)
-        return status;
-    s->score = tm_repair_measure(&state, threshold);
+    if (status == TM_OK)
+        s->score = tm_repair_measure(&state, threshold);
     free(state.rule);
     tm_ranks_sum(&s->score.invalid, 1);
     tm_ranks_sum(&s->score.bad, 1);
     tm_ranks_least(&s->score.worst, 1);
     tm_ranks_least(&s->score.least, 1);
-    return TM_OK;
+    return status;
 }
 
 static bool has_node_twice(const tm_block *mix)
@@ -69,8 +68,8 @@ tm_status tm_repair_share_take(tm_repair_share *share, tm_slices *slices,
            !tm_ranks_any(has_node_twice(share->mix));
     if (!*can)
         return TM_OK;
-    share->nodes = tm_rows_of(node.total);
-    share->elements = tm_rows_of(mix.total);
+    share->nodes = node.total;
+    share->elements = mix.total;
     const tm_status status = take_elements(share, error);
     return status == TM_OK ? measure(share, threshold, error) : status;
 }
@@ -101,6 +100,7 @@ static tm_status put_boundary(tm_post *post, const tm_repair_share *s,
                                 .start = (size_t *)part->view.start,
                                 .item = (uint32_t *)part->view.item,
                                 .threads = s->mesh.threads};
+    const tm_rows rows = tm_rows_of(s->nodes);
     uint32_t *face;
     size_t faces;
     const tm_status status = tm_mixed_boundary_faces(&mesh, &face, &faces, error);
@@ -113,10 +113,9 @@ static tm_status put_boundary(tm_post *post, const tm_repair_share *s,
         uint32_t least = TM_NONE;
         for (size_t i = 0; i < k; i++)
             least = item[corner[i]] < least ? item[corner[i]] : least;
-        for (size_t i = 0; i < k && tm_rows_have(&s->nodes, part->nodes.number[least]);
-             i++) {
+        for (size_t i = 0; i < k && tm_rows_have(&rows, part->nodes.number[least]); i++) {
             const uint32_t n = part->nodes.number[item[corner[i]]];
-            tm_post_put(post, tm_rows_owner(&s->nodes, n), &n, 1);
+            tm_post_put(post, tm_rows_owner(&rows, n), &n, 1);
         }
     }
     free(face);
@@ -127,11 +126,12 @@ static tm_status put_boundary(tm_post *post, const tm_repair_share *s,
 static tm_status mark_posted(const tm_repair_share *s, tm_post *post, bool *where,
                              tm_error *error)
 {
+    const size_t before = tm_rows_of(s->nodes).first;
     uint32_t *got;
     size_t count;
     const tm_status status = tm_post_deliver(post, &got, &count, error);
     for (size_t i = 0; status == TM_OK && i < count; i++)
-        where[got[i] - s->nodes.first] = true;
+        where[got[i] - before] = true;
     free(got);
     return status;
 }
@@ -143,8 +143,8 @@ static tm_status make_part(tm_repair_share *s, tm_element_part *part, tm_error *
     tm_mixed_mesh *mesh = &s->mesh;
     const tm_element_slices slices = {
         .own = {.elements = mesh->elements, .start = mesh->start, .item = mesh->item},
-        .nodes = s->nodes.total,
-        .elements = s->elements.total};
+        .nodes = s->nodes,
+        .elements = s->elements};
     int8_t *sign = calloc(mesh->elements + 1, sizeof *sign);
     tm_status status = tm_ranks_enough(sign, error);
     give_back(s);
@@ -161,7 +161,7 @@ static tm_status make_part(tm_repair_share *s, tm_element_part *part, tm_error *
     return status;
 }
 
-/* Marks the nodes of the boundary: where[nodes.count]. */
+/* Marks the nodes of the boundary: where[rows of .node]. */
 static tm_status find_boundary(tm_repair_share *s, bool *where, tm_error *error)
 {
     tm_element_part part = {0};
@@ -178,9 +178,9 @@ tm_status tm_repair_share_prepare(tm_repair_share *share, const tm_surface *surf
 {
     const tm_block *node = share->node;
     const double(*xyz)[3] = (const double(*)[3])node->real;
-    bool *where = calloc(share->nodes.count + 1, sizeof *where);
-    share->rule = tm_new(share->nodes.count, sizeof *share->rule);
-    share->on = tm_new(share->nodes.count, sizeof *share->on);
+    bool *where = calloc(node->count + 1, sizeof *where);
+    share->rule = tm_new(node->count, sizeof *share->rule);
+    share->on = tm_new(node->count, sizeof *share->on);
     tm_status status = tm_ranks_enough(where && share->rule && share->on, error);
     if (status == TM_OK)
         status = find_boundary(share, where, error);
@@ -189,12 +189,12 @@ tm_status tm_repair_share_prepare(tm_repair_share *share, const tm_surface *surf
     *can = share->attributed || share->mix->attributes == 0;
     if (status == TM_OK && *can)
         status = tm_ranks_agree(
-            tm_repair_find_rules(surface, share->nodes.count, xyz,
+            tm_repair_find_rules(surface, node->count, xyz,
                                  share->attributed ? node->attribute : NULL, where,
                                  share->rule, share->on, error),
             error);
     free(where);
-    for (size_t v = 0; status == TM_OK && *can && v < share->nodes.count; v++)
+    for (size_t v = 0; status == TM_OK && *can && v < node->count; v++)
         share->score.off_surface += share->rule[v].off_surface;
     tm_ranks_sum(&share->score.off_surface, 1);
     return status;

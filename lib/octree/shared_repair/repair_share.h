@@ -6,7 +6,6 @@
 #define TM_REPAIR_REPAIR_SHARE_H
 
 #include "../../base/extern_c.h"
-#include "../../mesh/ranks/rows.h"
 #include "../../stream/ranks/slices.h"
 #include "../repair/repair.h"
 
@@ -15,13 +14,13 @@ TM_EXTERN_C_BEGIN
 typedef struct tm_repair_share {
     tm_slices *slices;
     tm_block *node, *mix;
-    tm_rows nodes, elements; /* of these blocks, that this rank has */
+    size_t nodes, elements; /* of all ranks */
     tm_mixed_mesh mesh; /* its elements, borrowed, with their nodes, whoever has these */
     uint32_t *number;   /* [mesh.nodes]: in the stream, ascending */
     tm_repair_score score; /* of the whole mesh; no average */
     bool attributed;       /* the attribute of .node says where nodes are */
-    tm_node_rule *rule;    /* [nodes.count]: of the nodes that this rank has */
-    uint8_t *on;           /* [nodes.count] */
+    tm_node_rule *rule;    /* [rows of .node]: of the nodes that this rank has */
+    uint8_t *on;           /* [rows of .node] */
 } tm_repair_share;
 
 /* Takes the blocks .node and .mix, whose elements name other nodes until it is freed, and

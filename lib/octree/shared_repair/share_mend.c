@@ -4,6 +4,7 @@
 #include "repair_share.h"
 
 #include "../../base/array.h"
+#include "../../mesh/ranks/rows.h"
 #include "../../ranks/post.h"
 #include "../repair/repair_forced.h"
 #include "../repair/repair_steps.h"
@@ -19,9 +20,9 @@ enum { RINGS = 5, TRIES = 3 };
 typedef struct {
     tm_repair_share *share;
     const tm_repair_options *options;
-    bool *whole;  /* [nodes.count]: all elements at a node that this rank has are near */
-    bool *mark;   /* [mesh.nodes]: the same */
-    bool *near;   /* [mesh.elements] */
+    bool *whole; /* [rows of .node]: all elements at a node that this rank has are near */
+    bool *mark;  /* [mesh.nodes]: the same */
+    bool *near;  /* [mesh.elements] */
     size_t cores; /* elements of all ranks that are to become better */
     tm_repair_rest rest;
     tm_repair_state part; /* on rank 0; others have nothing in it */
@@ -48,17 +49,18 @@ static void mark_nodes(const mender *m, size_t e, bool *mark)
 static tm_status spread(const mender *m, tm_error *error)
 {
     const tm_repair_share *s = m->share;
+    const tm_rows rows = tm_rows_of(s->nodes);
     tm_post post = {0};
     uint32_t *got;
     size_t count;
     for (size_t n = 0; n < s->mesh.nodes; n++)
         if (m->mark[n])
-            tm_post_put(&post, tm_rows_owner(&s->nodes, s->number[n]), &s->number[n], 1);
+            tm_post_put(&post, tm_rows_owner(&rows, s->number[n]), &s->number[n], 1);
     const tm_status status = tm_post_deliver(&post, &got, &count, error);
     for (size_t i = 0; status == TM_OK && i < count; i++)
-        m->whole[got[i] - s->nodes.first] = true;
+        m->whole[got[i] - rows.first] = true;
     free(got);
-    return status == TM_OK ? tm_slices_fetch(m->whole, s->nodes.total, sizeof *m->whole,
+    return status == TM_OK ? tm_slices_fetch(m->whole, s->nodes, sizeof *m->whole,
                                              s->number, s->mesh.nodes, m->mark, error)
                            : status;
 }
@@ -69,9 +71,9 @@ static tm_status find_cores(mender *m, tm_error *error)
 {
     const tm_repair_share *s = m->share;
     const double aim = fmax(m->options->threshold, TM_REPAIR_GOOD);
-    for (size_t v = 0; v < s->nodes.count; v++)
+    for (size_t v = 0; v < s->node->count; v++)
         m->whole[v] = s->rule[v].off_surface;
-    const tm_status status = tm_slices_fetch(m->whole, s->nodes.total, sizeof *m->whole,
+    const tm_status status = tm_slices_fetch(m->whole, s->nodes, sizeof *m->whole,
                                              s->number, s->mesh.nodes, m->mark, error);
     m->cores = 0;
     for (size_t e = 0; status == TM_OK && e < s->mesh.elements; e++) {
@@ -80,7 +82,7 @@ static tm_status find_cores(mender *m, tm_error *error)
         m->cores += m->near[e];
     }
     tm_ranks_sum(&m->cores, 1);
-    memset(m->whole, false, s->nodes.count);
+    memset(m->whole, false, s->node->count);
     memset(m->mark, false, s->mesh.nodes);
     return status;
 }
@@ -171,7 +173,7 @@ static tm_status gather_nodes(mender *m, bool **end, tm_error *error)
 {
     const tm_repair_share *s = m->share;
     tm_repair_state *part = &m->part;
-    const size_t nodes = part->mesh.nodes, total = s->nodes.total;
+    const size_t nodes = part->mesh.nodes, total = s->nodes;
     part->mesh.xyz = tm_new(nodes, sizeof *part->mesh.xyz);
     part->rule = tm_new(nodes, sizeof *part->rule);
     part->on = tm_new(nodes, sizeof *part->on);
@@ -278,7 +280,7 @@ typedef struct {
 /* Gives the nodes of rank 0's part back to those that have them. */
 static tm_status give_nodes(const mender *m, tm_error *error)
 {
-    const tm_rows *rows = &m->share->nodes;
+    const tm_rows rows = tm_rows_of(m->share->nodes);
     const size_t nodes = m->part.mesh.nodes;
     size_t *count = calloc(tm_ranks_count(), sizeof *count), all = 0;
     sent_node *list = tm_new(nodes, sizeof *list);
@@ -287,7 +289,7 @@ static tm_status give_nodes(const mender *m, tm_error *error)
     for (size_t n = 0; status == TM_OK && n < nodes; n++) {
         list[n].number = m->number[n];
         memcpy(list[n].xyz, m->part.mesh.xyz[n], sizeof list[n].xyz);
-        count[tm_rows_owner(rows, m->number[n])]++;
+        count[tm_rows_owner(&rows, m->number[n])]++;
     }
     if (status == TM_OK)
         status = tm_ranks_exchange(list, count, sizeof *list, &got, count, error);
@@ -295,7 +297,7 @@ static tm_status give_nodes(const mender *m, tm_error *error)
         all += count[r];
     for (size_t i = 0; i < all; i++) {
         const sent_node *of = &((const sent_node *)got)[i];
-        memcpy(m->share->node->real + 3 * (of->number - rows->first), of->xyz,
+        memcpy(m->share->node->real + 3 * (of->number - rows.first), of->xyz,
                sizeof of->xyz);
     }
     free(count);
@@ -307,14 +309,14 @@ static tm_status give_nodes(const mender *m, tm_error *error)
 /* All nodes of the boundary are on it. */
 static void set_places(const tm_repair_share *s)
 {
-    for (size_t v = 0; s->attributed && v < s->nodes.count; v++)
+    for (size_t v = 0; s->attributed && v < s->node->count; v++)
         s->node->attribute[v] = s->on[v];
 }
 
 static tm_status mend(mender *m, tm_surface *surface, size_t *forced, bool *can,
                       tm_error *error)
 {
-    const size_t elements = m->share->elements.total;
+    const size_t elements = m->share->elements;
     tm_status status = find_cores(m, error);
     *can = false;
     if (status != TM_OK || m->cores >= elements / TM_REPAIR_PART_LESS)
@@ -337,7 +339,7 @@ tm_status tm_repair_share_mend(tm_repair_share *share, tm_surface *surface,
     *can = true;
     *forced = 0;
     if (share->score.bad > 0 || share->score.off_surface > 0) {
-        m.whole = tm_new(share->nodes.count, sizeof *m.whole);
+        m.whole = tm_new(share->node->count, sizeof *m.whole);
         m.mark = tm_new(share->mesh.nodes, sizeof *m.mark);
         m.near = tm_new(share->mesh.elements, sizeof *m.near);
         status = tm_ranks_enough(m.whole && m.mark && m.near, error);
