@@ -56,9 +56,9 @@ ifdef has_p4est
 LDLIBS += -Wl,--as-needed -lp4est -lsc $(MPI_LDLIBS) -Wl,--no-as-needed
 else
 left_out := octree-mesh octree-repair lib/ranks/mpi/start.c \
-	$(wildcard $(addsuffix /*.c,$(addprefix lib/octree/,share interior feature layer repair))) \
+	$(wildcard $(addsuffix /*.c,$(addprefix lib/octree/,share interior feature layer repair shared_repair))) \
 	$(shell grep -lE '^.include.*(p[48]est|brick\.h|octree_estimate|mpi_start)' lib/octree/forest/*.c) \
-	$(basename $(notdir $(shell grep -lE 'octree_build|octree/(share|interior|feature|layer|repair)|(mend|octree|repair)_fixture' \
+	$(basename $(notdir $(shell grep -lE 'octree_build|octree/(share|interior|feature|layer|repair|shared_repair)|(mend|octree|repair)_fixture' \
 		tests/unit/test_*.c tests/fuzz/targets/*.c)))
 endif
 

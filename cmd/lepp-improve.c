@@ -636,7 +636,7 @@ static bool work_together(filter *f, const settings *o, tm_stream *stream, int *
     tm_slices_find(&slices, ".ele", &tets);
     if (!tm_improve_cuts(&o->improve, tets.total, tets.total) ||
         !improve_share(f, o, &slices, &r)) {
-        tet_share_leave(f, &slices, stream);
+        mesh_share_leave(f, &slices, stream);
         return false;
     }
     if (r.changes > 0)

@@ -2,6 +2,7 @@
 /* octree-repair: a mesh with its octants and its surface in, the same with valid elements
  * out. */
 #include "common/input/mesh_input.h"
+#include "common/input/mesh_share.h"
 #include "common/input/octant_list.h"
 #include "common/input/surface_input.h"
 #include "common/process/early_end.h"
@@ -11,6 +12,9 @@
 #include "../lib/format/mesh_format.h"
 #include "../lib/format/oct.h"
 #include "../lib/format/vtk/vtk.h"
+#include "../lib/octree/forest/mpi_start.h"
+#include "../lib/octree/shared_repair/repair_share.h"
+#include "../lib/ranks/ranks.h"
 #include "../lib/octree/repair/repair.h"
 #include "../lib/octree/repair/repair_forced.h"
 #include "../lib/octree/repair/repair_shape.h"
@@ -117,10 +121,30 @@ static void fail(const program *p, tm_error *error)
     filter_fail(&p->f, error);
 }
 
-static void build_surface(program *p, const tm_stream *stream)
+/* The surface of a stream that has one. */
+static tm_status build_surface(program *p, const tm_stream *stream, tm_error *error)
+{
+    tm_polygon_surface polygons;
+    tm_polygon_surface_init(&polygons);
+    tm_status status =
+        surface_input_of_stream(stream, filter_input_name(&p->f), &polygons, error);
+    p->surface.walls = true;
+    p->surface.threads = p->f.threads;
+    while (status == TM_OK) {
+        status = tm_surface_build(&p->boundary, &polygons, &p->surface, error);
+        if (status != TM_ERROR_INPUT || !p->boundary.walls)
+            break;
+        tm_surface_free(&p->boundary); /* not what walls are: edges to be cut open */
+        p->surface.walls = false;
+        status = TM_OK;
+    }
+    tm_polygon_surface_free(&polygons);
+    return status;
+}
+
+static void find_surface(program *p, const tm_stream *stream)
 {
     tm_error error;
-    tm_polygon_surface polygons;
     p->has_surface = tm_stream_find(stream, "surface.node") != NULL;
     if (!p->has_surface) {
         filter_note(&p->f,
@@ -130,22 +154,8 @@ static void build_surface(program *p, const tm_stream *stream)
                     filter_input_name(&p->f));
         return;
     }
-    tm_polygon_surface_init(&polygons);
-    tm_status status =
-        surface_input_of_stream(stream, filter_input_name(&p->f), &polygons, &error);
-    p->surface.walls = true;
-    p->surface.threads = p->f.threads;
-    while (status == TM_OK) {
-        status = tm_surface_build(&p->boundary, &polygons, &p->surface, &error);
-        if (status != TM_ERROR_INPUT || !p->boundary.walls)
-            break;
-        tm_surface_free(&p->boundary); /* not what walls are: edges to be cut open */
-        p->surface.walls = false;
-        status = TM_OK;
-    }
-    if (status != TM_OK)
+    if (build_surface(p, stream, &error) != TM_OK)
         fail(p, &error);
-    tm_polygon_surface_free(&polygons);
 }
 
 /* The files of --trace ------------------------------------------------------------- */
@@ -422,7 +432,7 @@ static void prepare(program *p, const tm_stream *stream, tm_repair_state *state,
     if (p->octants)
         p->listed = octant_list_read(&p->f, p->octants, stream, &p->repair.octants);
     p->repair.octant = p->listed;
-    build_surface(p, stream);
+    find_surface(p, stream);
     mpi_environment_set(&p->f);
     if (tm_repair_prepare(state, stream, p->has_surface ? &p->boundary : NULL, notes,
                           &error) != TM_OK)
@@ -504,6 +514,94 @@ static bool run(program *p, tm_stream *stream)
     return done;
 }
 
+/* What ranks do together --------------------------------------------------------------
+ */
+
+static bool can_share(const program *p)
+{
+    return p->repair.method == TM_REPAIR_FULL && !p->f.json && !p->trace && !p->octants &&
+           p->time == 0;
+}
+
+/* The surface, on all ranks; false where there is none that is good. */
+static bool share_surface(program *p, const tm_slices *slices)
+{
+    static const char *const names[] = {"surface.node", "surface.face"};
+    tm_error error;
+    tm_stream stream;
+    tm_stream_init(&stream);
+    stream.base = slices->stream.base;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        filter_agree(&p->f, tm_slices_share(slices, names[i], &stream, &error), &error);
+    p->has_surface = tm_stream_find(&stream, "surface.node") != NULL;
+    const bool built = p->has_surface && build_surface(p, &stream, &error) == TM_OK;
+    tm_stream_free(&stream);
+    if (!tm_ranks_any(!built))
+        return true;
+    tm_surface_free(&p->boundary);
+    return false;
+}
+
+/* Repairs what needs it; false where that is for rank 0 alone. */
+static bool repair_share(program *p, tm_repair_share *share, size_t *forced)
+{
+    tm_error error;
+    bool can = true;
+    *forced = 0;
+    if (!tm_repair_share_is_needed(share))
+        return true;
+    filter_stage(&p->f, "preparing");
+    if (!share_surface(p, share->slices))
+        return false;
+    filter_agree(&p->f, tm_repair_share_prepare(share, &p->boundary, &can, &error),
+                 &error);
+    p->repair.progress = filter_progress(&p->f);
+    if (can)
+        filter_agree(
+            &p->f,
+            tm_repair_share_mend(share, &p->boundary, &p->repair, forced, &can, &error),
+            &error);
+    if (!can)
+        tm_surface_free(&p->boundary);
+    return can;
+}
+
+/* Rank 0 goes on alone; p4est starts as long as there is MPI. */
+static void leave(const program *p, tm_slices *slices, tm_stream *stream)
+{
+    tm_error error;
+    filter_agree(&p->f, tm_mpi_start(&error), &error);
+    mesh_share_leave(&p->f, slices, stream);
+}
+
+/* The work of ranks together, to its end; or *stream is what rank 0 goes on with alone.
+ */
+static bool work_together(program *p, tm_stream *stream)
+{
+    tm_slices slices;
+    tm_repair_share share;
+    tm_error error;
+    size_t forced;
+    bool can;
+    mesh_share_read(&p->f, &slices);
+    filter_stage(&p->f, "examining");
+    filter_agree(&p->f,
+                 tm_repair_share_take(&share, &slices, p->repair.threshold, p->f.threads,
+                                      &can, &error),
+                 &error);
+    can = can && repair_share(p, &share, &forced);
+    const size_t elements = share.elements, bad = share.score.bad;
+    tm_repair_share_free(&share);
+    if (can)
+        filter_write_slices(&p->f, &slices, "%zu elements of %zu, bad 0 of %zu", elements,
+                            elements, bad - forced);
+    else
+        leave(p, &slices, stream);
+    if (can)
+        tm_slices_free(&slices);
+    return can;
+}
+
 int main(int argc, char **argv)
 {
     program p = {
@@ -515,7 +613,8 @@ int main(int argc, char **argv)
               .help = own_help,
               .options = long_options,
               .words = option_words,
-              .letters = "t:i:" FILTER_LETTERS},
+              .letters = "t:i:" FILTER_LETTERS,
+              .ranks = true},
         .repair = {.method = TM_REPAIR_FULL,
                    .iterations = DEFAULT_ITERATIONS,
                    .growth = default_growth},
@@ -529,8 +628,13 @@ int main(int argc, char **argv)
     if (p.octants && p.repair.iterations == 0)
         filter_usage_error(&p.f, "--octants is an iteration, but -i allows none");
     filter_operands(&p.f);
-    filter_read(&p.f, &stream);
-    const bool done = run(&p, &stream);
+    const bool together = filter_together(&p.f, can_share(&p));
+    tm_stream_init(&stream);
+    bool done = together && work_together(&p, &stream);
+    if (!together)
+        filter_read(&p.f, &stream);
+    if (!done)
+        done = run(&p, &stream);
     tm_surface_free(&p.boundary);
     tm_stream_free(&stream);
     return filter_finish(&p.f, done ? EXIT_SUCCESS : EXIT_GOAL);

@@ -140,6 +140,7 @@
 #include "octree/layer/octree_mesh_stream.h"
 #include "octree/layer/mesh_share.h"
 #include "octree/layer/octree_mesh_ranks.h"
+#include "octree/shared_repair/repair_share.h"
 #include "octree/repair/repair.h"
 #include "octree/repair/repair_forced.h"
 #include "octree/repair/repair_shape.h"

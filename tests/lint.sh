@@ -96,7 +96,7 @@ surface surface/measure surface/mend examine examine/poly examine/ranks format
 format/openfoam format/surface format/vtk format/abaqus format/medit
 optimise tet tet/parts tet/share tet/envelope tet/operation tet/delaunay
 tet/improve tet/lepp octree/forest octree/share octree/transition octree/interior octree/feature
-octree/layer octree/repair poly/fit poly poly/ranks poly/dual poly/cluster poly/octant view"
+octree/layer octree/repair octree/shared_repair poly/fit poly poly/ranks poly/dual poly/cluster poly/octant view"
 
 # Who has no use for a tm_error gives NULL: none but lib/base/error.c looks into one that a
 # caller gave.

@@ -79,3 +79,18 @@ void mesh_share_gather(const filter *f, void **items, size_t *count, size_t size
     if (!all)
         *count = 0;
 }
+
+void mesh_share_leave(const filter *f, tm_slices *slices, tm_stream *stream)
+{
+    tm_error error;
+    filter_agree(f, tm_slices_gather(slices, &error), &error);
+    *stream = slices->stream;
+    tm_stream_init(&slices->stream);
+    tm_slices_free(slices);
+    const bool goes_on = tm_rank() == 0;
+    tm_ranks_leave();
+    if (goes_on)
+        return;
+    tm_stream_free(stream);
+    exit(EXIT_SUCCESS);
+}

@@ -36,4 +36,7 @@ void mesh_share_turn(const filter *f, mesh_share *share, const char *what);
  * others none is left. */
 void mesh_share_gather(const filter *f, void **items, size_t *count, size_t size);
 
+/* The slices become a stream of rank 0, which goes on alone; the others end. */
+void mesh_share_leave(const filter *f, tm_slices *slices, tm_stream *stream);
+
 #endif

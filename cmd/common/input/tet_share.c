@@ -40,21 +40,6 @@ void tet_share_note(const filter *f, const tm_share_notes *notes)
     tet_mesh_note(f, &mesh);
 }
 
-void tet_share_leave(const filter *f, tm_slices *slices, tm_stream *stream)
-{
-    tm_error error;
-    filter_agree(f, tm_slices_gather(slices, &error), &error);
-    *stream = slices->stream;
-    tm_stream_init(&slices->stream);
-    tm_slices_free(slices);
-    const bool goes_on = tm_rank() == 0;
-    tm_ranks_leave();
-    if (goes_on)
-        return;
-    tm_stream_free(stream);
-    exit(EXIT_SUCCESS);
-}
-
 void tet_share_drop_unknown(const filter *f, tm_slices *slices, const char *why)
 {
     tm_stream *stream = &slices->stream;

@@ -14,9 +14,6 @@ bool tet_share_from_slices(const filter *f, const tm_slices *slices, size_t size
                            tm_tet_share *share, tm_share_notes *notes);
 void tet_share_note(const filter *f, const tm_share_notes *notes);
 
-/* The slices become a stream of rank 0, which goes on alone; the others end. */
-void tet_share_leave(const filter *f, tm_slices *slices, tm_stream *stream);
-
 /* drop_unknown_blocks() of slices. */
 void tet_share_drop_unknown(const filter *f, tm_slices *slices, const char *why);
 

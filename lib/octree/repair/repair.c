@@ -75,7 +75,9 @@ static tm_status make_tips(const repair *r, tm_repair_state *state, double thres
         status =
             tm_repair_sharp_corners(state, r->surface, threshold, score, count, error);
     const bool made = status == TM_OK && *count > old;
-    if (made && r->surface) {
+    if (made && state->rest)
+        status = tm_repair_fail_part(&state->rest->whole, error);
+    if (status == TM_OK && made && r->surface) {
         status = tm_repair_shape_measure(&was, &before, r->surface, error);
         if (status == TM_OK)
             status = tm_repair_shape_measure(&is, state, r->surface, error);

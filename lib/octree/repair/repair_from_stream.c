@@ -10,6 +10,7 @@
 #include "../layer/octree_mesh_stream.h"
 #include "../forest/octree_stream.h"
 #include "repair_boundary.h"
+#include "repair_steps.h"
 #include "../../mesh/mixed_boundary.h"
 
 #include <math.h>
@@ -93,7 +94,7 @@ static bool is_place(double value, bool boundary)
                : value == TM_NODE_INSIDE;
 }
 
-static bool are_places(const tm_block *node, const bool *where)
+bool tm_repair_are_places(const tm_block *node, const bool *where)
 {
     if (node->attributes != 1)
         return false;
@@ -130,7 +131,7 @@ static tm_status find_places(const tm_repair_state *state, const tm_block *node,
                              const tm_block *mix, bool *where, tm_repair_notes *notes,
                              tm_error *error)
 {
-    notes->attributed = are_places(node, where);
+    notes->attributed = tm_repair_are_places(node, where);
     if (notes->attributed || mix->attributes == 0)
         return TM_OK;
     bool *both = tm_new(state->mesh.nodes, sizeof *both);
@@ -138,7 +139,7 @@ static tm_status find_places(const tm_repair_state *state, const tm_block *node,
         return tm_fail_memory(error);
     memcpy(both, where, state->mesh.nodes * sizeof *both);
     const tm_status status = find_interfaces(&state->mesh, mix, both, error);
-    if (status == TM_OK && are_places(node, both)) {
+    if (status == TM_OK && tm_repair_are_places(node, both)) {
         notes->attributed = notes->regions = true;
         memcpy(where, both, state->mesh.nodes * sizeof *both);
     }
@@ -195,7 +196,7 @@ tm_status tm_repair_from_stream(tm_repair_state *state, tm_stream *stream,
                                      : status;
 }
 
-static bool says_none_held(const tm_block *node)
+bool tm_repair_says_none_held(const tm_block *node)
 {
     if (node->attributes != 1)
         return false;
@@ -210,7 +211,7 @@ bool tm_repair_is_needed(const tm_repair_state *state, const tm_stream *stream,
                          double threshold)
 {
     return (tm_stream_find(stream, "surface.node") &&
-            !says_none_held(tm_stream_find(stream, ".node"))) ||
+            !tm_repair_says_none_held(tm_stream_find(stream, ".node"))) ||
            tm_repair_measure(state, threshold).bad > 0;
 }
 

@@ -13,9 +13,8 @@
  * corners have to be each time. */
 enum { ROUNDS = 3 };
 
-/* Nodes move so many elements away from what is bad, and those behind are needed; the
- * whole mesh is taken unless so many times less is bad. */
-enum { PART_RINGS = 4, PART_LESS = 100 };
+/* Nodes move so many elements away from what is bad, and those behind are needed. */
+enum { PART_RINGS = 4 };
 
 static const double certified_step = 0.05;
 
@@ -182,10 +181,14 @@ tm_status tm_repair_move(tm_repair_state *state, const tm_surface *surface,
     uint32_t *core = find_core(state, fmax(threshold, effort.aim), &cores);
     if (!core)
         return tm_fail_memory(error);
+    tm_repair_rest *rest = state->rest;
+    const size_t elements = state->mesh.elements + (rest ? rest->elements : 0);
     tm_status status = TM_OK;
-    if (cores > 0 && cores < state->mesh.elements / PART_LESS)
+    if (cores > 0 && cores < elements / TM_REPAIR_PART_LESS)
         status = move_part(state, surface, threshold, effort, core, cores, score->least,
                            error);
+    else if (cores > 0 && rest)
+        status = tm_repair_fail_part(&rest->whole, error);
     else if (cores > 0)
         status = move_in(state, surface, threshold, effort, score->least, error);
     free(core);

@@ -79,7 +79,17 @@ tm_repair_score tm_repair_measure(const tm_repair_state *state, double threshold
     }
     if (mesh->elements > 0)
         score.average = sum / (double)mesh->elements;
+    if (state->rest) {
+        score.worst = fmin(score.worst, state->rest->worst);
+        score.least = fmin(score.least, state->rest->least);
+    }
     return score;
+}
+
+tm_status tm_repair_fail_part(bool *why, tm_error *error)
+{
+    *why = true;
+    return tm_fail(error, TM_ERROR_INTERNAL, "a part of the mesh is not enough");
 }
 
 bool tm_repair_better(const tm_repair_score *a, const tm_repair_score *b)

@@ -19,6 +19,17 @@ TM_EXTERN_C_BEGIN
 #define TM_REPAIR_FLAT 0.02
 #define TM_REPAIR_GOOD 0.2
 
+/* What is elsewhere of a mesh of which a state is a part: nothing there is bad, and
+ * nothing moves. */
+typedef struct tm_repair_rest {
+    size_t elements;
+    double worst, least; /* as in a tm_repair_score */
+    const bool *end;     /* [nodes]: some of its elements may be there */
+    size_t nodes;        /* others of the part have all of theirs */
+    bool reached;        /* a step needed more around such a node */
+    bool whole;          /* a step needed all of the mesh */
+} tm_repair_rest;
+
 /* Numbers of octants are those of rows of .octant. */
 typedef struct tm_repair_state {
     tm_mixed_mesh mesh;
@@ -33,6 +44,7 @@ typedef struct tm_repair_state {
     bool remade;        /* from another octree: all of it is new */
     const tm_progress *progress; /* of the repair; NULL in trials */
     const tm_stop *stop;         /* the same */
+    tm_repair_rest *rest;        /* NULL: this is all of the mesh */
 } tm_repair_state;
 
 /* How good it is. */
@@ -54,7 +66,8 @@ bool tm_repair_is_bad(const tm_mixed_mesh *mesh, size_t e, double jens, double t
  * that is valid is better. */
 double tm_repair_quality(const tm_mixed_mesh *mesh, size_t e, double jens);
 
-/* Measures all elements. O(elements). */
+/* Measures all elements, of a part also the rest; the average is that of the part.
+ * O(elements). */
 tm_repair_score tm_repair_measure(const tm_repair_state *state, double threshold);
 
 /* The rule of all steps: whether `a`, made from `b`, is to be kept. It must not have more
@@ -68,6 +81,9 @@ bool tm_repair_better(const tm_repair_score *a, const tm_repair_score *b);
 tm_status tm_repair_bad_octants(const tm_repair_state *state, double threshold,
                                 bool off_surface, const bool *except, uint32_t **octant,
                                 size_t *count, tm_error *error);
+
+/* Notes that a step cannot be made with a part of the mesh; an error, which ends it. */
+tm_status tm_repair_fail_part(bool *why, tm_error *error);
 
 /* Adds the octants that have a node in common with the elements of those listed. */
 tm_status tm_repair_widen(const tm_repair_state *state, uint32_t **octant, size_t *count,

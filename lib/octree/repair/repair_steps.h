@@ -3,8 +3,15 @@
 #ifndef TM_REPAIR_REPAIR_STEPS_H
 #define TM_REPAIR_REPAIR_STEPS_H
 
+#include "../../stream/stream.h"
 #include "../../surface/surface.h"
 #include "repair_state.h"
+
+/* Whether the only attribute of nodes is their place: of those that are marked on a
+ * patch, a curve or a corner, of others inside; or says so, and that none is off the
+ * surface. */
+bool tm_repair_are_places(const tm_block *node, const bool *where);
+bool tm_repair_says_none_held(const tm_block *node);
 
 /* Room for as many nodes and elements as to->mesh says, and their items. */
 tm_status tm_repair_allocate(tm_repair_state *to, size_t items, tm_error *error);
@@ -27,6 +34,9 @@ typedef struct tm_repair_effort {
                         surface … */
     size_t at_least; /* … and so many in any case */
 } tm_repair_effort;
+
+/* The whole mesh is taken to move nodes unless so many times less is bad. */
+enum { TM_REPAIR_PART_LESS = 100 };
 
 /* Moves nodes so that bad elements become good and nodes that are off the surface come to
  * it. *score is that of the state, before and after; what does not become better in one

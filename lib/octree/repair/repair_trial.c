@@ -101,6 +101,16 @@ static tm_status add_nodes(tm_trial *t, tm_error *error)
     return TM_OK;
 }
 
+/* Whether all elements at the nodes are in this part of the mesh. */
+static tm_status check_end(const tm_trial *t, tm_error *error)
+{
+    tm_repair_rest *rest = t->whole->rest;
+    for (size_t n = 0; rest && n < t->nodes; n++)
+        if (t->node[n] < rest->nodes && rest->end[t->node[n]])
+            return tm_repair_fail_part(&rest->reached, error);
+    return TM_OK;
+}
+
 static bool has_outside(const tm_trial *t, uint32_t v)
 {
     for (size_t a = t->around->start[v]; a < t->around->start[v + 1]; a++)
@@ -159,6 +169,8 @@ tm_status tm_trial_gather(tm_trial *trial, const uint32_t *core, size_t cores,
         status = add_rings(trial, rings, error);
     if (status == TM_OK)
         status = add_nodes(trial, error);
+    if (status == TM_OK)
+        status = check_end(trial, error);
     if (status == TM_OK)
         status = fill(trial, error);
     if (status == TM_OK)

@@ -102,3 +102,44 @@ tm_status tm_slices_gather(tm_slices *slices, tm_error *error)
     }
     return status;
 }
+
+/* All ranks' arrays, on all; NULL of width 0. */
+static tm_status share(const void *own, size_t rows, size_t width, size_t size,
+                       void **all, tm_error *error)
+{
+    return width > 0 ? tm_ranks_share(own, rows, width * size, all, NULL, error) : TM_OK;
+}
+
+tm_status tm_slices_share(const tm_slices *slices, const char *name, tm_stream *to,
+                          tm_error *error)
+{
+    tm_slice slice;
+    const tm_block *own = tm_slices_find(slices, name, &slice);
+    if (!own)
+        return TM_OK;
+    tm_block *block = tm_stream_add(to, name);
+    void *real = NULL, *integer = NULL, *attribute = NULL, *marker = NULL;
+    tm_status status = tm_ranks_enough(block, error);
+    if (status == TM_OK)
+        status = share(own->real, own->count, tm_block_reals(own->kind), sizeof(double),
+                       &real, error);
+    if (status == TM_OK)
+        status = share(own->integer, own->count, tm_block_integers(own->kind),
+                       sizeof(uint32_t), &integer, error);
+    if (status == TM_OK)
+        status = share(own->attribute, own->count, own->attributes, sizeof(double),
+                       &attribute, error);
+    if (status == TM_OK)
+        status =
+            share(own->marker, own->count, own->markers, sizeof(int32_t), &marker, error);
+    if (block) {
+        block->count = status == TM_OK ? slice.total : 0;
+        block->attributes = own->attributes;
+        block->markers = own->markers;
+        block->real = real;
+        block->integer = integer;
+        block->attribute = attribute;
+        block->marker = marker;
+    }
+    return status;
+}

@@ -68,6 +68,11 @@ tm_status tm_slices_even(tm_slices *slices, size_t b, tm_error *error);
 /* Removes a block. */
 void tm_slices_remove(tm_slices *slices, tm_block *block);
 
+/* Adds to a stream, which is a rank's own, the block of that name with the rows of all
+ * ranks; none where there is no such block. Not of lists. O(rows). */
+tm_status tm_slices_share(const tm_slices *slices, const char *name, tm_stream *to,
+                          tm_error *error);
+
 /* Gives rank 0 all rows of all blocks, and the others none. */
 tm_status tm_slices_gather(tm_slices *slices, tm_error *error);
 
