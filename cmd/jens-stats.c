@@ -82,7 +82,7 @@ static options read_options(filter *f)
         }
     }
     filter_operands(f);
-    filter_other_file(f, "--plot", o.plot);
+    plot_check_file(f, o.plot);
     filter_other_file(f, "--histo", o.histo);
     o.output = o.output ? o.output : 'e';
     o.request.scaled_jacobian = o.output == 's' || o.plot || f->json;

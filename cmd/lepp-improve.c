@@ -667,7 +667,7 @@ int main(int argc, char **argv)
     filter_start(&f, argc, argv);
     settings o = read_options(&f);
     filter_operands(&f);
-    filter_other_file(&f, "--plot", o.plot);
+    plot_check_file(&f, o.plot);
     tm_stream stream;
     int status;
     if (!filter_together(&f, is_for_ranks(&o)))

@@ -37,6 +37,7 @@ static void read_options(filter *f, options *o)
     if (o->meshes == TM_VIEW_MESHES)
         o->second = f->argv[--f->argc];
     filter_operands(f);
+    filter_no_picture(f, f->output, "a page, whose button Save PNG makes a picture");
     if (o->second && strcmp(o->second, "-") == 0)
         o->second = NULL;
     if (o->meshes == TM_VIEW_MESHES && !o->second && !f->input)

@@ -125,7 +125,7 @@ int main(int argc, char **argv)
         else if (c == OPTION_FOR)
             use = filter_word(&f, OPTION_FOR, optarg);
     filter_operands(&f);
-    filter_other_file(&f, "--plot", plot);
+    plot_check_file(&f, plot);
 
     tm_poly_statistics statistics;
     if (filter_together(&f, true))

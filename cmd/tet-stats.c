@@ -166,7 +166,7 @@ static void read_options(filter *f, options *o)
     if (o->compare)
         o->after = f->argv[--f->argc];
     filter_operands(f);
-    filter_other_file(f, "--plot", o->plot);
+    plot_check_file(f, o->plot);
     against_check(f, &o->against);
     if (o->after && strcmp(o->after, "-") == 0)
         o->after = NULL;

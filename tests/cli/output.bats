@@ -201,6 +201,22 @@ write_each() {
     run -0 script -qec "visf-export corner.tm" /dev/null </dev/null
 }
 
+@test "no SVG and no page goes into a file with the suffix of another kind of picture" {
+    for filter in tet-stats jens-stats poly-stats; do
+        for suffix in png PDF jpeg; do
+            run -2 --separate-stderr "$filter" --plot "figure.$suffix" "$(input "$filter")"
+            [ "$output" = "" ]
+            [[ "${stderr_lines[0]}" == "$filter: 'figure.$suffix': no $suffix file is written, but SVG"* ]]
+            [ ! -e "figure.$suffix" ]
+        done
+    done
+    run -2 lepp-improve -a selective --plot figure.png corner.tm
+    [ -x "$TM_BUILD/bin/mesh-view" ] || return 0
+    run -2 --separate-stderr mesh-view -o page.png corner.tm
+    [[ "${stderr_lines[0]}" == "mesh-view: 'page.png': no png file is written, but a page"* ]]
+    [ ! -e page.png ]
+}
+
 @test "--plot: what is no picture is refused, also where gnuplot says that all is well" {
     mkdir bin
     echo old >figure.svg
@@ -307,7 +323,10 @@ END
         for filter in tet-stats jens-stats poly-stats; do
             rm -f pid
             PATH=$PWD/bin:$PATH "$filter" --plot figure.svg "$(input "$filter")" >table &
-            while ! [ -e pid ]; do sleep 0.02; done
+            while ! [ -e pid ]; do
+                kill -0 $!
+                sleep 0.02
+            done
             kill "-$signal" $!
             while ps -p "$(cat pid)" -o stat= | grep -v Z; do sleep 0.02; done
             [ ! -e figure.svg ]

@@ -142,6 +142,10 @@ void filter_operands(filter *f);
  * --json filter_option() does so. */
 void filter_other_file(const filter *f, const char *option, const char *file);
 
+/* A usage error, which ends with `instead`, where a file to write has the suffix of a
+ * picture of pixels or of pages, which is not written; NULL is no file. */
+void filter_no_picture(const filter *f, const char *file, const char *instead);
+
 /* Option arguments as numbers in lo..hi, else a usage error that names the option. */
 double filter_number(const filter *f, const char *option, const char *text, double lo,
                      double hi);

@@ -9,6 +9,7 @@
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <unistd.h>
 
 enum { THREADS_MAX = 256, OPTION_NAME = 64 };
@@ -246,6 +247,17 @@ _Noreturn static void fail_operands(const filter *f)
     filter_explain_apart(f, f->input, why);
     filter_usage_error(f, "one FILE at most, but there is also '%s'%s", f->argv[optind],
                        why);
+}
+
+void filter_no_picture(const filter *f, const char *file, const char *instead)
+{
+    static const char *const suffix[] = {".png", ".jpg", ".jpeg", ".gif",
+                                         ".pdf", ".eps", ".ps"};
+    const char *own = file ? strrchr(file, '.') : NULL;
+    for (size_t i = 0; own && i < sizeof suffix / sizeof *suffix; i++)
+        if (strcasecmp(own, suffix[i]) == 0)
+            filter_usage_error(f, "'%s': no %s file is written, but %s", file, own + 1,
+                               instead);
 }
 
 void filter_other_file(const filter *f, const char *option, const char *file)

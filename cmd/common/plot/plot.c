@@ -145,6 +145,12 @@ static tm_status draw(const filter *f, const tm_text *script, const char *file,
     return status;
 }
 
+void plot_check_file(const filter *f, const char *file)
+{
+    filter_no_picture(f, file, "SVG, which browsers show (--plot FILE.svg)");
+    filter_other_file(f, "--plot", file);
+}
+
 void plot_write(const filter *f, tm_text *script, const char *file)
 {
     tm_error error;

@@ -27,6 +27,10 @@ void poly_plot_script(tm_text *script, const tm_poly_statistics *statistics);
  * by size and by what was done: chapter 9 of Balboa (2020). */
 void lepp_plot_script(tm_text *script, const tm_lepp_report *report);
 
+/* Looks at the argument of --plot, which may be NULL: a usage error where it is the file
+ * of -o or --json, or has the suffix of another kind of picture. */
+void plot_check_file(const filter *f, const char *file);
+
 /* Runs gnuplot on a script, which has its data inline, puts what it writes into `file`,
  * whole or not at all, and frees the script. The script does not depend on the user's own
  * settings of gnuplot. Exits where gnuplot is missing or fails (it has then said why on
