@@ -440,6 +440,17 @@ static report make_alone(filter *f, settings *o, tm_surface *surface, tm_stream 
     return r;
 }
 
+/* Says how many octants ranks have of others, at their borders. */
+static void say_ghosts(const filter *f, const tm_octree_share *share)
+{
+    size_t count = share->octree.leaves - (share->own_past - share->own_first);
+    double most = (double)count;
+    tm_ranks_sum(&count, 1);
+    tm_ranks_largest(&most, 1);
+    filter_verbose(f, "of others each rank has %.0f octants, %.0f at most",
+                   (double)count / tm_ranks_count(), most);
+}
+
 /* Writes what ranks have made together. */
 static report write_together(filter *f, const settings *o, tm_surface *surface,
                              const tm_octree_share *share, tm_octree_mesh *mesh,
@@ -449,6 +460,7 @@ static report write_together(filter *f, const settings *o, tm_surface *surface,
     const unsigned finest = tm_octree_share_deepest(share);
     note_losses(f, surface, &mesh->report, ldexp(share->octree.side, -(int)finest));
     const report r = report_of(&share->octree, mesh);
+    say_ghosts(f, share);
     filter_stage(f, "numbering");
     filter_agree(
         f,

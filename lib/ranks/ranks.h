@@ -89,6 +89,11 @@ void tm_ranks_broadcast(void *bytes, size_t size);
 tm_status tm_ranks_exchange(const void *send, const size_t *send_count, size_t size,
                             void **got, size_t *got_count, tm_error *error);
 
+/* The same where each knows what it gets, got_count[r] items of rank r, and has the room
+ * for it: nothing is sent but these. */
+void tm_ranks_swap(const void *send, const size_t *send_count, size_t size, void *got,
+                   const size_t *got_count);
+
 /* Of all ranks' items, in the order of ranks, *all, to be freed: tm_ranks_gather() on
  * rank 0 (NULL elsewhere), tm_ranks_share() on all. *total (may be NULL) is their number,
  * on all ranks. */

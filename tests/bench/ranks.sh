@@ -9,7 +9,8 @@
 #   TM_DATA   a folder with knot.off, else a generated one is meshed
 #   LEVEL     of octree-mesh -s, strong; 9
 #   POINTS    of which tetrahedra are made for lepp-improve, strong; 200000
-#   RANKS     weak; 1 4 16 64: an octree has four times as many elements a level deeper
+#   RANKS     weak; 1 2 4 8 16 32 64: an octree has four times as many elements a level
+#             deeper, so that of 2, 8 and 32 ranks each has twice as many as of 4, 16, 64
 #   WEAK      of octree-mesh -s on one rank, weak; 5
 #   PARTS     which: strong weak
 # shellcheck source-path=SCRIPTDIR source=common.inc
@@ -54,7 +55,8 @@ strong() {
 }
 
 # weak NAME RANKS COMMAND… : a row; the numbers of the line of -v, in their order: ranks, MB
-# sent by each, most; messages, most; s of CPU, most; MB of memory, most.
+# sent by each, most; messages, most; s of CPU, most; MB of memory, most. Then octants of
+# others that each has.
 weak() {
     name=$1 ranks=$2
     shift 2
@@ -63,7 +65,9 @@ weak() {
         grep -oE '[0-9]+(\.[0-9]+)?' | tr '\n' ' ' |
         awk -v name="$name" -v ranks="$ranks" '
         NF < 9 { $0 = ranks " 0 0 0 0 1 1 0 0" }
-        { printf "%-24s %5d %9.2f %9.2f %9d %9d %9.2f %9.1f\n", name, ranks, $2, $3, $4, $5, $7 / ($6 > 0 ? $6 : 1), $9 }'
+        { printf "%-24s %5d %9.2f %9.2f %9d %9d %9.2f %9.2f %9.1f", name, ranks, $2, $3, $4, $5, $6, $7 / ($6 > 0 ? $6 : 1), $9 }'
+    sed -n 's/.*of others each rank has \([0-9]*\) octants.*/ \1/p' "$work/log" | tr -d '\n'
+    echo
     rm -f "$work/out"
 }
 
@@ -82,16 +86,16 @@ esac
 case ${PARTS:-strong weak} in
 *weak*)
     echo
-    echo "as much for each rank: MB sent by each and at most, messages, busiest / mean CPU, MB"
-    echo "                         ranks       MB   most MB  messages      most   busiest        MB"
+    echo "as much for each rank: MB sent by each and at most, messages, s of CPU, busiest / mean, MB"
+    echo "                         ranks       MB   most MB  messages      most         s   busiest        MB  ghosts"
     step=${WEAK:-5} more=1
-    for n in ${RANKS:-1 4 16 64}; do
+    for n in ${RANKS:-1 2 4 8 16 32 64}; do
         while [ $((more * 4)) -le "$n" ]; do
             more=$((more * 4)) step=$((step + 1))
         done
         weak "octree-mesh -s $step" "$n" octree-mesh -s "$step" "$knot"
     done
-    for n in ${RANKS:-1 4 16 64}; do
+    for n in ${RANKS:-1 2 4 8 16 32 64}; do
         points $((3000 * n)) 1 | tetgen-mesh -o "$work/tets.tm"
         weak "tet-stats" "$n" tet-stats "$work/tets.tm"
         weak "mesh-check" "$n" mesh-check "$work/tets.tm"

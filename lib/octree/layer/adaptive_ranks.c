@@ -170,14 +170,6 @@ static tm_status make_without_loss(const maker *m, tm_error *error)
     return status;
 }
 
-/* tm_octree_mark_ring(), and the marks of other ranks' nodes. */
-static tm_status mark_ring(const maker *m, const tm_mesh_ghosts *ghosts, bool *near,
-                           uint8_t *split, tm_error *error)
-{
-    tm_octree_mark_ring(&m->share->octree, near, split);
-    return tm_mesh_ghosts_mark(ghosts, near, error);
-}
-
 /* The leaves at boundary nodes that are off the surface, and their neighbours; *any says
  * whether there are some. */
 static tm_status mark_off_surface(const maker *m, bool *near, uint8_t *split, bool *any,
@@ -195,8 +187,10 @@ static tm_status mark_off_surface(const maker *m, bool *near, uint8_t *split, bo
         status = tm_mesh_ghosts_find(&ghosts, m->share, of_node, 1, NULL, error);
     for (size_t s = 0; status == TM_OK && s < mesh->boundary.nodes; s++)
         near[mesh->boundary.grid_node[s]] = mesh->off_surface[s];
-    for (int ring = 0; status == TM_OK && ring < 2; ring++)
-        status = mark_ring(m, &ghosts, near, split, error);
+    for (int ring = 0; status == TM_OK && ring < 2; ring++) {
+        tm_octree_mark_ring(octree, near, split);
+        tm_mesh_ghosts_mark(&ghosts, near);
+    }
     *any = status == TM_OK && keep_own(m, split) > 0;
     free(self);
     tm_mesh_ghosts_free(&ghosts);
@@ -265,10 +259,10 @@ static tm_status find_losses(const maker *m, tm_error *error)
     double(*outer)[3] = mesh->assembly.mesh.xyz + mesh->assembly.outer;
     tm_boundary_share b;
     tm_status status = tm_boundary_share_find(&b, m->share, &mesh->boundary, error);
-    if (status == TM_OK)
-        status = tm_mesh_ghosts_fill(&b.ghosts, mesh->at, sizeof *mesh->at, error);
-    if (status == TM_OK)
-        status = tm_mesh_ghosts_fill(&b.ghosts, outer, sizeof *outer, error);
+    if (status == TM_OK) {
+        tm_mesh_ghosts_fill(&b.ghosts, mesh->at, sizeof *mesh->at);
+        tm_mesh_ghosts_fill(&b.ghosts, outer, sizeof *outer);
+    }
     const tm_mesh_own own = {m->share->own_first, m->share->own_past, b.faces.first,
                              b.faces.past};
     if (status == TM_OK)

@@ -14,26 +14,39 @@
 /* Rows that this rank has of a flat array of `total`, from row `before` on, to the slices
  * that they are in; this rank's slice gets what comes for it. */
 typedef struct {
-    size_t total, slice, next; /* the next row that comes, in the slice */
-    size_t *count;             /* [ranks] */
+    size_t total, next;        /* the next row that comes, in the slice */
+    size_t *count, *got_count; /* [ranks] */
 } dealer;
+
+/* How many of the rows [before, before + count) are in this rank's slice. */
+static size_t in_slice(size_t total, size_t before, size_t count)
+{
+    const unsigned ranks = tm_ranks_count();
+    const size_t first = tm_slice_first(total, ranks, tm_rank()),
+                 past = tm_slice_first(total, ranks, tm_rank() + 1);
+    const size_t begin = before > first ? before : first,
+                 end = before + count < past ? before + count : past;
+    return end > begin ? end - begin : 0;
+}
 
 static tm_status deal(dealer *d, const void *rows, size_t before, size_t count,
                       size_t size, char *slice, tm_error *error)
 {
     const unsigned ranks = tm_ranks_count();
-    size_t all = 0;
-    void *got;
+    const size_t range[2] = {before, count};
+    void *got = NULL;
+    const tm_status status = tm_ranks_share(range, 1, sizeof range, &got, NULL, error);
+    const size_t(*all)[2] = got;
+    if (status != TM_OK)
+        return status;
+    for (unsigned r = 0; r < ranks; r++)
+        d->got_count[r] = in_slice(d->total, all[r][0], all[r][1]);
     tm_slice_shares(d->total, ranks, before, count, d->count);
-    const tm_status status =
-        tm_ranks_exchange(rows, d->count, size, &got, d->count, error);
-    for (unsigned r = 0; status == TM_OK && r < ranks; r++)
-        all += d->count[r];
-    if (all > 0)
-        memcpy(slice + d->next * size, got, all * size);
-    d->next += all;
+    tm_ranks_swap(rows, d->count, size, slice + d->next * size, d->got_count);
+    for (unsigned r = 0; r < ranks; r++)
+        d->next += d->got_count[r];
     free(got);
-    return status;
+    return TM_OK;
 }
 
 /* Deals the nodes: of the octree, outer ones, middles. */
@@ -66,11 +79,12 @@ static tm_status nodes_to_slices(const tm_octree_mesh *m, tm_slices *slices, siz
     node->attributes = 1;
     node->real = tm_new(3 * node->count, sizeof *node->real);
     node->attribute = tm_new(node->count, sizeof *node->attribute);
-    dealer d = {.total = total, .count = tm_new(ranks, sizeof *d.count)};
+    dealer d = {.total = total,
+                .count = tm_new(ranks, sizeof *d.count),
+                .got_count = tm_new(ranks, sizeof *d.got_count)};
     double *class = tm_octree_mesh_classes(m);
-    tm_status status =
-        node->real && node->attribute && d.count && class ? TM_OK : tm_fail_memory(error);
-    status = tm_ranks_agree(status, error);
+    tm_status status = tm_ranks_enough(
+        node->real && node->attribute && d.count && d.got_count && class, error);
     if (status == TM_OK)
         status = deal_nodes(m, &d, m->assembly.mesh.xyz, sizeof *m->assembly.mesh.xyz,
                             node->real, error);
@@ -78,6 +92,7 @@ static tm_status nodes_to_slices(const tm_octree_mesh *m, tm_slices *slices, siz
         status = deal_nodes(m, &d, class, sizeof *class, node->attribute, error);
     slices->slice[b] = (tm_slice){first, total};
     free(d.count);
+    free(d.got_count);
     free(class);
     return status;
 }

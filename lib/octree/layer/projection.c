@@ -135,11 +135,11 @@ static void look_around(const void *context, size_t n, uint64_t *seen)
     }
 }
 
-static tm_status give_outer(void *context, size_t step, tm_error *error)
+static void give_outer(void *context, size_t step)
 {
     const fitter *projection = context;
     double(*xyz)[3] = projection->assembly->mesh.xyz;
-    return tm_mesh_ghosts_fill(&projection->by_step[step], xyz, sizeof *xyz, error);
+    tm_mesh_ghosts_fill(&projection->by_step[step], xyz, sizeof *xyz);
 }
 
 /* The ghosts of a range of nodes, of those that have an order, where this is given. */
@@ -157,20 +157,18 @@ static tm_status find_ghosts(tm_mesh_ghosts *ghosts, const tm_mesh_share *share,
     return status;
 }
 
-static tm_status sweep_all(fitter *projection, const tm_sweep *sweep, tm_error *error)
+static void sweep_all(fitter *projection, const tm_sweep *sweep)
 {
     const size_t own = projection->own_past - projection->own;
     tm_parallel_runs(projection->threads, own, TM_CHUNK, put_first, projection);
     double(*xyz)[3] = projection->assembly->mesh.xyz;
-    tm_status status = TM_OK;
     if (projection->share)
-        status = tm_mesh_ghosts_fill(&projection->ghosts, xyz, sizeof *xyz, error);
+        tm_mesh_ghosts_fill(&projection->ghosts, xyz, sizeof *xyz);
     const int begin = projection->surface->curves > 0 ? 0 : CURVE_SWEEPS;
-    for (int i = begin; i < CURVE_SWEEPS + BOUNDARY_SWEEPS && status == TM_OK; i++) {
+    for (int i = begin; i < CURVE_SWEEPS + BOUNDARY_SWEEPS; i++) {
         projection->curves_only = i < CURVE_SWEEPS;
-        status = tm_sweep_make(sweep, sweep_boundary, give_outer, projection, error);
+        tm_sweep_make(sweep, sweep_boundary, give_outer, projection);
     }
-    return status;
 }
 
 static tm_status project_boundary(fitter *projection, tm_error *error)
@@ -189,7 +187,7 @@ static tm_status project_boundary(fitter *projection, tm_error *error)
                                      a->outer + projection->own, NULL,
                                      &projection->by_step, error);
     if (status == TM_OK)
-        status = sweep_all(projection, &sweep, error);
+        sweep_all(projection, &sweep);
     tm_sweep_free_ghosts(&sweep, projection->by_step);
     tm_sweep_free(&sweep);
     tm_mesh_ghosts_free(&projection->ghosts);
@@ -309,9 +307,9 @@ static tm_status find_own(const fitter *projection, zone *z, tm_error *error)
     if (status == TM_OK)
         status =
             find_ghosts(&z->ghosts[1], share, nodes, middles, nodes, z->order, error);
-    return status == TM_OK
-               ? tm_mesh_ghosts_fill(&z->ghosts[0], z->number, sizeof *z->number, error)
-               : status;
+    if (status == TM_OK)
+        tm_mesh_ghosts_fill(&z->ghosts[0], z->number, sizeof *z->number);
+    return status;
 }
 
 /* Calls visit for both directions of an element's edges whose first end is in a range. */
@@ -458,16 +456,10 @@ static void average_middles(void *context, size_t first, size_t past)
     average_nodes(z, z->middle + first, z->middle + past);
 }
 
-static tm_status give_core(void *context, size_t step, tm_error *error)
+static void give_core(void *context, size_t step)
 {
     const zone *z = context;
-    return tm_mesh_ghosts_fill(&z->by_step[step], z->mesh->xyz, sizeof *z->mesh->xyz,
-                               error);
-}
-
-static tm_status give_middles(const zone *z, tm_error *error)
-{
-    return tm_mesh_ghosts_fill(&z->ghosts[1], z->mesh->xyz, sizeof *z->mesh->xyz, error);
+    tm_mesh_ghosts_fill(&z->by_step[step], z->mesh->xyz, sizeof *z->mesh->xyz);
 }
 
 static void look_at_neighbours(const void *context, size_t n, uint64_t *seen)
@@ -491,11 +483,11 @@ static tm_status average(zone *z, unsigned threads, tm_error *error)
         status = tm_sweep_cut_ghosts(&sweep, &z->ghosts[0], z->mesh->nodes, 0,
                                      z->node + z->own, &z->by_step, error);
     for (int i = 0; status == TM_OK && i < CORE_SWEEPS; i++) {
-        status = tm_sweep_make(&sweep, average_run, give_core, z, error);
+        tm_sweep_make(&sweep, average_run, give_core, z);
         tm_parallel_runs(threads, z->middle_past - z->middle, TM_CHUNK, average_middles,
                          z);
-        if (status == TM_OK && z->number)
-            status = give_middles(z, error);
+        if (z->number)
+            tm_mesh_ghosts_fill(&z->ghosts[1], z->mesh->xyz, sizeof *z->mesh->xyz);
     }
     tm_sweep_free_ghosts(&sweep, z->by_step);
     tm_sweep_free(&sweep);
@@ -519,7 +511,7 @@ tm_status tm_project_layer(tm_assembly *assembly, const tm_interior_boundary *bo
     zone z = {.mesh = &assembly->mesh};
     tm_status status = tm_ranks_agree(find_moving(&projection, &z, error), error);
     if (status == TM_OK && share)
-        status = tm_mesh_ghosts_fill(&share->ghosts, z.moves, sizeof *z.moves, error);
+        tm_mesh_ghosts_fill(&share->ghosts, z.moves, sizeof *z.moves);
     if (status == TM_OK)
         status = tm_ranks_agree(list_moving(&projection, &z, error), error);
     if (status == TM_OK)

@@ -346,7 +346,7 @@ tm_status tm_shared_put(const tm_shared_work *s, tm_sent_node *moved, size_t lis
                sizeof of->xyz);
     }
     if (status == TM_OK)
-        status = tm_mesh_ghosts_fill(&s->share->ghosts, xyz, sizeof *xyz, error);
+        tm_mesh_ghosts_fill(&s->share->ghosts, xyz, sizeof *xyz);
     free(count);
     free(range);
     free(got);

@@ -41,7 +41,7 @@ static void mark_nodes(const tm_shared_work *s, size_t e, bool *mark)
 }
 
 /* Marks the nodes of candidates that are bad, of any rank, then so many rings around. */
-static tm_status mark_near(const tm_shared_work *s, unsigned rings, tm_error *error)
+static void mark_near(const tm_shared_work *s, unsigned rings)
 {
     const tm_mesh_ghosts *ghosts = &s->share->ghosts;
     const size_t nodes = s->mesh->assembly.mesh.nodes;
@@ -49,16 +49,15 @@ static tm_status mark_near(const tm_shared_work *s, unsigned rings, tm_error *er
     for (size_t c = 0; c < s->candidates; c++)
         if (is_bad(s, s->candidate[c]))
             mark_nodes(s, s->candidate[c], s->near);
-    tm_status status = tm_mesh_ghosts_mark(ghosts, s->near, error);
-    for (unsigned ring = 0; ring < rings && status == TM_OK; ring++) {
+    tm_mesh_ghosts_mark(ghosts, s->near);
+    for (unsigned ring = 0; ring < rings; ring++) {
         memcpy(s->mark, s->near, nodes);
         for (size_t c = 0; c < s->candidates; c++)
             if (tm_shared_is_near(s, s->candidate[c]))
                 mark_nodes(s, s->candidate[c], s->mark);
-        status = tm_mesh_ghosts_mark(ghosts, s->mark, error);
+        tm_mesh_ghosts_mark(ghosts, s->mark);
         memcpy(s->near, s->mark, nodes);
     }
-    return status;
 }
 
 /* At first all own elements are candidates; then those within the most rings. */
@@ -66,20 +65,20 @@ static tm_status find_candidates(tm_shared_work *s, tm_error *error)
 {
     size_t count = 0;
     s->candidate = tm_new(own_elements(s), sizeof *s->candidate);
-    tm_status status = tm_ranks_enough(s->candidate, error);
+    const tm_status status = tm_ranks_enough(s->candidate, error);
     if (status != TM_OK)
         return status;
     s->candidates = own_elements(s);
     for (size_t e = 0; e < s->candidates; e++)
         s->candidate[e] = (uint32_t)(s->share->elements.first + e);
-    status = mark_near(s, RINGS, error);
-    for (size_t c = 0; status == TM_OK && c < s->candidates; c++)
+    mark_near(s, RINGS);
+    for (size_t c = 0; c < s->candidates; c++)
         if (tm_shared_is_near(s, s->candidate[c]))
             s->candidate[count++] = s->candidate[c];
     s->candidates = count;
     uint32_t *fewer = realloc(s->candidate, (count + 1) * sizeof *fewer);
     s->candidate = fewer ? fewer : s->candidate;
-    return status;
+    return TM_OK;
 }
 
 /* Joins the near nodes of each element: what is of different sets has nothing to do with
@@ -125,9 +124,8 @@ static tm_status make_pass(const tm_shared_work *s, unsigned pass, size_t *measu
     const tm_mixed_mesh *mesh = &s->mesh->assembly.mesh;
     tm_sent_node *moved = NULL;
     size_t listed = 0, here = 0;
-    tm_status status = mark_near(s, pass == 0 ? RINGS : tm_optimise_rings(pass), error);
-    if (status == TM_OK && pass > 0)
-        status = find_sets(s, error);
+    mark_near(s, pass == 0 ? RINGS : tm_optimise_rings(pass));
+    tm_status status = pass > 0 ? find_sets(s, error) : TM_OK;
     if (status == TM_OK)
         status = tm_shared_mend(s, pass, &moved, &listed, &here, error);
     if (status == TM_OK)

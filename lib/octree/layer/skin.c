@@ -34,9 +34,9 @@ static tm_status number_nodes(tm_boundary_share *s, const tm_octree_share *of,
         s->number[i] = (uint32_t)(s->nodes.number + i - s->nodes.first);
     const uint32_t *const of_node[] = {here};
     const tm_status status = tm_mesh_ghosts_find(&s->ghosts, of, of_node, 1, NULL, error);
-    return status == TM_OK
-               ? tm_mesh_ghosts_fill(&s->ghosts, s->number, sizeof *s->number, error)
-               : status;
+    if (status == TM_OK)
+        tm_mesh_ghosts_fill(&s->ghosts, s->number, sizeof *s->number);
+    return status;
 }
 
 tm_status tm_boundary_share_find(tm_boundary_share *s, const tm_octree_share *of,

@@ -252,7 +252,7 @@ tm_status tm_sweep_cut_ghosts(const tm_sweep *sweep, const tm_mesh_ghosts *ghost
         step[node ? node[n] : first + n] =
             (uint32_t)sweep->step[(sweep->first + n) / TM_SWEEP_RUN];
     if (status == TM_OK)
-        status = tm_mesh_ghosts_fill(ghosts, step, sizeof *step, error);
+        tm_mesh_ghosts_fill(ghosts, step, sizeof *step);
     if (status == TM_OK)
         status = cut_ghosts(ghosts, nodes, step, kept, *by_step, steps, error);
     free(step);
@@ -288,22 +288,18 @@ static void work_on(void *context, size_t i)
     s->work(s->context, first, past);
 }
 
-tm_status tm_sweep_make(const tm_sweep *sweep,
-                        void (*work)(void *context, size_t first, size_t past),
-                        tm_status (*exchange)(void *context, size_t step,
-                                              tm_error *error),
-                        void *context, tm_error *error)
+void tm_sweep_make(const tm_sweep *sweep,
+                   void (*work)(void *context, size_t first, size_t past),
+                   void (*exchange)(void *context, size_t step), void *context)
 {
     sweeping s = {.sweep = sweep, .work = work, .context = context};
-    tm_status status = TM_OK;
     for (size_t colour = 0; colour < sweep->colours; colour++) {
         s.first = sweep->start[colour];
-        for (s.step = sweep->first_step[colour];
-             s.step < sweep->first_step[colour + 1] && status == TM_OK; s.step++) {
+        for (s.step = sweep->first_step[colour]; s.step < sweep->first_step[colour + 1];
+             s.step++) {
             tm_parallel(sweep->threads, sweep->start[colour + 1] - s.first, work_on, &s);
             if (tm_ranks_count() > 1)
-                status = exchange(context, s.step, error);
+                exchange(context, s.step);
         }
     }
-    return status;
 }

@@ -60,12 +60,10 @@ tm_status tm_sweep_cut_ghosts(const tm_sweep *sweep, const tm_mesh_ghosts *ghost
 void tm_sweep_free_ghosts(const tm_sweep *sweep, tm_mesh_ghosts *by_step);
 
 /* Calls work(context, first, past) for each run, or this rank's piece of it, colour by
- * colour; of several ranks exchange(context, step, error) after each step, which gives
- * others what has changed in it. All ranks call it, and have the same status. */
-tm_status tm_sweep_make(const tm_sweep *sweep,
-                        void (*work)(void *context, size_t first, size_t past),
-                        tm_status (*exchange)(void *context, size_t step,
-                                              tm_error *error),
-                        void *context, tm_error *error);
+ * colour; of several ranks exchange(context, step) after each step, which gives others
+ * what has changed in it. All ranks call it. */
+void tm_sweep_make(const tm_sweep *sweep,
+                   void (*work)(void *context, size_t first, size_t past),
+                   void (*exchange)(void *context, size_t step), void *context);
 
 #endif

@@ -110,14 +110,12 @@ static void restore(retreat *r, size_t n)
         xyz[i] = r->steps[n] > HALVES ? r->base[n][i] : (xyz[i] + r->base[n][i]) / 2;
 }
 
-/* One round over the elements at nodes that changed; *more is false when all are valid.
- */
-static tm_status take_back(retreat *r, bool *more, tm_error *error)
+/* One round over the elements at nodes that changed; false when all are valid. */
+static bool take_back(retreat *r)
 {
     const tm_mixed_mesh *mesh = r->mesh;
     const size_t first = r->share ? r->share->elements.first : 0;
     const size_t past = r->share ? r->share->elements.past : mesh->elements;
-    tm_status status = TM_OK;
     bool any = false;
     for (size_t e = first; e < past; e++) {
         if (!has_changed(r, e) || is_valid(mesh, e))
@@ -128,28 +126,25 @@ static tm_status take_back(retreat *r, bool *more, tm_error *error)
             r->invalid++;
     }
     if (r->share)
-        status = tm_mesh_ghosts_mark(&r->share->ghosts, r->to_change, error);
+        tm_mesh_ghosts_mark(&r->share->ghosts, r->to_change);
     for (size_t n = 0; n < mesh->nodes; n++) {
         r->changed[n] = r->to_change[n];
         if (r->to_change[n])
             restore(r, n);
         r->to_change[n] = false;
     }
-    *more = tm_ranks_any(any);
-    return status;
+    return tm_ranks_any(any);
 }
 
-static tm_status retreat_all(tm_octree_mesh *m, retreat *r, tm_error *error)
+static void retreat_all(tm_octree_mesh *m, retreat *r)
 {
-    tm_status status = TM_OK;
     memset(r->changed, true, r->mesh->nodes);
-    for (bool more = true; more && status == TM_OK;)
-        status = take_back(r, &more, error);
+    for (bool more = true; more;)
+        more = take_back(r);
     tm_ranks_sum(&r->invalid, 1);
     m->report.invalid = r->invalid;
     for (size_t s = 0; s < m->boundary.nodes; s++)
         m->off_surface[s] |= r->steps[m->assembly.outer + s] > 0;
-    return status;
 }
 
 static tm_status hold_back(tm_octree_mesh *m, const tm_octree *octree, tm_error *error)
@@ -169,9 +164,9 @@ static tm_status hold_back(tm_octree_mesh *m, const tm_octree *octree, tm_error 
                                    base, error);
     status = tm_ranks_agree(status, error);
     if (status == TM_OK && m->share)
-        status = tm_mesh_ghosts_fill(&m->share->ghosts, base, sizeof *base, error);
+        tm_mesh_ghosts_fill(&m->share->ghosts, base, sizeof *base);
     if (status == TM_OK)
-        status = retreat_all(m, &r, error);
+        retreat_all(m, &r);
     free(base);
     free(r.steps);
     free(r.changed);

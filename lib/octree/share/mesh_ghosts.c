@@ -59,8 +59,21 @@ static bool start(tm_mesh_ghosts *g, unsigned ranks)
 {
     *g = (tm_mesh_ghosts){.ranks = ranks,
                           .sends = calloc(ranks + 1, sizeof *g->sends),
-                          .receives = calloc(ranks + 1, sizeof *g->receives)};
-    return g->sends && g->receives;
+                          .receives = calloc(ranks + 1, sizeof *g->receives),
+                          .sends_count = tm_new(ranks, sizeof *g->sends_count),
+                          .receives_count = tm_new(ranks, sizeof *g->receives_count)};
+    return g->sends && g->receives && g->sends_count && g->receives_count;
+}
+
+/* When both lists are there. */
+static bool finish(tm_mesh_ghosts *g)
+{
+    for (unsigned r = 0; r < g->ranks; r++) {
+        g->sends_count[r] = g->sends[r + 1] - g->sends[r];
+        g->receives_count[r] = g->receives[r + 1] - g->receives[r];
+    }
+    g->room = tm_new(g->sends[g->ranks] + g->receives[g->ranks], TM_GHOST_BYTES);
+    return g->room != NULL;
 }
 
 tm_status tm_mesh_ghosts_find(tm_mesh_ghosts *g, const tm_octree_share *share,
@@ -76,7 +89,7 @@ tm_status tm_mesh_ghosts_find(tm_mesh_ghosts *g, const tm_octree_share *share,
         g->receives[r + 1] = received.count;
         done = !sent.failed && !received.failed;
     }
-    return tm_ranks_enough(done, error);
+    return tm_ranks_enough(done && finish(g), error);
 }
 
 tm_status tm_mesh_ghosts_some(tm_mesh_ghosts *some, const tm_mesh_ghosts *all,
@@ -93,7 +106,7 @@ tm_status tm_mesh_ghosts_some(tm_mesh_ghosts *some, const tm_mesh_ghosts *all,
         some->receives[r + 1] = received.count;
         done = !sent.failed && !received.failed;
     }
-    return tm_ranks_enough(done, error);
+    return tm_ranks_enough(done && finish(some), error);
 }
 
 void tm_mesh_ghosts_free(tm_mesh_ghosts *g)
@@ -102,47 +115,38 @@ void tm_mesh_ghosts_free(tm_mesh_ghosts *g)
     free(g->receives);
     free(g->sent);
     free(g->received);
+    free(g->sends_count);
+    free(g->receives_count);
+    free(g->room);
     *g = (tm_mesh_ghosts){0};
 }
 
-/* Sends value[item[start[r]]] … to rank r; *got is what comes. */
-static tm_status exchange(unsigned ranks, const size_t *start, const uint32_t *item,
-                          const char *value, size_t size, void **got, tm_error *error)
+/* Sends value[item[…]], count[r] of them to rank r; returns where what comes is. */
+static const char *swap(const tm_mesh_ghosts *g, const uint32_t *item,
+                        const size_t *count, const size_t *got_count, const char *value,
+                        size_t size)
 {
-    char *send = tm_new(start[ranks], size);
-    size_t *count = tm_new(ranks, sizeof *count);
-    *got = NULL;
-    tm_status status = tm_ranks_enough(send && count, error);
-    for (size_t i = 0; status == TM_OK && i < start[ranks]; i++)
-        memcpy(send + i * size, value + item[i] * size, size);
-    for (unsigned r = 0; status == TM_OK && r < ranks; r++)
-        count[r] = start[r + 1] - start[r];
-    if (status == TM_OK)
-        status = tm_ranks_exchange(send, count, size, got, count, error);
-    free(send);
-    free(count);
-    return status;
+    size_t all = 0;
+    for (unsigned r = 0; r < g->ranks; r++)
+        all += count[r];
+    for (size_t i = 0; i < all; i++)
+        memcpy(g->room + i * size, value + item[i] * size, size);
+    tm_ranks_swap(g->room, count, size, g->room + all * size, got_count);
+    return g->room + all * size;
 }
 
-tm_status tm_mesh_ghosts_fill(const tm_mesh_ghosts *g, void *value, size_t size,
-                              tm_error *error)
+void tm_mesh_ghosts_fill(const tm_mesh_ghosts *g, void *value, size_t size)
 {
-    void *got;
-    const tm_status status =
-        exchange(g->ranks, g->sends, g->sent, value, size, &got, error);
-    for (size_t i = 0; status == TM_OK && i < g->receives[g->ranks]; i++)
-        memcpy((char *)value + g->received[i] * size, (char *)got + i * size, size);
-    free(got);
-    return status;
+    const char *got = swap(g, g->sent, g->sends_count, g->receives_count, value, size);
+    for (size_t i = 0; i < g->receives[g->ranks]; i++)
+        memcpy((char *)value + g->received[i] * size, got + i * size, size);
 }
 
-tm_status tm_mesh_ghosts_mark(const tm_mesh_ghosts *g, bool *mark, tm_error *error)
+void tm_mesh_ghosts_mark(const tm_mesh_ghosts *g, bool *mark)
 {
-    void *got;
-    const tm_status status = exchange(g->ranks, g->receives, g->received,
-                                      (const char *)mark, sizeof *mark, &got, error);
-    for (size_t i = 0; status == TM_OK && i < g->sends[g->ranks]; i++)
+    const char *got = swap(g, g->received, g->receives_count, g->sends_count,
+                           (const char *)mark, sizeof *mark);
+    for (size_t i = 0; i < g->sends[g->ranks]; i++)
         mark[g->sent[i]] |= ((const bool *)got)[i];
-    free(got);
-    return status == TM_OK ? tm_mesh_ghosts_fill(g, mark, sizeof *mark, error) : status;
+    tm_mesh_ghosts_fill(g, mark, sizeof *mark);
 }

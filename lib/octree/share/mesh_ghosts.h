@@ -15,7 +15,12 @@ typedef struct tm_mesh_ghosts {
     uint32_t
         *sent; /* own things, by local numbers: rank r has sent[sends[r]] … as ghosts */
     uint32_t *received; /* ghosts: received[receives[r]] … are rank r's own */
+    size_t *sends_count, *receives_count; /* [ranks] */
+    char *room; /* for values of all that is sent and received, of TM_GHOST_BYTES each */
 } tm_mesh_ghosts;
+
+/* What may be given to ghosts. */
+enum { TM_GHOST_BYTES = 40 };
 
 /* Finds them. of_node[i][local node], of so many lists, and of_leaf[local leaf], which
  * may be NULL, are the things there, TM_NONE where there is none: all ranks that have a
@@ -29,13 +34,12 @@ tm_status tm_mesh_ghosts_some(tm_mesh_ghosts *some, const tm_mesh_ghosts *all,
                               const bool *kept, tm_error *error);
 void tm_mesh_ghosts_free(tm_mesh_ghosts *ghosts);
 
-/* Gives ghosts the values, of `size` bytes, of their owners. All ranks call it, and have
- * the same status. */
-tm_status tm_mesh_ghosts_fill(const tm_mesh_ghosts *ghosts, void *value, size_t size,
-                              tm_error *error);
+/* Gives ghosts the values, of `size` bytes, at most TM_GHOST_BYTES, of their owners. All
+ * ranks call it. */
+void tm_mesh_ghosts_fill(const tm_mesh_ghosts *ghosts, void *value, size_t size);
 
 /* Marks everywhere what any rank has marked. */
-tm_status tm_mesh_ghosts_mark(const tm_mesh_ghosts *ghosts, bool *mark, tm_error *error);
+void tm_mesh_ghosts_mark(const tm_mesh_ghosts *ghosts, bool *mark);
 
 TM_EXTERN_C_END
 

@@ -15,7 +15,8 @@ enum { PIECE = 1 << 30, TAG = 7 };
 static struct {
     int rank, count;
     tm_ranks_traffic sent;
-} world = {0, 1, {0, 0}};
+    MPI_Request *request; /* [2 * count]: room for tm_ranks_swap() */
+} world = {0, 1, {0, 0}, NULL};
 
 bool tm_ranks_are_mpi(void)
 {
@@ -29,7 +30,8 @@ tm_status tm_ranks_start(tm_error *error)
         return status;
     MPI_Comm_rank(MPI_COMM_WORLD, &world.rank);
     MPI_Comm_size(MPI_COMM_WORLD, &world.count);
-    return TM_OK;
+    world.request = tm_new(2 * (size_t)world.count, sizeof *world.request);
+    return tm_ranks_enough(world.request, error);
 }
 
 unsigned tm_rank(void)
@@ -45,6 +47,8 @@ unsigned tm_ranks_count(void)
 void tm_ranks_leave(void)
 {
     tm_mpi_finish();
+    free(world.request);
+    world.request = NULL;
     world.count = 1;
     world.rank = 0;
 }
@@ -212,6 +216,43 @@ static void send_and_receive(const char *send, const size_t *send_count, char *g
         to += bytes;
     }
     wait_for_all(m);
+}
+
+/* The piece that begins at `at` of what goes to each other rank, or comes from it. */
+static void begin_pieces(messages *m, char *bytes, const size_t *count, size_t size,
+                         size_t at, bool send)
+{
+    for (int r = 0; r < world.count; r++) {
+        const size_t all = count[r] * size;
+        if (r != world.rank && at < all)
+            begin(m, bytes + at, all - at < PIECE ? all - at : PIECE, r, send);
+        bytes += all;
+    }
+}
+
+void tm_ranks_swap(const void *send, const size_t *send_count, size_t size, void *got,
+                   const size_t *got_count)
+{
+    size_t most = 0, from = 0, to = 0;
+    for (int r = 0; r < world.count; r++) {
+        if (r < world.rank) {
+            from += send_count[r] * size;
+            to += got_count[r] * size;
+        }
+        if (send_count[r] * size > most)
+            most = send_count[r] * size;
+        if (got_count[r] * size > most)
+            most = got_count[r] * size;
+    }
+    if (send_count[world.rank] > 0)
+        memcpy((char *)got + to, (const char *)send + from,
+               send_count[world.rank] * size);
+    for (size_t at = 0; at < most; at += PIECE) {
+        messages m = {.request = world.request};
+        begin_pieces(&m, got, got_count, size, at, false);
+        begin_pieces(&m, (char *)send, send_count, size, at, true);
+        wait_for_all(&m);
+    }
 }
 
 tm_status tm_ranks_exchange(const void *send, const size_t *send_count, size_t size,

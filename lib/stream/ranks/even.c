@@ -11,36 +11,87 @@
 /* How many rows go to each rank. */
 typedef struct {
     size_t *rows;
-    size_t *items; /* of lists; room for as many numbers */
-    size_t got;    /* rows of the slice */
+    size_t got; /* rows of the slice */
 } plan;
 
 static tm_status make_plan(plan *p, size_t before, size_t count, size_t total,
                            tm_error *error)
 {
     const unsigned ranks = tm_ranks_count();
-    p->rows = tm_new(2 * (size_t)ranks, sizeof *p->rows);
+    p->rows = tm_new(ranks, sizeof *p->rows);
     if (tm_ranks_any(!p->rows))
         return tm_fail_memory(error);
-    p->items = p->rows + ranks;
     tm_slice_shares(total, ranks, before, count, p->rows);
     return TM_OK;
+}
+
+static size_t sum_of(const size_t *count, unsigned first, unsigned past)
+{
+    size_t sum = 0;
+    for (unsigned r = first; r < past; r++)
+        sum += count[r];
+    return sum;
+}
+
+/* As memcpy(), also of nothing to or from nowhere. */
+static void copy(void *to, const void *from, size_t size)
+{
+    if (size > 0)
+        memcpy(to, from, size);
+}
+
+/* Makes room for what is more than this rank has, or gives it back. */
+static tm_status resize(void **array, size_t items, size_t size, tm_error *error)
+{
+    void *other = realloc(*array, items * size + 1);
+    if (other)
+        *array = other;
+    return tm_ranks_enough(other, error);
+}
+
+/* Of an array with items of `size` bytes for each rank, count[ranks] of them, this rank
+ * keeps its own, where they are, and gets what others have for it. */
+static tm_status keep_own(void **array, const size_t *count, size_t size, tm_error *error)
+{
+    const unsigned ranks = tm_ranks_count(), rank = tm_rank();
+    const size_t own = count[rank], before = sum_of(count, 0, rank),
+                 behind = sum_of(count, rank + 1, ranks);
+    size_t *to = tm_new(ranks, sizeof *to);
+    char *send = tm_new(before + behind, size);
+    void *got = NULL;
+    tm_status status = tm_ranks_enough(to && send, error);
+    if (status == TM_OK) {
+        memcpy(to, count, ranks * sizeof *to);
+        to[rank] = 0;
+        copy(send, *array, before * size);
+        if (behind > 0)
+            memcpy(send + before * size, (char *)*array + (before + own) * size,
+                   behind * size);
+        status = tm_ranks_exchange(send, to, size, &got, to, error);
+    }
+    free(send);
+    const size_t first = status == TM_OK ? sum_of(to, 0, rank) : 0,
+                 last = status == TM_OK ? sum_of(to, rank + 1, ranks) : 0;
+    const size_t now = first + own + last, then = before + own + behind;
+    if (status == TM_OK)
+        status = resize(array, now > then ? now : then, size, error);
+    if (status == TM_OK) {
+        char *to_here = *array;
+        memmove(to_here + first * size, to_here + before * size, own * size);
+        copy(to_here, got, first * size);
+        copy(to_here + (first + own) * size, (char *)got + first * size, last * size);
+        status = resize(array, now, size, error);
+    }
+    free(to);
+    free(got);
+    return status;
 }
 
 /* *array has `width` numbers of `size` bytes for each row; NULL of width 0. */
 static tm_status move(const plan *p, void **array, size_t width, size_t size,
                       tm_error *error)
 {
-    void *got;
-    if (width == 0)
-        return TM_OK;
-    const tm_status status =
-        tm_ranks_exchange(*array, p->rows, width * size, &got, p->items, error);
-    if (status != TM_OK)
-        return status;
-    free(*array);
-    *array = got;
-    return TM_OK;
+    return width == 0 ? TM_OK : keep_own(array, p->rows, width * size, error);
 }
 
 /* The lists: how long they are, then what is in them. */
@@ -48,7 +99,6 @@ static tm_status move_lists(const plan *p, tm_block *block, tm_error *error)
 {
     const unsigned ranks = tm_ranks_count();
     size_t row = 0;
-    void *got;
     size_t *length = tm_new(block->count, sizeof *length);
     size_t *items = tm_new(ranks, sizeof *items);
     tm_status status = tm_ranks_any(!length || !items) ? tm_fail_memory(error) : TM_OK;
@@ -62,12 +112,9 @@ static tm_status move_lists(const plan *p, tm_block *block, tm_error *error)
     if (status == TM_OK)
         status = move(p, (void **)&length, 1, sizeof *length, error);
     if (status == TM_OK) {
-        status = tm_ranks_exchange(block->item, items, sizeof *block->item, &got, items,
-                                   error);
-        if (status == TM_OK) {
-            free(block->item);
-            block->item = got;
-        }
+        void *item = block->item;
+        status = keep_own(&item, items, sizeof *block->item, error);
+        block->item = item;
     }
     size_t *start = status == TM_OK ? tm_new(p->got + 1, sizeof *start) : NULL;
     if (status == TM_OK && tm_ranks_any(!start)) {
