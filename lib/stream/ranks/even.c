@@ -61,8 +61,8 @@ static tm_status keep_own(void **array, const size_t *count, size_t size, tm_err
     void *got = NULL;
     tm_status status = tm_ranks_enough(to && send, error);
     if (status == TM_OK) {
-        memcpy(to, count, ranks * sizeof *to);
-        to[rank] = 0;
+        for (unsigned r = 0; r < ranks; r++)
+            to[r] = r == rank ? 0 : count[r];
         copy(send, *array, before * size);
         if (behind > 0)
             memcpy(send + before * size, (char *)*array + (before + own) * size,
