@@ -9,9 +9,9 @@
 #   TM_DATA   a folder with knot.off, else a generated one is meshed
 #   LEVEL     of octree-mesh -s, strong; 9
 #   POINTS    of which tetrahedra are made for lepp-improve, strong; 200000
-#   RANKS     weak; 1 2 4 8 16 32 64: an octree has four times as many elements a level
+#   RANKS     weak; 2 4 8 16 32 64: an octree has four times as many elements a level
 #             deeper, so that of 2, 8 and 32 ranks each has twice as many as of 4, 16, 64
-#   WEAK      of octree-mesh -s on one rank, weak; 5
+#   WEAK      of octree-mesh -s on up to 3 ranks, weak; 5
 #   PARTS     which: strong weak
 # shellcheck source-path=SCRIPTDIR source=common.inc
 . "$(dirname "$0")/common.inc"
@@ -64,7 +64,6 @@ weak() {
     sed -n 's/^[^:]*: \([0-9]* ranks: .* MB sent by each.*\)/\1/p' "$work/log" |
         grep -oE '[0-9]+(\.[0-9]+)?' | tr '\n' ' ' |
         awk -v name="$name" -v ranks="$ranks" '
-        NF < 9 { $0 = ranks " 0 0 0 0 1 1 0 0" }
         { printf "%-24s %5d %9.2f %9.2f %9d %9d %9.2f %9.2f %9.1f", name, ranks, $2, $3, $4, $5, $6, $7 / ($6 > 0 ? $6 : 1), $9 }'
     sed -n 's/.*of others each rank has \([0-9]*\) octants.*/ \1/p' "$work/log" | tr -d '\n'
     echo
@@ -81,6 +80,10 @@ case ${PARTS:-strong weak} in
     strong "polylla3d --star" polylla3d --star "$work/tets.tm"
     strong "mesh-check" mesh-check "$work/tets.tm"
     strong "tet-stats" tet-stats "$work/tets.tm"
+    polylla3d -q -o "$work/cells.tm" "$work/tets.tm"
+    strong "poly-stats" poly-stats "$work/cells.tm"
+    octree-mesh -q -s $((level - 1)) -o "$work/mixed.tm" "$knot"
+    strong "octree-repair -t 0.2" octree-repair -t 0.2 "$work/mixed.tm"
     ;;
 esac
 case ${PARTS:-strong weak} in
@@ -89,13 +92,13 @@ case ${PARTS:-strong weak} in
     echo "as much for each rank: MB sent by each and at most, messages, s of CPU, busiest / mean, MB"
     echo "                         ranks       MB   most MB  messages      most         s   busiest        MB  ghosts"
     step=${WEAK:-5} more=1
-    for n in ${RANKS:-1 2 4 8 16 32 64}; do
+    for n in ${RANKS:-2 4 8 16 32 64}; do
         while [ $((more * 4)) -le "$n" ]; do
             more=$((more * 4)) step=$((step + 1))
         done
         weak "octree-mesh -s $step" "$n" octree-mesh -s "$step" "$knot"
     done
-    for n in ${RANKS:-1 2 4 8 16 32 64}; do
+    for n in ${RANKS:-2 4 8 16 32 64}; do
         points $((3000 * n)) 1 | tetgen-mesh -o "$work/tets.tm"
         weak "tet-stats" "$n" tet-stats "$work/tets.tm"
         weak "mesh-check" "$n" mesh-check "$work/tets.tm"
