@@ -87,15 +87,15 @@ printf '%-16s %10s %9s %9s %9s\n' filter elements "CPU s" MB "bytes/el."
     row poly-stats "$(count .cell "$work/cells.tm")" poly-stats $more cells.tm
     row mesh-check-poly "$(count .cell "$work/cells.tm")" mesh-check $more cells.tm
     row openfoam-export "$(count .cell "$work/cells.tm")" openfoam-export $more foam cells.tm
-    rm -r "$work/cells.tm" "$work/foam"
+    rm -rf "$work/cells.tm" "$work/foam"
     row lepp-improve "$n" lepp-improve $more tets.tm
     row lepp-bisection "$n" lepp-improve $more -a bisection -s 1 tets.tm
     rm "$work/tets.tm"
     unit_cube >"$work/cube.off"
     level=$(awk -v t="$tetrahedra" 'BEGIN { printf "%d", log(t) / log(8) + 0.999 }')
-    octree-mesh --quiet -a "$level" -o "$work/octants.tm" "$work/cube.off"
+    octree-mesh --quiet --most 4000000000 -a "$level" -o "$work/octants.tm" "$work/cube.off"
     n=$(count .mix "$work/octants.tm")
-    row octree-mesh "$n" octree-mesh $more -a "$level" cube.off
+    row octree-mesh "$n" octree-mesh $more --most 4000000000 -a "$level" cube.off
     row octree-repair "$n" octree-repair $more -t 0.3 octants.tm
     row jens-stats-mix "$n" jens-stats $more octants.tm
     row oct-export "$n" oct-export $more octants.tm
