@@ -97,8 +97,7 @@ tm_status tm_ranks_exchange(const void *send, const size_t *send_count, size_t s
     *got = tm_new(send_count[0], size);
     if (!*got)
         return tm_fail_memory(error);
-    if (send_count[0] > 0)
-        memcpy(*got, send, send_count[0] * size);
+    tm_ranks_swap(send, send_count, size, *got, got_count);
     return TM_OK;
 }
 

@@ -159,100 +159,66 @@ void tm_ranks_broadcast(void *bytes, size_t size)
     broadcast(bytes, size, 0);
 }
 
-/* Messages under way. */
+/* Messages under way: one to each other rank, and one from each. */
 typedef struct {
-    MPI_Request *request;
-    size_t count;
+    size_t count; /* of world.request */
 } messages;
 
-static size_t pieces_of(size_t bytes)
+/* Begins the piece at `at` of what another rank sends, or gets. */
+static void begin(messages *m, char *bytes, size_t size, size_t at, int other, bool send)
 {
-    return bytes / PIECE + (bytes % PIECE != 0);
-}
-
-static void begin(messages *m, char *bytes, size_t size, int other, bool send)
-{
-    for (size_t at = 0; at < size; at += PIECE) {
-        const int piece = (int)(size - at < PIECE ? size - at : PIECE);
-        MPI_Request *request = &m->request[m->count++];
-        if (send)
-            MPI_Isend(bytes + at, piece, MPI_BYTE, other, TAG, MPI_COMM_WORLD, request);
-        else
-            MPI_Irecv(bytes + at, piece, MPI_BYTE, other, TAG, MPI_COMM_WORLD, request);
-        world.sent.messages += send;
-        world.sent.bytes += send ? (size_t)piece : 0;
-    }
+    if (other == world.rank || at >= size)
+        return;
+    const int piece = (int)(size - at < PIECE ? size - at : PIECE);
+    MPI_Request *request = &world.request[m->count++];
+    if (send)
+        MPI_Isend(bytes + at, piece, MPI_BYTE, other, TAG, MPI_COMM_WORLD, request);
+    else
+        MPI_Irecv(bytes + at, piece, MPI_BYTE, other, TAG, MPI_COMM_WORLD, request);
+    world.sent.messages += send;
+    world.sent.bytes += send ? (size_t)piece : 0;
 }
 
 static void wait_for_all(const messages *m)
 {
     for (size_t i = 0; i < m->count; i++) {
-        sleep_until(m->request[i]);
-        MPI_Wait(&m->request[i], MPI_STATUS_IGNORE);
+        sleep_until(world.request[i]);
+        MPI_Wait(&world.request[i], MPI_STATUS_IGNORE);
     }
 }
 
-/* The same where got_count and the room for what comes are there. */
-static void send_and_receive(const char *send, const size_t *send_count, char *got,
-                             const size_t *got_count, size_t size, messages *m)
+static size_t larger(size_t a, size_t b)
 {
-    const unsigned own = tm_rank();
-    const char *to = send;
-    char *from = got;
-    for (unsigned r = 0; r < tm_ranks_count(); r++) {
-        if (r != own)
-            begin(m, from, got_count[r] * size, (int)r, false);
-        from += got_count[r] * size;
-    }
-    from = got;
-    for (unsigned r = 0; r < own; r++)
-        from += got_count[r] * size;
-    for (unsigned r = 0; r < tm_ranks_count(); r++) {
-        const size_t bytes = send_count[r] * size;
-        if (r != own)
-            begin(m, (char *)to, bytes, (int)r, true);
-        else if (bytes > 0)
-            memcpy(from, to, bytes);
-        to += bytes;
-    }
-    wait_for_all(m);
-}
-
-/* The piece that begins at `at` of what goes to each other rank, or comes from it. */
-static void begin_pieces(messages *m, char *bytes, const size_t *count, size_t size,
-                         size_t at, bool send)
-{
-    for (int r = 0; r < world.count; r++) {
-        const size_t all = count[r] * size;
-        if (r != world.rank && at < all)
-            begin(m, bytes + at, all - at < PIECE ? all - at : PIECE, r, send);
-        bytes += all;
-    }
+    return a > b ? a : b;
 }
 
 void tm_ranks_swap(const void *send, const size_t *send_count, size_t size, void *got,
                    const size_t *got_count)
 {
-    size_t most = 0, from = 0, to = 0;
-    for (int r = 0; r < world.count; r++) {
-        if (r < world.rank) {
-            from += send_count[r] * size;
+    size_t most = 0;
+    for (int r = 0; r < world.count; r++)
+        most = larger(most, larger(send_count[r], got_count[r]) * size);
+    for (size_t at = 0; at < most; at += PIECE) {
+        messages m = {0};
+        char *from = (char *)send, *to = got;
+        for (int r = 0; r < world.count; r++) {
+            begin(&m, to, got_count[r] * size, at, r, false);
             to += got_count[r] * size;
         }
-        if (send_count[r] * size > most)
-            most = send_count[r] * size;
-        if (got_count[r] * size > most)
-            most = got_count[r] * size;
-    }
-    if (send_count[world.rank] > 0)
-        memcpy((char *)got + to, (const char *)send + from,
-               send_count[world.rank] * size);
-    for (size_t at = 0; at < most; at += PIECE) {
-        messages m = {.request = world.request};
-        begin_pieces(&m, got, got_count, size, at, false);
-        begin_pieces(&m, (char *)send, send_count, size, at, true);
+        for (int r = 0; r < world.count; r++) {
+            begin(&m, from, send_count[r] * size, at, r, true);
+            from += send_count[r] * size;
+        }
         wait_for_all(&m);
     }
+    const char *from = send;
+    char *to = got;
+    for (int r = 0; r < world.rank; r++) {
+        from += send_count[r] * size;
+        to += got_count[r] * size;
+    }
+    if (send_count[world.rank] > 0)
+        memcpy(to, from, send_count[world.rank] * size);
 }
 
 tm_status tm_ranks_exchange(const void *send, const size_t *send_count, size_t size,
@@ -260,13 +226,12 @@ tm_status tm_ranks_exchange(const void *send, const size_t *send_count, size_t s
 {
     const unsigned count = tm_ranks_count();
     size_t *to = tm_new(2 * (size_t)count, sizeof *to);
-    messages m = {0};
     *got = NULL;
     if (tm_ranks_any(!to)) {
         free(to);
         return tm_fail_memory(error);
     }
-    size_t *from = to + count, items = 0, pieces = 0;
+    size_t *from = to + count, items = 0;
     memcpy(to, send_count, count * sizeof *to);
     from[0] = to[0];
     if (count > 1) {
@@ -276,76 +241,81 @@ tm_status tm_ranks_exchange(const void *send, const size_t *send_count, size_t s
         sleep_until(request);
         MPI_Wait(&request, MPI_STATUS_IGNORE);
     }
-    for (unsigned r = 0; r < count; r++) {
+    for (unsigned r = 0; r < count; r++)
         items += from[r];
-        pieces += pieces_of(to[r] * size) + pieces_of(from[r] * size);
-    }
     *got = tm_new(items, size);
-    m.request = tm_new(pieces, sizeof(MPI_Request));
-    const bool failed = tm_ranks_any(!*got || !m.request);
+    const bool failed = tm_ranks_any(!*got);
     if (failed) {
         free(*got);
         *got = NULL;
     } else {
-        send_and_receive(send, to, *got, from, size, &m);
+        tm_ranks_swap(send, to, size, *got, from);
         memcpy(got_count, from, count * sizeof *from);
     }
     free(to);
-    free(m.request);
     return failed ? tm_fail_memory(error) : TM_OK;
 }
 
-/* Sends the same items to all ranks, or to rank 0. */
+/* How many items each rank has: count[ranks]. */
+static void tell_counts(size_t own, size_t *count)
+{
+    MPI_Request request;
+    count[0] = own;
+    if (world.count == 1)
+        return;
+    MPI_Iallgather(&own, 1, MPI_UNSIGNED_LONG, count, 1, MPI_UNSIGNED_LONG,
+                   MPI_COMM_WORLD, &request);
+    sleep_until(request);
+    MPI_Wait(&request, MPI_STATUS_IGNORE);
+}
+
+/* Sends the same items to all ranks, or to rank 0: `to` is NULL on those that get none.
+ */
+static void send_all(const void *mine, const size_t *count, size_t size, bool share,
+                     char *to)
+{
+    const size_t own = count[world.rank] * size;
+    size_t most = 0;
+    for (int r = 0; r < world.count; r++)
+        most = larger(most, count[r] * size);
+    for (size_t at = 0; at < most; at += PIECE) {
+        messages m = {0};
+        char *from = to;
+        for (int r = 0; to && r < world.count; from += count[r++] * size)
+            begin(&m, from, count[r] * size, at, r, false);
+        for (int r = 0; r < (share ? world.count : 1); r++)
+            begin(&m, (char *)mine, own, at, r, true);
+        wait_for_all(&m);
+    }
+}
+
 static tm_status collect(const void *mine, size_t count, size_t size, bool share,
                          void **all, size_t *total, tm_error *error)
 {
     const unsigned ranks = tm_ranks_count();
     const size_t before = tm_ranks_before(count, total);
+    const bool receives = share || world.rank == 0;
     size_t *counts = tm_new(ranks, sizeof *counts), sum = 0;
-    messages m = {.request = tm_new((ranks + 1) * (pieces_of(count * size) + 1) + ranks,
-                                    sizeof(MPI_Request))};
     *all = NULL;
-    if (tm_ranks_any(!counts || !m.request)) {
+    if (tm_ranks_any(!counts)) {
         free(counts);
-        free(m.request);
         return tm_fail_memory(error);
     }
-    counts[0] = count;
-    if (ranks > 1) {
-        MPI_Request request;
-        MPI_Iallgather(&count, 1, MPI_UNSIGNED_LONG, counts, 1, MPI_UNSIGNED_LONG,
-                       MPI_COMM_WORLD, &request);
-        sleep_until(request);
-        MPI_Wait(&request, MPI_STATUS_IGNORE);
-    }
-    size_t pieces = 0;
-    for (unsigned r = 0; r < ranks; r++) {
+    tell_counts(count, counts);
+    for (unsigned r = 0; r < ranks; r++)
         sum += counts[r];
-        pieces += pieces_of(counts[r] * size) + pieces_of(count * size);
-    }
-    const bool receives = share || world.rank == 0;
-    MPI_Request *grown = realloc(m.request, (pieces + 1) * sizeof(MPI_Request));
-    m.request = grown ? grown : m.request;
     char *to = receives ? tm_new(sum, size) : NULL;
-    const bool failed = tm_ranks_any(!grown || (receives && !to));
+    const bool failed = tm_ranks_any(receives && !to);
     if (failed) {
         free(to);
         to = NULL;
     } else {
-        char *from = to;
-        for (unsigned r = 0; receives && r < ranks; from += counts[r++] * size)
-            if ((int)r != world.rank)
-                begin(&m, from, counts[r] * size, (int)r, false);
-        for (unsigned r = 0; r < (share ? ranks : 1); r++)
-            if ((int)r != world.rank)
-                begin(&m, (char *)mine, count * size, (int)r, true);
-        if (receives && count > 0)
+        send_all(mine, counts, size, share, to);
+        if (to && count > 0)
             memcpy(to + before * size, mine, count * size);
-        wait_for_all(&m);
     }
     *all = to;
     free(counts);
-    free(m.request);
     return failed ? tm_fail_memory(error) : TM_OK;
 }
 
