@@ -35,18 +35,23 @@ static inline unsigned tm_slice_owner(size_t total, unsigned ranks, size_t row)
                       tm_parallel_chunks(total, TM_SLICE_ROWS));
 }
 
-/* How many of the rows before … before + count - 1 are in each rank's slice: of[ranks].
- */
+/* How many of the rows before … before + count - 1 are in a rank's slice; in each one's:
+ * of[ranks]. */
+static inline size_t tm_slice_share(size_t total, unsigned ranks, unsigned rank,
+                                    size_t before, size_t count)
+{
+    size_t first = tm_slice_first(total, ranks, rank);
+    size_t past = tm_slice_first(total, ranks, rank + 1);
+    first = first > before ? first : before;
+    past = past < before + count ? past : before + count;
+    return past > first ? past - first : 0;
+}
+
 static inline void tm_slice_shares(size_t total, unsigned ranks, size_t before,
                                    size_t count, size_t *of)
 {
-    for (unsigned r = 0; r < ranks; r++) {
-        size_t first = tm_slice_first(total, ranks, r);
-        size_t past = tm_slice_first(total, ranks, r + 1);
-        first = first > before ? first : before;
-        past = past < before + count ? past : before + count;
-        of[r] = past > first ? past - first : 0;
-    }
+    for (unsigned r = 0; r < ranks; r++)
+        of[r] = tm_slice_share(total, ranks, r, before, count);
 }
 
 TM_EXTERN_C_END

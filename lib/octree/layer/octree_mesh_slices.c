@@ -18,17 +18,6 @@ typedef struct {
     size_t *count, *got_count; /* [ranks] */
 } dealer;
 
-/* How many of the rows [before, before + count) are in this rank's slice. */
-static size_t in_slice(size_t total, size_t before, size_t count)
-{
-    const unsigned ranks = tm_ranks_count();
-    const size_t first = tm_slice_first(total, ranks, tm_rank()),
-                 past = tm_slice_first(total, ranks, tm_rank() + 1);
-    const size_t begin = before > first ? before : first,
-                 end = before + count < past ? before + count : past;
-    return end > begin ? end - begin : 0;
-}
-
 static tm_status deal(dealer *d, const void *rows, size_t before, size_t count,
                       size_t size, char *slice, tm_error *error)
 {
@@ -40,7 +29,8 @@ static tm_status deal(dealer *d, const void *rows, size_t before, size_t count,
     if (status != TM_OK)
         return status;
     for (unsigned r = 0; r < ranks; r++)
-        d->got_count[r] = in_slice(d->total, all[r][0], all[r][1]);
+        d->got_count[r] =
+            tm_slice_share(d->total, ranks, tm_rank(), all[r][0], all[r][1]);
     tm_slice_shares(d->total, ranks, before, count, d->count);
     tm_ranks_swap(rows, d->count, size, slice + d->next * size, d->got_count);
     for (unsigned r = 0; r < ranks; r++)
