@@ -14,20 +14,6 @@ typedef struct waiting {
     double distance2;
 } waiting;
 
-/* Squared distance from a point to the closed box; 0 inside. */
-static inline double box_distance2(const tm_tree_node *node, const double p[3])
-{
-    double sum = 0;
-    for (int i = 0; i < 3; i++) {
-        double below = node->low[i] - p[i];
-        double above = p[i] - node->high[i];
-        double d = below > above ? below : above;
-        d = d > 0 ? d : 0;
-        sum += d * d;
-    }
-    return sum;
-}
-
 static void on_segment(const double a[3], const double b[3], const double p[3],
                        double closest[3])
 {
@@ -161,14 +147,15 @@ static void search(const tm_surface_tree *tree, const double p[3], uint32_t patc
 {
     waiting stack[TM_TREE_DEPTH];
     size_t height = 0;
-    waiting now = {0, box_distance2(&tree->node[0], p)};
+    waiting now = {0, tm_tree_box_distance2(&tree->node[0], p)};
     for (;;) {
         const tm_tree_node *node = &tree->node[now.node];
         if (now.distance2 < best->distance2 && !lacks(node, patch)) {
             if (node->count == 0) {
-                waiting near = {node->first, box_distance2(&tree->node[node->first], p)};
+                waiting near = {node->first,
+                                tm_tree_box_distance2(&tree->node[node->first], p)};
                 waiting far = {node->first + 1,
-                               box_distance2(&tree->node[node->first + 1], p)};
+                               tm_tree_box_distance2(&tree->node[node->first + 1], p)};
                 if (far.distance2 < near.distance2) {
                     waiting swap = near;
                     near = far;

@@ -18,6 +18,20 @@ typedef struct tm_tree_node {
     uint32_t unused;
 } tm_tree_node;
 
+/* Squared distance from a point to the closed box; 0 inside. */
+static inline double tm_tree_box_distance2(const tm_tree_node *node, const double p[3])
+{
+    double sum = 0;
+    for (int i = 0; i < 3; i++) {
+        double below = node->low[i] - p[i];
+        double above = p[i] - node->high[i];
+        double d = below > above ? below : above;
+        d = d > 0 ? d : 0;
+        sum += d * d;
+    }
+    return sum;
+}
+
 /* A triangle in the order of the leaves. */
 typedef struct tm_tree_triangle {
     double corner[3][3];

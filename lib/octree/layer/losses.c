@@ -173,13 +173,7 @@ static bool is_near(const finder *f, const double point[3])
     stack[depth++] = 0;
     while (depth > 0) {
         const tm_tree_node *box = &tree->node[stack[--depth]];
-        double d2 = 0;
-        for (int i = 0; i < 3; i++) {
-            const double d =
-                fmax(fmax(box->low[i] - point[i], point[i] - box->high[i]), 0);
-            d2 += d * d;
-        }
-        if (d2 > f->farthest * f->farthest)
+        if (tm_tree_box_distance2(box, point) > f->farthest * f->farthest)
             continue;
         for (uint32_t t = 0; t < box->count; t++)
             if (is_in_reach(f, f->own->first_face + tree->triangle[box->first + t].id / 2,
