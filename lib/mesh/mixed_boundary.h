@@ -5,11 +5,26 @@
 
 #include "../base/error.h"
 #include "../base/extern_c.h"
+#include "../element/shape.h"
 #include "mixed_mesh.h"
 
 TM_EXTERN_C_BEGIN
 
 enum { TM_FACE_SHIFT = 3 };
+
+/* The nodes of such a face, seen from outside; returns how many. */
+static inline size_t tm_mixed_face_of(const tm_mixed_mesh *mesh, uint32_t face,
+                                      uint32_t node[4])
+{
+    const size_t e = face >> TM_FACE_SHIFT;
+    const uint32_t *item = mesh->item + mesh->start[e];
+    const uint8_t *corner = tm_element_shapes[mesh->start[e + 1] - mesh->start[e]]
+                                .face[face & ((1u << TM_FACE_SHIFT) - 1)];
+    const size_t k = tm_mixed_face_nodes(corner);
+    for (size_t i = 0; i < k; i++)
+        node[i] = item[corner[i]];
+    return k;
+}
 
 /* The regions of elements: of element e, which is a part of row origin[e], it is
  * value[stride * origin[e]]. With value NULL all are in one. */

@@ -73,13 +73,10 @@ static tm_status find_boundary(const tm_mixed_mesh *mesh, bool *where, tm_error 
     size_t faces;
     const tm_status status = tm_mixed_boundary_faces(mesh, &face, &faces, error);
     for (size_t f = 0; status == TM_OK && f < faces; f++) {
-        const size_t e = face[f] >> TM_FACE_SHIFT;
-        const uint32_t *item = mesh->item + mesh->start[e];
-        const tm_element_shape *shape =
-            &tm_element_shapes[mesh->start[e + 1] - mesh->start[e]];
-        const uint8_t *corner = shape->face[face[f] & ((1u << TM_FACE_SHIFT) - 1)];
-        for (size_t i = 0; i < tm_mixed_face_nodes(corner); i++)
-            where[item[corner[i]]] = true;
+        uint32_t node[4];
+        const size_t k = tm_mixed_face_of(mesh, face[f], node);
+        for (size_t i = 0; i < k; i++)
+            where[node[i]] = true;
     }
     free(face);
     return status;

@@ -25,20 +25,6 @@ typedef struct {
     size_t faces;
 } boundary;
 
-/* The nodes of a face, seen from outside; returns how many. */
-static size_t nodes_of(const boundary *b, size_t f, uint32_t node[4])
-{
-    const tm_mixed_mesh *mesh = &b->state->mesh;
-    const size_t e = b->face[f] >> TM_FACE_SHIFT;
-    const uint32_t *item = mesh->item + mesh->start[e];
-    const uint8_t *corner = tm_element_shapes[mesh->start[e + 1] - mesh->start[e]]
-                                .face[b->face[f] & ((1u << TM_FACE_SHIFT) - 1)];
-    const size_t k = tm_mixed_face_nodes(corner);
-    for (size_t i = 0; i < k; i++)
-        node[i] = item[corner[i]];
-    return k;
-}
-
 static bool is_along(const boundary *b, uint32_t curve, const double middle[3],
                      double length)
 {
@@ -77,7 +63,7 @@ static void measure_boundary(tm_repair_shape *shape, const boundary *b)
     const double(*xyz)[3] = (const double(*)[3])b->state->mesh.xyz;
     for (size_t f = 0; f < b->faces; f++) {
         uint32_t node[4];
-        const size_t k = nodes_of(b, f, node);
+        const size_t k = tm_mixed_face_of(&b->state->mesh, b->face[f], node);
         for (size_t i = 0; i < k; i++)
             if (node[i] < node[(i + 1) % k])
                 shape->curves += length_along(b, node[i], node[(i + 1) % k]);
@@ -103,7 +89,7 @@ static tm_status measure_topology(tm_repair_shape *shape, const boundary *b,
         parent[v] = TM_NONE;
     for (size_t f = 0; f < b->faces; f++) {
         uint32_t node[4];
-        const size_t k = nodes_of(b, f, node);
+        const size_t k = tm_mixed_face_of(&b->state->mesh, b->face[f], node);
         for (size_t i = 0; i < k; i++) {
             used += parent[node[i]] == TM_NONE;
             if (parent[node[i]] == TM_NONE)
@@ -190,7 +176,7 @@ static uint32_t (*triangles_of(const boundary *b, size_t *count))[3]
     *count = 0;
     for (size_t f = 0; triangle && f < b->faces; f++) {
         uint32_t node[4];
-        const size_t k = nodes_of(b, f, node);
+        const size_t k = tm_mixed_face_of(&b->state->mesh, b->face[f], node);
         for (size_t i = 2; i < k; i++) {
             uint32_t *t = triangle[(*count)++];
             t[0] = node[0];

@@ -219,21 +219,18 @@ static tm_status give_facets(const tm_repair_state *state, const tm_surface *sur
     size_t items = 0;
     tm_surface_point at = {.triangle = TM_NONE};
     for (size_t f = 0; status == TM_OK && f < faces; f++) {
-        const size_t e = face[f] >> TM_FACE_SHIFT;
-        const uint32_t *item = mesh->item + mesh->start[e];
-        const uint8_t *corner = tm_element_shapes[mesh->start[e + 1] - mesh->start[e]]
-                                    .face[face[f] & ((1u << TM_FACE_SHIFT) - 1)];
-        const size_t k = tm_mixed_face_nodes(corner);
+        uint32_t node[4];
+        const size_t k = tm_mixed_face_of(mesh, face[f], node);
         double middle[3] = {0, 0, 0};
         facet->start[f] = items;
         for (size_t i = 0; i < k; i++) {
-            facet->item[items++] = item[corner[i]];
+            facet->item[items++] = node[i];
             for (int j = 0; j < 3; j++)
-                middle[j] += mesh->xyz[item[corner[i]]][j] / (double)k;
+                middle[j] += mesh->xyz[node[i]][j] / (double)k;
         }
         facet->start[f + 1] = items;
         tm_surface_closest(surface, middle, TM_NONE, &at);
-        facet->integer[2 * f] = (uint32_t)e;
+        facet->integer[2 * f] = face[f] >> TM_FACE_SHIFT;
         facet->integer[2 * f + 1] = TM_NONE;
         facet->marker[f] = surface->marker[at.triangle];
     }

@@ -105,16 +105,12 @@ static tm_status put_boundary(tm_post *post, const tm_repair_share *s,
     size_t faces;
     const tm_status status = tm_mixed_boundary_faces(&mesh, &face, &faces, error);
     for (size_t f = 0; status == TM_OK && f < faces; f++) {
-        const size_t e = face[f] >> TM_FACE_SHIFT;
-        const uint32_t *item = mesh.item + mesh.start[e];
-        const uint8_t *corner = tm_element_shapes[mesh.start[e + 1] - mesh.start[e]]
-                                    .face[face[f] & ((1u << TM_FACE_SHIFT) - 1)];
-        const size_t k = tm_mixed_face_nodes(corner);
-        uint32_t least = TM_NONE;
+        uint32_t node[4], least = TM_NONE;
+        const size_t k = tm_mixed_face_of(&mesh, face[f], node);
         for (size_t i = 0; i < k; i++)
-            least = item[corner[i]] < least ? item[corner[i]] : least;
+            least = node[i] < least ? node[i] : least;
         for (size_t i = 0; i < k && tm_rows_have(&rows, part->nodes.number[least]); i++) {
-            const uint32_t n = part->nodes.number[item[corner[i]]];
+            const uint32_t n = part->nodes.number[node[i]];
             tm_post_put(post, tm_rows_owner(&rows, n), &n, 1);
         }
     }
