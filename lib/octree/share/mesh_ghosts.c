@@ -58,21 +58,17 @@ static void list_received(list *l, const tm_octree_share *s, unsigned r,
 static bool start(tm_mesh_ghosts *g, unsigned ranks)
 {
     *g = (tm_mesh_ghosts){.ranks = ranks,
-                          .sends = calloc(ranks + 1, sizeof *g->sends),
-                          .receives = calloc(ranks + 1, sizeof *g->receives),
-                          .sends_count = tm_new(ranks, sizeof *g->sends_count),
-                          .receives_count = tm_new(ranks, sizeof *g->receives_count)};
-    return g->sends && g->receives && g->sends_count && g->receives_count;
+                          .sends = calloc(ranks, sizeof *g->sends),
+                          .receives = calloc(ranks, sizeof *g->receives)};
+    return g->sends && g->receives;
 }
 
 /* When both lists are there. */
-static bool finish(tm_mesh_ghosts *g)
+static bool finish(tm_mesh_ghosts *g, const list *sent, const list *received)
 {
-    for (unsigned r = 0; r < g->ranks; r++) {
-        g->sends_count[r] = g->sends[r + 1] - g->sends[r];
-        g->receives_count[r] = g->receives[r + 1] - g->receives[r];
-    }
-    g->room = tm_new(g->sends[g->ranks] + g->receives[g->ranks], TM_GHOST_BYTES);
+    g->all_received = received->count;
+    g->all_sent = sent->count;
+    g->room = tm_new(g->all_sent + g->all_received, TM_GHOST_BYTES);
     return g->room != NULL;
 }
 
@@ -83,13 +79,23 @@ tm_status tm_mesh_ghosts_find(tm_mesh_ghosts *g, const tm_octree_share *share,
     bool done = start(g, share->ranks);
     list sent = {.item = &g->sent}, received = {.item = &g->received};
     for (unsigned r = 0; r < share->ranks && done; r++) {
+        const size_t sends = sent.count, receives = received.count;
         list_sent(&sent, share, r, of_node, lists, of_leaf);
         list_received(&received, share, r, of_node, lists, of_leaf);
-        g->sends[r + 1] = sent.count;
-        g->receives[r + 1] = received.count;
+        g->sends[r] = sent.count - sends;
+        g->receives[r] = received.count - receives;
         done = !sent.failed && !received.failed;
     }
-    return tm_ranks_enough(done && finish(g), error);
+    return tm_ranks_enough(done && finish(g, &sent, &received), error);
+}
+
+/* Adds those of `count` items that are kept; returns how many. */
+static size_t append_kept(list *l, const uint32_t *item, size_t count, const bool *kept)
+{
+    const size_t before = l->count;
+    for (size_t i = 0; i < count; i++)
+        append(l, kept[item[i]] ? item[i] : TM_NONE);
+    return l->count - before;
 }
 
 tm_status tm_mesh_ghosts_some(tm_mesh_ghosts *some, const tm_mesh_ghosts *all,
@@ -97,16 +103,15 @@ tm_status tm_mesh_ghosts_some(tm_mesh_ghosts *some, const tm_mesh_ghosts *all,
 {
     bool done = start(some, all->ranks);
     list sent = {.item = &some->sent}, received = {.item = &some->received};
+    const uint32_t *to = all->sent, *from = all->received;
     for (unsigned r = 0; r < all->ranks && done; r++) {
-        for (size_t i = all->sends[r]; i < all->sends[r + 1]; i++)
-            append(&sent, kept[all->sent[i]] ? all->sent[i] : TM_NONE);
-        for (size_t i = all->receives[r]; i < all->receives[r + 1]; i++)
-            append(&received, kept[all->received[i]] ? all->received[i] : TM_NONE);
-        some->sends[r + 1] = sent.count;
-        some->receives[r + 1] = received.count;
+        some->sends[r] = append_kept(&sent, to, all->sends[r], kept);
+        some->receives[r] = append_kept(&received, from, all->receives[r], kept);
+        to += all->sends[r];
+        from += all->receives[r];
         done = !sent.failed && !received.failed;
     }
-    return tm_ranks_enough(done && finish(some), error);
+    return tm_ranks_enough(done && finish(some, &sent, &received), error);
 }
 
 void tm_mesh_ghosts_free(tm_mesh_ghosts *g)
@@ -115,20 +120,16 @@ void tm_mesh_ghosts_free(tm_mesh_ghosts *g)
     free(g->receives);
     free(g->sent);
     free(g->received);
-    free(g->sends_count);
-    free(g->receives_count);
     free(g->room);
     *g = (tm_mesh_ghosts){0};
 }
 
-/* Sends value[item[…]], count[r] of them to rank r; returns where what comes is. */
-static const char *swap(const tm_mesh_ghosts *g, const uint32_t *item,
+/* Sends value[item[…]], `all` of them, count[r] to rank r; returns where what comes is.
+ */
+static const char *swap(const tm_mesh_ghosts *g, const uint32_t *item, size_t all,
                         const size_t *count, const size_t *got_count, const char *value,
                         size_t size)
 {
-    size_t all = 0;
-    for (unsigned r = 0; r < g->ranks; r++)
-        all += count[r];
     for (size_t i = 0; i < all; i++)
         memcpy(g->room + i * size, value + item[i] * size, size);
     tm_ranks_swap(g->room, count, size, g->room + all * size, got_count);
@@ -137,16 +138,16 @@ static const char *swap(const tm_mesh_ghosts *g, const uint32_t *item,
 
 void tm_mesh_ghosts_fill(const tm_mesh_ghosts *g, void *value, size_t size)
 {
-    const char *got = swap(g, g->sent, g->sends_count, g->receives_count, value, size);
-    for (size_t i = 0; i < g->receives[g->ranks]; i++)
+    const char *got = swap(g, g->sent, g->all_sent, g->sends, g->receives, value, size);
+    for (size_t i = 0; i < g->all_received; i++)
         memcpy((char *)value + g->received[i] * size, got + i * size, size);
 }
 
 void tm_mesh_ghosts_mark(const tm_mesh_ghosts *g, bool *mark)
 {
-    const char *got = swap(g, g->received, g->receives_count, g->sends_count,
+    const char *got = swap(g, g->received, g->all_received, g->receives, g->sends,
                            (const char *)mark, sizeof *mark);
-    for (size_t i = 0; i < g->sends[g->ranks]; i++)
+    for (size_t i = 0; i < g->all_sent; i++)
         mark[g->sent[i]] |= ((const bool *)got)[i];
     tm_mesh_ghosts_fill(g, mark, sizeof *mark);
 }

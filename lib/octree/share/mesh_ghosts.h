@@ -11,11 +11,10 @@ TM_EXTERN_C_BEGIN
 
 typedef struct tm_mesh_ghosts {
     unsigned ranks;
-    size_t *sends, *receives; /* [ranks + 1] */
-    uint32_t
-        *sent; /* own things, by local numbers: rank r has sent[sends[r]] … as ghosts */
-    uint32_t *received; /* ghosts: received[receives[r]] … are rank r's own */
-    size_t *sends_count, *receives_count; /* [ranks] */
+    size_t *sends, *receives; /* [ranks]: how many each rank has of ours, or we of it */
+    size_t all_sent, all_received; /* of all ranks */
+    uint32_t *sent;     /* own things that others have as ghosts, by local numbers */
+    uint32_t *received; /* ghosts; both in the order of ranks */
     char *room; /* for values of all that is sent and received, of TM_GHOST_BYTES each */
 } tm_mesh_ghosts;
 
