@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tet_quality.h"
 
+#include "../geom/predicates.h"
 #include "../geom/vector.h"
 
 #include <math.h>
@@ -90,4 +91,15 @@ double tm_tet_volume_quality(const double a[3], const double b[3], const double 
     const double per_volume = 8.48528137423857029281; /* 6√2 */
     return per_volume * tm_tet_volume(p[0], p[1], p[2], p[3]) /
            (longest2 * sqrt(longest2));
+}
+
+int tm_tet_turn(const double (*xyz)[3], uint32_t node[4])
+{
+    const int sign = tm_orient3d(xyz[node[0]], xyz[node[1]], xyz[node[2]], xyz[node[3]]);
+    if (sign < 0) {
+        const uint32_t last = node[3];
+        node[3] = node[2];
+        node[2] = last;
+    }
+    return sign;
 }

@@ -154,6 +154,10 @@ static inline double tm_tet_sine2(const double a[3], const double b[3], const do
     return measured ? sine2 : tm_tet_sine2_scaled(a, b, c, d);
 }
 
+/* Makes a tetrahedron right-hand positive: exchanges its last two nodes where it is
+ * negative, exactly. Returns the sign that it had. */
+int tm_tet_turn(const double (*xyz)[3], uint32_t node[4]);
+
 TM_EXTERN_C_END
 
 #endif

@@ -3,7 +3,7 @@
 
 #include "../base/array.h"
 #include "../base/ids.h"
-#include "../geom/predicates.h"
+#include "../element/tet_quality.h"
 #include "../stream/group.h"
 #include "row_order.h"
 #include "scan.h"
@@ -374,21 +374,11 @@ tm_turned tm_tetgen_orient(const tm_block *node, tm_block *ele)
 {
     enum { CORNERS = 4 };
     tm_turned result = {0};
-    const double *xyz = node->real;
+    const double(*xyz)[3] = (const double(*)[3])node->real;
     for (size_t t = 0; t < ele->count; t++) {
-        uint32_t *v = ele->integer + CORNERS * t;
-        const double *corner[CORNERS];
-        for (int i = 0; i < CORNERS; i++)
-            corner[i] = xyz + (size_t)v[i] * 3;
-        int sign = tm_orient3d(corner[0], corner[1], corner[2], corner[3]);
-        if (sign < 0) {
-            uint32_t last = v[3];
-            v[3] = v[2];
-            v[2] = last;
-            result.turned++;
-        } else if (sign == 0) {
-            result.flat++;
-        }
+        const int sign = tm_tet_turn(xyz, ele->integer + CORNERS * t);
+        result.turned += sign < 0;
+        result.flat += sign == 0;
     }
     return result;
 }

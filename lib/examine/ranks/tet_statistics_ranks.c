@@ -2,27 +2,11 @@
 #include "parts.h"
 
 #include "../../base/array.h"
-#include "../../geom/predicates.h"
+#include "../../element/tet_quality.h"
 #include "../tet_statistics.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-/* Turns tetrahedra that are left-handed; returns how many. */
-static size_t turn(uint32_t (*tet)[4], size_t tets, const double (*xyz)[3])
-{
-    size_t turned = 0;
-    for (size_t t = 0; t < tets; t++) {
-        uint32_t *v = tet[t];
-        if (tm_orient3d(xyz[v[0]], xyz[v[1]], xyz[v[2]], xyz[v[3]]) >= 0)
-            continue;
-        const uint32_t third = v[2];
-        v[2] = v[3];
-        v[3] = third;
-        turned++;
-    }
-    return turned;
-}
 
 tm_status tm_tet_statistics_ranks(tm_tet_statistics *statistics, size_t *turned,
                                   const tm_element_slices *mesh, double limit,
@@ -42,7 +26,9 @@ tm_status tm_tet_statistics_ranks(tm_tet_statistics *statistics, size_t *turned,
                                     mesh->own.xyz, error);
     if (status == TM_OK) {
         const double(*xyz)[3] = (const double(*)[3])nodes.xyz;
-        *turned = turn(tet, tets, xyz);
+        *turned = 0;
+        for (size_t t = 0; t < tets; t++)
+            *turned += tm_tet_turn(xyz, tet[t]) < 0;
         tm_ranks_sum(turned, 1);
         status = tm_ranks_agree(tm_tet_statistics_chunks(&chunk, &chunks, xyz,
                                                          (const uint32_t(*)[4])tet, tets,
