@@ -17,7 +17,6 @@ const double tm_large_limit[TM_LARGE_LIMITS] = {150, 160, 170, 175};
 typedef struct measuring {
     const double (*xyz)[3];
     const uint32_t (*tet)[4];
-    size_t tets;
     double bad_sine2;
     tm_tet_statistics *chunk; /* one for each CHUNK of tetrahedra */
 } measuring;
@@ -62,19 +61,17 @@ static void count_tetrahedron(tm_tet_statistics *s, const double a[3], const dou
     s->tets++;
 }
 
-static void measure_chunk(void *context, size_t chunk)
+static void measure_chunk(void *context, size_t first, size_t past)
 {
     const measuring *m = context;
-    const size_t first = chunk * CHUNK;
-    const size_t end = m->tets - first < CHUNK ? m->tets : first + CHUNK;
     tm_tet_statistics s;
     clear(&s);
-    for (size_t t = first; t < end; t++) {
+    for (size_t t = first; t < past; t++) {
         const uint32_t *v = m->tet[t];
         count_tetrahedron(&s, m->xyz[v[0]], m->xyz[v[1]], m->xyz[v[2]], m->xyz[v[3]],
                           m->bad_sine2);
     }
-    m->chunk[chunk] = s;
+    m->chunk[first / CHUNK] = s;
 }
 
 static void add(tm_tet_statistics *sum, const tm_tet_statistics *s)
@@ -101,8 +98,8 @@ tm_status tm_tet_statistics_chunks(tm_tet_statistics **chunk, size_t *chunks,
     *chunk = tm_new(*chunks, sizeof **chunk);
     if (!*chunk)
         return tm_fail_memory(error);
-    measuring m = {xyz, tet, tets, tm_bad_sine2(limit), *chunk};
-    tm_parallel(threads, *chunks, measure_chunk, &m);
+    measuring m = {xyz, tet, tm_bad_sine2(limit), *chunk};
+    tm_parallel_runs(threads, tets, CHUNK, measure_chunk, &m);
     return TM_OK;
 }
 

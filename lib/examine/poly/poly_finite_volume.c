@@ -86,8 +86,6 @@ static void judge_pyramids(const tm_poly_centroids *m, size_t f,
 static void judge_facet(const tm_poly_centroids *m, size_t f, tm_fv_sums *sums)
 {
     tm_poly_finite_volume *out = &sums->of;
-    if (!tm_facet_fits(m->mesh, f))
-        return;
     judge_pyramids(m, f, out);
     const double skew = tm_facet_skewness(m, f);
     out->max_skewness = fmax(out->max_skewness, skew);
@@ -158,26 +156,26 @@ void tm_fv_sums_finish(tm_fv_sums *sums, size_t cells)
 typedef struct judging {
     const tm_poly_centroids *m;
     tm_fv_judged what;
-    size_t count;
     tm_fv_sums *chunk; /* one for each CHUNK */
 } judging;
 
-static void judge_chunk(void *context, size_t chunk)
+static void judge_chunk(void *context, size_t first, size_t past)
 {
     const judging *j = context;
-    const size_t first = chunk * CHUNK;
-    const size_t end = j->count - first < CHUNK ? j->count : first + CHUNK;
     tm_fv_sums sums;
     tm_fv_sums_begin(&sums);
-    for (size_t i = first; i < end; i++) {
-        if (j->what == TM_FV_CELLS)
+    for (size_t i = first; i < past; i++) {
+        if (j->what == TM_FV_CELLS) {
             tm_cell_all_geometry(j->m, i, &sums.of);
-        else
-            judge_facet(j->m, i, &sums);
-        if (j->what == TM_FV_FACETS && tm_facet_fits(j->m->mesh, i))
+            continue;
+        }
+        if (!tm_facet_fits(j->m->mesh, i))
+            continue;
+        judge_facet(j->m, i, &sums);
+        if (j->what == TM_FV_FACETS)
             tm_facet_all_geometry(j->m, i, &sums.of);
     }
-    j->chunk[chunk] = sums;
+    j->chunk[first / CHUNK] = sums;
 }
 
 tm_status tm_fv_judge(tm_fv_sums **chunk, size_t *chunks, const tm_poly_centroids *m,
@@ -187,8 +185,8 @@ tm_status tm_fv_judge(tm_fv_sums **chunk, size_t *chunks, const tm_poly_centroid
     *chunk = tm_new(*chunks, sizeof **chunk);
     if (!*chunk)
         return tm_fail_memory(error);
-    judging j = {m, what, count, *chunk};
-    tm_parallel(threads, *chunks, judge_chunk, &j);
+    judging j = {m, what, *chunk};
+    tm_parallel_runs(threads, count, CHUNK, judge_chunk, &j);
     return TM_OK;
 }
 

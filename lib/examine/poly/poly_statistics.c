@@ -151,12 +151,6 @@ static void workspace_free(workspace *w)
     tm_poly_shape_memory_free(&w->shape);
 }
 
-static size_t chunk_end(const tm_poly_arrays *mesh, size_t first)
-{
-    const size_t left = mesh->cells - first;
-    return first + (left < CHUNK ? left : CHUNK);
-}
-
 static void measure_cell(tm_poly_sums *sums, const measuring *m, workspace *w, size_t c)
 {
     const tm_poly_arrays *mesh = m->mesh;
@@ -178,17 +172,16 @@ static void measure_cell(tm_poly_sums *sums, const measuring *m, workspace *w, s
         count_tets(&sums->part, tets_of(mesh, c));
 }
 
-static void measure_chunk(void *context, size_t chunk)
+static void measure_chunk(void *context, size_t first, size_t past)
 {
     const measuring *m = context;
-    const size_t first = chunk * CHUNK, end = chunk_end(m->mesh, first);
     workspace w = {.boundary = {0}};
     tm_poly_sums sums;
     tm_poly_sums_begin(&sums);
-    for (size_t c = first; c < end && sums.status == TM_OK; c++)
+    for (size_t c = first; c < past && sums.status == TM_OK; c++)
         measure_cell(&sums, m, &w, c);
     workspace_free(&w);
-    m->chunk[chunk] = sums;
+    m->chunk[first / CHUNK] = sums;
 }
 
 static void add_counts(size_t *sum, const size_t *counts, size_t count)
@@ -273,7 +266,7 @@ tm_status tm_poly_sums_measure(tm_poly_sums **chunk, size_t *chunks,
     *chunk = m.chunk;
     if (!m.chunk)
         return tm_fail_memory(error);
-    tm_parallel(threads, *chunks, measure_chunk, &m);
+    tm_parallel_runs(threads, mesh->cells, CHUNK, measure_chunk, &m);
     for (size_t i = 0; i < *chunks; i++)
         if (m.chunk[i].status != TM_OK)
             return tm_fail_memory(error);
@@ -383,13 +376,12 @@ typedef struct measuring_each {
     tm_status *status; /* one for each CHUNK of cells */
 } measuring_each;
 
-static void measure_each_of_chunk(void *context, size_t chunk)
+static void measure_each_of_chunk(void *context, size_t first, size_t past)
 {
     const measuring_each *m = context;
-    const size_t first = chunk * CHUNK, end = chunk_end(m->mesh, first);
     workspace w = {.boundary = {0}};
     tm_status status = TM_OK;
-    for (size_t c = first; c < end && status == TM_OK; c++) {
+    for (size_t c = first; c < past && status == TM_OK; c++) {
         tm_poly_shape shape = {0};
         double center[3];
         status = find_boundary(&w, m->mesh, c);
@@ -400,7 +392,7 @@ static void measure_each_of_chunk(void *context, size_t chunk)
         m->kernel_radius[c] = shape.kernel_radius;
     }
     workspace_free(&w);
-    m->status[chunk] = status;
+    m->status[first / CHUNK] = status;
 }
 
 tm_status tm_poly_measure_each(double *volume, double *kernel_radius,
@@ -411,7 +403,7 @@ tm_status tm_poly_measure_each(double *volume, double *kernel_radius,
     measuring_each m = {mesh, volume, kernel_radius, tm_new(chunks, sizeof *m.status)};
     if (!m.status)
         return tm_fail_memory(error);
-    tm_parallel(threads, chunks, measure_each_of_chunk, &m);
+    tm_parallel_runs(threads, mesh->cells, CHUNK, measure_each_of_chunk, &m);
     tm_status status = TM_OK;
     for (size_t i = 0; i < chunks; i++)
         status = m.status[i] != TM_OK ? m.status[i] : status;
