@@ -6,6 +6,7 @@
 #include "../base/extern_c.h"
 #include "../element/jens.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -27,6 +28,23 @@ static inline double tm_mixed_jens(const tm_mixed_mesh *mesh, size_t e)
 {
     return tm_jens(mesh->start[e + 1] - mesh->start[e], (const double(*)[3])mesh->xyz,
                    mesh->item + mesh->start[e]);
+}
+
+/* Marks the nodes of element e. */
+static inline void tm_mixed_mark_nodes(const tm_mixed_mesh *mesh, size_t e, bool *mark)
+{
+    for (size_t i = mesh->start[e]; i < mesh->start[e + 1]; i++)
+        mark[mesh->item[i]] = true;
+}
+
+/* Whether a node of element e is marked. */
+static inline bool tm_mixed_has_marked(const tm_mixed_mesh *mesh, size_t e,
+                                       const bool *mark)
+{
+    for (size_t i = mesh->start[e]; i < mesh->start[e + 1]; i++)
+        if (mark[mesh->item[i]])
+            return true;
+    return false;
 }
 
 TM_EXTERN_C_END

@@ -33,28 +33,22 @@ static bool is_bad(const tm_shared_work *s, size_t e)
     return s->jens[e - s->share->elements.first] < s->options->threshold;
 }
 
-static void mark_nodes(const tm_shared_work *s, size_t e, bool *mark)
-{
-    const tm_mixed_mesh *mesh = &s->mesh->assembly.mesh;
-    for (size_t i = mesh->start[e]; i < mesh->start[e + 1]; i++)
-        mark[mesh->item[i]] = true;
-}
-
 /* Marks the nodes of candidates that are bad, of any rank, then so many rings around. */
 static void mark_near(const tm_shared_work *s, unsigned rings)
 {
     const tm_mesh_ghosts *ghosts = &s->share->ghosts;
-    const size_t nodes = s->mesh->assembly.mesh.nodes;
+    const tm_mixed_mesh *mesh = &s->mesh->assembly.mesh;
+    const size_t nodes = mesh->nodes;
     memset(s->near, false, nodes);
     for (size_t c = 0; c < s->candidates; c++)
         if (is_bad(s, s->candidate[c]))
-            mark_nodes(s, s->candidate[c], s->near);
+            tm_mixed_mark_nodes(mesh, s->candidate[c], s->near);
     tm_mesh_ghosts_mark(ghosts, s->near);
     for (unsigned ring = 0; ring < rings; ring++) {
         memcpy(s->mark, s->near, nodes);
         for (size_t c = 0; c < s->candidates; c++)
             if (tm_shared_is_near(s, s->candidate[c]))
-                mark_nodes(s, s->candidate[c], s->mark);
+                tm_mixed_mark_nodes(mesh, s->candidate[c], s->mark);
         tm_mesh_ghosts_mark(ghosts, s->mark);
         memcpy(s->near, s->mark, nodes);
     }

@@ -178,13 +178,9 @@ tm_status tm_repair_widen(const tm_repair_state *state, uint32_t **octant, size_
         return tm_fail_memory(error);
     for (size_t e = 0; e < mesh->elements; e++)
         if (bsearch(&state->octant[e], *octant, old, sizeof **octant, tm_compare_numbers))
-            for (size_t i = mesh->start[e]; i < mesh->start[e + 1]; i++)
-                marked[mesh->item[i]] = true;
+            tm_mixed_mark_nodes(mesh, e, marked);
     for (size_t e = 0; e < mesh->elements; e++) {
-        bool near = false;
-        for (size_t i = mesh->start[e]; i < mesh->start[e + 1] && !near; i++)
-            near = marked[mesh->item[i]];
-        if (!near || state->octant[e] == TM_NONE)
+        if (!tm_mixed_has_marked(mesh, e, marked) || state->octant[e] == TM_NONE)
             continue;
         uint32_t *grown = tm_grow(*octant, &room, *count + 1, sizeof *grown);
         if (!grown) {

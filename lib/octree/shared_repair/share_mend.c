@@ -29,22 +29,6 @@ typedef struct {
     uint32_t *number;     /* [part.mesh.nodes]: in the stream, ascending */
 } mender;
 
-static bool has_marked(const mender *m, size_t e)
-{
-    const tm_mixed_mesh *mesh = &m->share->mesh;
-    for (size_t i = mesh->start[e]; i < mesh->start[e + 1]; i++)
-        if (m->mark[mesh->item[i]])
-            return true;
-    return false;
-}
-
-static void mark_nodes(const mender *m, size_t e, bool *mark)
-{
-    const tm_mixed_mesh *mesh = &m->share->mesh;
-    for (size_t i = mesh->start[e]; i < mesh->start[e + 1]; i++)
-        mark[mesh->item[i]] = true;
-}
-
 /* Gives mark[] of all ranks what any has marked. */
 static tm_status spread(const mender *m, tm_error *error)
 {
@@ -77,7 +61,7 @@ static tm_status find_cores(mender *m, tm_error *error)
                                              s->number, s->mesh.nodes, m->mark, error);
     m->cores = 0;
     for (size_t e = 0; status == TM_OK && e < s->mesh.elements; e++) {
-        m->near[e] = has_marked(m, e) ||
+        m->near[e] = tm_mixed_has_marked(&m->share->mesh, e, m->mark) ||
                      tm_repair_is_bad(&s->mesh, e, tm_mixed_jens(&s->mesh, e), aim);
         m->cores += m->near[e];
     }
@@ -95,10 +79,10 @@ static tm_status find_near(const mender *m, unsigned rings, tm_error *error)
     for (unsigned r = 0; r < rings && status == TM_OK; r++) {
         for (size_t e = 0; e < elements; e++)
             if (m->near[e])
-                mark_nodes(m, e, m->mark);
+                tm_mixed_mark_nodes(&m->share->mesh, e, m->mark);
         status = spread(m, error);
         for (size_t e = 0; status == TM_OK && e < elements; e++)
-            m->near[e] = has_marked(m, e);
+            m->near[e] = tm_mixed_has_marked(&m->share->mesh, e, m->mark);
     }
     return status;
 }
