@@ -592,14 +592,14 @@ static bool work_together(program *p, tm_stream *stream)
     can = can && repair_share(p, &share, &forced);
     const size_t elements = share.elements, bad = share.score.bad;
     tm_repair_share_free(&share);
-    if (can)
-        filter_write_slices(&p->f, &slices, "%zu elements of %zu, bad 0 of %zu", elements,
-                            elements, bad - forced);
-    else
+    if (!can) {
         leave(p, &slices, stream);
-    if (can)
-        tm_slices_free(&slices);
-    return can;
+        return false;
+    }
+    filter_write_slices(&p->f, &slices, "%zu elements of %zu, bad 0 of %zu", elements,
+                        elements, bad - forced);
+    tm_slices_free(&slices);
+    return true;
 }
 
 int main(int argc, char **argv)

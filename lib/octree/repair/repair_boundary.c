@@ -152,15 +152,13 @@ tm_status tm_repair_find_rules(const tm_surface *surface, size_t nodes,
     finder f = {.surface = surface};
     const tm_status status = start_finder(&f, error);
     tm_surface_point at = {.triangle = TM_NONE};
-    size_t chunk = 0;
     for (size_t v = 0; status == TM_OK && v < nodes; v++) {
+        if (v % TM_SLICE_ROWS == 0) /* where a rank's nodes may begin */
+            at.triangle = TM_NONE;
         on[v] = TM_NODE_INSIDE;
         rule[v] = (tm_node_rule){.where = TM_NONE, .freedom = TM_MOVES_FREELY};
         if (given ? given[v] == 0 : !where[v])
             continue;
-        if (v / TM_SLICE_ROWS != chunk) /* where a rank's nodes may begin */
-            at.triangle = TM_NONE;
-        chunk = v / TM_SLICE_ROWS;
         tm_surface_closest(surface, xyz[v], TM_NONE, &at);
         if (given)
             on[v] = (uint8_t)(given[v] < 0 ? -given[v] : given[v]);

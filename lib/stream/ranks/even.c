@@ -19,10 +19,10 @@ static tm_status make_plan(plan *p, size_t before, size_t count, size_t total,
 {
     const unsigned ranks = tm_ranks_count();
     p->rows = tm_new(ranks, sizeof *p->rows);
-    if (tm_ranks_any(!p->rows))
-        return tm_fail_memory(error);
-    tm_slice_shares(total, ranks, before, count, p->rows);
-    return TM_OK;
+    const tm_status status = tm_ranks_enough(p->rows, error);
+    if (status == TM_OK)
+        tm_slice_shares(total, ranks, before, count, p->rows);
+    return status;
 }
 
 static size_t sum_of(const size_t *count, unsigned first, unsigned past)
