@@ -22,9 +22,9 @@
 # Everything that is made is in BUILD, which may be any folder: make BUILD=/tmp/termesh
 # Warnings of the compiler are errors with WERROR=1.
 
-# 0.1.0, and the number in the name of the shared library.
+# 1.0.0, and the number in the name of the shared library, the first of it.
 VERSION := $(shell sed -n 's/^.define TM_VERSION *"\(.*\)"/\1/p' lib/base/version.h)
-SOVERSION := $(basename $(VERSION))
+SOVERSION := $(firstword $(subst ., ,$(VERSION)))
 
 PREFIX = /usr/local
 BINDIR = $(PREFIX)/bin

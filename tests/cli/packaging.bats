@@ -21,6 +21,27 @@ setup() {
     done
 }
 
+@test "the package of the shared library is named as the library" {
+    library=$(basename "$TM_BUILD"/libtermesh.so.*)
+    name=libtermesh$(sed -E 's/.*[.]so[.]([0-9]+)[.].*/\1/' <<<"$library")
+    grep -q "^Package: $name\$" "$root/examples/packaging/debian/control"
+    grep -q "^Depends: $name (= " "$root/examples/packaging/debian/control"
+    [ -f "$root/examples/packaging/debian/$name.install" ]
+    grep -q "$name" "$root/README.md"
+}
+
+@test "what make install puts in place is in a package" {
+    case ${TM_BUILD:?} in */san) skip "the same is installed" ;; esac
+    make -s -C "$root" BUILD="$TM_BUILD" DESTDIR="$PWD/to" PREFIX=/usr \
+        LIBDIR=/usr/lib/this-machine ZSHCOMPLETIONDIR=/usr/share/zsh/vendor-completions install
+    (cd to && find . ! -type d | sed 's|^\./||') >files
+    cat "$root"/examples/packaging/debian/*.install |
+        sed -e 's/[.]/[.]/g' -e 's|[*]|[^/]*|g' -e 's|.*|^&(/.*)?$|' >packed
+    [ "$(grep -c . files)" -gt 100 ]
+    run grep -v -E -f packed files
+    [ "$output" = "" ]
+}
+
 @test "packages are built in a clean folder; lintian finds nothing; the filters run" {
     case ${TM_BUILD:?} in */san) skip "the packages are the same" ;; esac
     for program in dpkg-buildpackage dh; do
