@@ -136,7 +136,7 @@ tm_status tm_octant_faces_level(const tm_octant_points *points, double (*xyz)[3]
                                 tm_error *error)
 {
     const tm_block *mix = points->mix;
-    layer l = {.mesh = {nodes, xyz, mix->count, mix->start, mix->item}};
+    layer l = {.mesh = {nodes, xyz, mix->count, mix->start, mix->item, .threads = 1}};
     l.old = tm_new(nodes, sizeof *l.old);
     const bool done = l.old && find_layer(&l, mix, outer);
     *moved = 0;

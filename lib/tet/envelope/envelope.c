@@ -142,7 +142,7 @@ void tm_envelope_put_node(tm_envelope *envelope, uint32_t v, double place)
     envelope->place[v] = place;
 }
 
-static uint32_t *number_at(tm_envelope *e, int what, uint32_t i)
+static uint32_t *number_at(tm_envelope *e, tm_envelope_was what, uint32_t i)
 {
     return what == TM_WAS_BELOW   ? &e->below[i]
            : what == TM_WAS_FIRST ? &e->first_kept[i]
@@ -150,7 +150,7 @@ static uint32_t *number_at(tm_envelope *e, int what, uint32_t i)
 }
 
 /* Writes a number of one of the arrays; false where memory is out. */
-static bool put(tm_envelope *e, int what, uint32_t i, uint32_t number)
+static bool put(tm_envelope *e, tm_envelope_was what, uint32_t i, uint32_t number)
 {
     uint32_t *at = number_at(e, what, i);
     if (e->recording) {

@@ -31,10 +31,19 @@ typedef struct tm_envelope_link {
     uint32_t face, next;
 } tm_envelope_link;
 
-/* What was written over, while changes are recorded: a number of one of the arrays, the
- * curve of an edge, or the place of a node. */
+/* What can be written over: a number of one of the arrays, the curve of an edge, or the
+ * place of a node. */
+typedef enum tm_envelope_was {
+    TM_WAS_BELOW,
+    TM_WAS_FIRST,
+    TM_WAS_NEXT,
+    TM_WAS_CURVE,
+    TM_WAS_PLACE
+} tm_envelope_was;
+
+/* What was, of what was written over while changes are recorded. */
 typedef struct tm_envelope_entry {
-    enum { TM_WAS_BELOW, TM_WAS_FIRST, TM_WAS_NEXT, TM_WAS_CURVE, TM_WAS_PLACE } what;
+    tm_envelope_was what;
     uint32_t at[2]; /* an index; the nodes of an edge */
     uint32_t was;   /* a curve: TM_NONE for none */
     double place;
