@@ -7,11 +7,8 @@
 #include "common/input/surface_input.h"
 #include "common/process/early_end.h"
 #include "common/process/mpi_environment.h"
+#include "common/repair/repair_trace_files.h"
 
-#include "../lib/examine/jens_statistics.h"
-#include "../lib/format/mesh_format.h"
-#include "../lib/format/oct.h"
-#include "../lib/format/vtk/vtk.h"
 #include "../lib/octree/forest/mpi_start.h"
 #include "../lib/octree/shared_repair/repair_share.h"
 #include "../lib/ranks/ranks.h"
@@ -19,7 +16,6 @@
 #include "../lib/octree/repair/repair_forced.h"
 #include "../lib/octree/repair/repair_shape.h"
 #include "../lib/octree/repair/repair_stream.h"
-#include "../lib/octree/repair/repair_trace.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -158,105 +154,6 @@ static void find_surface(program *p, const tm_stream *stream)
         fail(p, &error);
 }
 
-/* The files of --trace ------------------------------------------------------------- */
-
-typedef struct {
-    const char *base;
-    unsigned iteration, threads;
-    const tm_stream *stream;
-} writer;
-
-/* Writes the text as BASE_i.SUFFIX and frees it. */
-static tm_status put(const writer *w, const char *suffix, tm_text *text, tm_error *error)
-{
-    tm_text name = {0};
-    tm_text_format(&name, "%s_%u.%s", w->base, w->iteration, suffix);
-    tm_status status = name.failed || text->failed
-                           ? tm_fail_memory(error)
-                           : output_file_write(name.byte, text, error);
-    tm_text_free(&name);
-    tm_text_free(text);
-    return status;
-}
-
-static tm_status write_histogram(const writer *w, tm_error *error)
-{
-    const tm_block *node = tm_stream_find(w->stream, ".node");
-    const tm_block *mix = tm_stream_find(w->stream, ".mix");
-    const tm_elements elements = {(const double(*)[3])node->real, mix->count, mix->start,
-                                  mix->item};
-    const tm_jens_request request = {.threads = w->threads};
-    tm_jens_statistics statistics = {0};
-    tm_text text = {0};
-    const tm_status status =
-        tm_jens_statistics_measure(&statistics, &elements, &request, error);
-    if (status != TM_OK)
-        return status;
-    tm_jens_histogram_file(&text, &statistics.jens);
-    return put(w, "histo", &text, error);
-}
-
-static tm_status write_octants(const writer *w, const uint32_t *id,
-                               const uint32_t *octant, size_t count, tm_error *error)
-{
-    tm_text text = {0};
-    for (size_t i = 0; i < count; i++)
-        tm_text_format(&text, "%u\n", id ? id[octant[i]] : octant[i]);
-    return put(w, "ref", &text, error);
-}
-
-static tm_status write_mesh(const writer *w, const char *suffix, mesh_writer *write,
-                            tm_error *error)
-{
-    tm_text text = {0};
-    const tm_status status = write(&text, w->stream, w->threads, error);
-    if (status == TM_OK)
-        return put(w, suffix, &text, error);
-    tm_text_free(&text);
-    return status;
-}
-
-/* With the ids by which .ref names octants. */
-static tm_status write_oct(tm_text *text, const tm_stream *stream, unsigned threads,
-                           tm_error *error)
-{
-    return tm_oct_write(text, stream, true, threads, error);
-}
-
-/* Of the elements nothing but their shape. */
-static tm_status write_vtk(tm_text *text, const tm_stream *stream, unsigned threads,
-                           tm_error *error)
-{
-    const tm_vtk_options elements = {.boundary = false};
-    return tm_vtk_write(text, stream, &elements, threads, error);
-}
-
-/* Writes BASE_i.histo, .m3d, .vtk, and, where there are octants, .oct; BASE_i.ref, with
- * the ids of `count` octants, a line each, where there are some. Each is whole
- * or not there. */
-static tm_status write_trace(const program *p, unsigned iteration,
-                             const tm_repair_state *state, const uint32_t *octant,
-                             size_t count, tm_error *error)
-{
-    tm_stream stream;
-    tm_stream_init(&stream);
-    const writer w = {p->trace, iteration, p->f.threads, &stream};
-    tm_status status =
-        tm_repair_trace(state, p->has_surface ? &p->boundary : NULL, &stream, error);
-    if (status == TM_OK)
-        status = write_histogram(&w, error);
-    if (status == TM_OK && count > 0)
-        status = write_octants(&w, state->id, octant, count, error);
-    if (status == TM_OK)
-        status = write_mesh(&w, "m3d", tm_m3d_write, error);
-    if (status == TM_OK)
-        status = write_mesh(&w, "vtk", write_vtk, error);
-    if (status == TM_OK && state->octree.leaves > 0)
-        status = write_mesh(&w, "oct", write_oct, error);
-    tm_stream_free(&stream);
-    return status;
-}
-
 /* What --method refine says on standard error, and the files of --trace. */
 static tm_status visit(void *context, unsigned iteration, const tm_repair_state *state,
                        const uint32_t *bad, size_t count, tm_error *error)
@@ -272,7 +169,9 @@ static tm_status visit(void *context, unsigned iteration, const tm_repair_state 
         filter_verbose(&p->f, "octants to improve in iteration %u: %zu", iteration,
                        count);
     }
-    return p->trace ? write_trace(p, iteration, state, bad, count, error) : TM_OK;
+    const repair_trace to = {p->trace, iteration, p->f.threads};
+    const tm_surface *surface = p->has_surface ? &p->boundary : NULL;
+    return p->trace ? repair_trace_write(&to, state, surface, bad, count, error) : TM_OK;
 }
 
 /* Before the repair, or after it. */

@@ -225,7 +225,7 @@ examples() {
 }
 
 @test "without libgmsh all else is built, and what is left out is said once" {
-    case ${TM_BUILD:?} in */san) skip "the same as without the sanitizers" ;; esac
+    case ${TM_BUILD:?} in */san | */coverage) skip "the same as in the usual build" ;; esac
     [ -x "$TM_BUILD/bin/gmsh-import" ] || skip "there is no libgmsh"
     mkdir build
     cp -pR "$TM_BUILD/cmd" "$TM_BUILD/lib" "$TM_BUILD/generate" "$TM_BUILD/generated" build
@@ -239,7 +239,7 @@ examples() {
 }
 
 @test "without p4est all else is built, and what is left out is said once" {
-    case ${TM_BUILD:?} in */san) skip "the same as without the sanitizers" ;; esac
+    case ${TM_BUILD:?} in */san | */coverage) skip "the same as in the usual build" ;; esac
     echo '#include <p4est.h>' | cc -E -x c - >/dev/null 2>&1 && skip "p4est needs no mpicc"
     # Objects are the same with p4est and without it.
     mkdir build
@@ -275,6 +275,7 @@ examples() {
     variables=(BUILD="$TM_BUILD" PREFIX=/usr DESTDIR="$PWD/to")
     case ${TM_BUILD:?} in
     */san) variables=(SAN=1 BUILD="${TM_BUILD%/san}" "${variables[@]:1}") ;;
+    */coverage) variables=(COVERAGE=1 BUILD="${TM_BUILD%/coverage}" "${variables[@]:1}") ;;
     esac
     run -0 --separate-stderr make -s -C "$root" "${variables[@]}" install
     [ "$output" = "" ]
