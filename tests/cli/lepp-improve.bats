@@ -686,3 +686,20 @@ END
     lepp-improve -q --no-history -o "$out/new.tm" "$out/new.tm"
     [ "$(tail -n 1 "$out/new.tm")" = .end ]
 }
+
+# Angles of 1e-7 degrees are rounded so that a move to the same place may seem a gain.
+@test "selective with sweeps ends on needles" {
+    command -v tetgen >/dev/null || skip "there is no tetgen"
+    for seed in 1 2 3 4 5 6 7 8 9 10; do
+        awk -v seed=$seed 'BEGIN { srand(seed); print 40, 3
+            for (i = 0; i < 40; i++) {
+                if (i % 10 == 0) { x = rand(); y = rand(); z = rand() }
+                printf "%d %.17g %.17g %.17g\n", i + 1, x + 1e-7 * rand(), y + 1e-7 * rand(), z + 1e-7 * rand()
+            } }' >clusters.node
+        tetgen-mesh --quiet -o clusters.tm clusters.node
+        for sweeps in smooth face-swap both; do
+            lepp-improve -q -a selective --with $sweeps -s 2000 --json report -o /dev/null clusters.tm
+            [ "$(sed -n 's/.*"passes": *\([0-9]*\).*/\1/p' report)" -lt 2000 ]
+        done
+    done
+}

@@ -45,17 +45,25 @@ static void find_mean(tm_lepp_engine *e, int dimension, double p[3])
         p[k] = m.from[k] + m.sum[k] / (double)m.count;
 }
 
-/* Whether the worst tetrahedron of the ball is better with its node at p. */
+/* Whether the worst tetrahedron of the ball is better with its node at p. What is known
+ * of needles may be rounded otherwise than what is measured now, and a node that stays
+ * where it is would gain, for ever: so where it seems better, both places are measured
+ * alike. */
 static bool is_better(const tm_lepp_engine *e, const tm_cavity_boundary *boundary,
                       const double p[3])
 {
     const tm_ball *ball = &e->sweeper.ball;
+    const double *here = e->mesh->xyz[ball->node];
     tm_tet_measure measure = e->options->measure;
     double worst = HUGE_VAL;
     for (size_t k = 0; k < ball->size; k++)
         worst = fmin(worst, e->quality[ball->tet[k]]);
     double least = tm_tet_measure_times(measure, worst, 1 + TM_LEPP_GAIN);
-    if (!(tm_cavity_boundary_quality(boundary, measure, p, least) > worst))
+    const double there = tm_cavity_boundary_quality(boundary, measure, p, least);
+    if (!(there > worst))
+        return false;
+    worst = tm_cavity_boundary_quality(boundary, measure, here, 0);
+    if (!(there > tm_tet_measure_times(measure, worst, 1 + TM_LEPP_GAIN)))
         return false;
     for (size_t k = 0; k < boundary->count; k++) {
         const uint32_t *f = boundary->face[k];
