@@ -204,7 +204,8 @@ static tm_status missing_row(reader *r, const tm_block *block, size_t row, size_
                 tm_lines_quote(r->lines.at, text));
 }
 
-/* The number of the first row of the first .node is the stream's index base. */
+/* The number of the first row of the first .node is the stream's index base; where that has
+ * no row, of the next block that has one. */
 static tm_status read_base(reader *r, const tm_block *block)
 {
     int64_t number;
@@ -212,7 +213,7 @@ static tm_status read_base(reader *r, const tm_block *block)
     const char *at = r->lines.at;
     while (tm_is_blank(*at))
         at++;
-    if (block->kind != TM_NODE)
+    if (block->kind != TM_NODE && !tm_block_names_find(&r->names, ".node"))
         return FAIL(r, block->name,
                     "comes before the nodes, whose first number is the "
                     "index base of the stream");

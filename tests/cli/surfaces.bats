@@ -259,3 +259,16 @@ END
         [[ "$output" != *'no importer is known'* ]]
     done
 }
+
+@test "a solid without a triangle has a name: what is written is read" {
+    printf 'solid a name\nendsolid\n' >nothing.stl
+    surface-import --no-history nothing.stl >nothing.tm
+    grep -q 'a name$' nothing.tm
+    surface-import --no-history nothing.tm | cmp - nothing.tm
+    # The first number of all is that of the name's row.
+    printf '%s\n' 'termesh 1' .node '0 3 0 0' .ele '0 4 0' .group '1 0' '0 2 1 part' .end >zero.tm
+    lepp-improve -q --no-history zero.tm | cmp - zero.tm
+    printf '%s\n' 'termesh 1' .group '1 0' '1 2 1 part' .node '0 3 0 0' .ele '0 4 0' .end >early.tm
+    run -3 mesh-check early.tm
+    [[ "$output" == *"comes before the nodes"* ]]
+}
