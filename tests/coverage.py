@@ -30,7 +30,7 @@ def objects_of(test, build):
     """The counts of lib/ of one test, beside the .gcno that they belong to."""
     found = []
     for path in count_files(test):
-        part = path.rpartition("/lib/")
+        part = path.rpartition(build + "/lib/")
         note = os.path.join(build, "lib", part[2][:-len("gcda")] + "gcno")
         if part[1] and os.path.exists(note):
             beside = path[:-len("gcda")] + "gcno"

@@ -76,9 +76,10 @@ locale() {
 
 # Generated input in $work/in.
 make_input() {
+    make -s build/bench/shapes || exit 4
     mkdir "$work/in"
     for shape in gear spikes; do
-        "${SHAPES:-build/bench/shapes}" "$shape" >"$work/in/$shape.off"
+        build/bench/shapes "$shape" >"$work/in/$shape.off"
     done
     cd "$work/in" || exit 4
     PATH=$1:$PATH
@@ -99,6 +100,7 @@ make_input() {
     oct-export --quiet mixed.tm >mixed.oct
     visf-export --quiet poly.tm >poly.visf
     openfoam-export --quiet foam poly.tm
+    [ -z "$(find . -type f -empty)" ] || exit 4
     cd - >/dev/null || exit 4
 }
 
