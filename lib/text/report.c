@@ -6,6 +6,7 @@
 #include <string.h>
 
 static const char count_format[] = "%.0f"; /* a count, as a double */
+static const char number_format[] = "%.9g";
 
 static const void *member(const tm_report_row *row, const void *of)
 {
@@ -29,6 +30,13 @@ static double number_of(const tm_report_row *row, const void *of)
     if (row->type == TM_REPORT_NUMBER)
         return *(const double *)member(row, of);
     return (double)integer_of(row, of);
+}
+
+static const char *format_of(const tm_report_row *row)
+{
+    if (row->format)
+        return row->format;
+    return row->type == TM_REPORT_NUMBER ? number_format : count_format;
 }
 
 static void counts_json(tm_json *json, const tm_report_row *row, const void *of)
@@ -137,8 +145,7 @@ void tm_report_table(tm_text *text, const tm_report_row *row, const void *const 
         }
         tm_text_format(text, "%-*s", label_width, row->label);
         for (size_t c = 0; c < columns; c++)
-            cell(text, row->format ? row->format : count_format,
-                 number_of(row, column[c]));
+            cell(text, format_of(row), number_of(row, column[c]));
         if (columns == 2 && row->type == TM_REPORT_COUNT &&
             integer_of(row, column[0]) > 0)
             tm_text_format(text, "   %.2f times",

@@ -36,7 +36,7 @@ typedef enum tm_report_type {
 typedef struct tm_report_row {
     const char *key;    /* in JSON; NULL: not there */
     const char *label;  /* in tables; NULL: not there */
-    const char *format; /* in tables, of a double; NULL: a whole number */
+    const char *format; /* in tables, of a double; NULL: of a number "%.9g" */
     tm_report_type type;
     size_t offset; /* of the member */
     size_t size;   /* of it, in bytes */

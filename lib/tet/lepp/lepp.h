@@ -55,7 +55,8 @@ typedef struct tm_lepp_sizes {
 typedef enum tm_lepp_stop {
     TM_LEPP_ORIGINAL, /* S as it is in the input, once */
     TM_LEPP_PASSES,   /* so many times, S found anew each time */
-    TM_LEPP_CONVERGED /* new bad ones join S, until no longest edge in S is refinable */
+    TM_LEPP_CONVERGED /* new bad ones join S, until no longest edge in S is refinable: for
+                         selective; swap-centroid need not come to an end */
 } tm_lepp_stop;
 
 typedef struct tm_lepp_options {

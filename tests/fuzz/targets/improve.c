@@ -21,6 +21,8 @@ static tm_status along_paths(tm_tet_mesh *mesh, tm_error *error)
                                .max_growth = growth,
                                .path = (tm_lepp_path)random_below(3),
                                .count_invalid_swaps = random_below(2)};
+    if (options.algorithm == TM_LEPP_SWAP_CENTROID && options.stop == TM_LEPP_CONVERGED)
+        options.stop = TM_LEPP_ORIGINAL; /* it has no end of its own */
     if (options.algorithm == TM_LEPP_SELECTIVE)
         options.sweeps = random_below(4);
     else if (options.algorithm < TM_LEPP_SWAP_CENTROID && random_below(2))
