@@ -52,6 +52,20 @@ leaves_nothing() {
     for_each_filter reports
 }
 
+@test "a full disk: exit 4, and what could not be written" {
+    [ -w /dev/full ] || skip "there is no /dev/full"
+    refuses() {
+        ! writes_files "$1" || return 0
+        # shellcheck disable=SC2046 # words
+        run -4 --separate-stderr "$1" -q -o /dev/full $(operands "$1" "$(input "$1")")
+        [[ "$stderr" == *"$1: /dev/full: cannot write: "* ]]
+        # shellcheck disable=SC2046 # words
+        "$1" $(operands "$1" "$(input "$1")") 2>message >/dev/full && return 1
+        grep -q "^$1: <stdout>: cannot write: " message
+    }
+    for_each_filter refuses
+}
+
 @test "SIGKILL or SIGQUIT while it writes leaves nothing behind" {
     case ${TM_BUILD:?} in */san*) skip "the sanitizers have a write() of their own" ;; esac
     python3 -c 'import os; os.close(os.open(".", os.O_TMPFILE | os.O_WRONLY))' ||

@@ -179,6 +179,14 @@ void filter_add_history(const filter *f, tm_stream *stream, const char *done)
         filter_fail(f, &error);
 }
 
+static _Noreturn void fail_output(const filter *f, tm_error *error)
+{
+    if (!error->file[0])
+        snprintf(error->file, sizeof error->file, "%s",
+                 f->output ? f->output : "<stdout>");
+    filter_fail(f, error);
+}
+
 void filter_write(filter *f, tm_stream *stream, const char *summary, ...)
 {
     tm_error error;
@@ -191,7 +199,7 @@ void filter_write(filter *f, tm_stream *stream, const char *summary, ...)
     int fd = filter_open_output(f);
     stream->progress = filter_progress(f);
     if (tm_stream_write(stream, fd, f->threads, &error) != TM_OK)
-        filter_fail(f, &error);
+        fail_output(f, &error);
 }
 
 void filter_write_text(filter *f, const tm_text *text)
@@ -201,11 +209,8 @@ void filter_write_text(filter *f, const tm_text *text)
         return;
     int fd = filter_open_output(f);
     filter_stage(f, "writing");
-    if (tm_write_text(fd, text, &error) == TM_OK)
-        return;
-    if (f->output)
-        snprintf(error.file, sizeof error.file, "%s", f->output);
-    filter_fail(f, &error);
+    if (tm_write_text(fd, text, &error) != TM_OK)
+        fail_output(f, &error);
 }
 
 bool filter_has_report(const filter *f)
