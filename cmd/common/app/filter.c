@@ -179,11 +179,16 @@ void filter_add_history(const filter *f, tm_stream *stream, const char *done)
         filter_fail(f, &error);
 }
 
-static _Noreturn void fail_output(const filter *f, tm_error *error)
+void filter_name_output(const filter *f, tm_error *error)
 {
     if (!error->file[0])
         snprintf(error->file, sizeof error->file, "%s",
                  f->output ? f->output : "<stdout>");
+}
+
+static _Noreturn void fail_output(const filter *f, tm_error *error)
+{
+    filter_name_output(f, error);
     filter_fail(f, error);
 }
 

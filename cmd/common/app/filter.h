@@ -214,6 +214,9 @@ int filter_open_input(const filter *f, tm_error *error);
 /* Standard output, or -o FILE in the making. */
 int filter_open_output(filter *f);
 
+/* Names it in an error that names no file yet. */
+void filter_name_output(const filter *f, tm_error *error);
+
 /* Adds the line to the history of a stream: "# name version options: done". */
 void filter_add_history(const filter *f, tm_stream *stream, const char *done);
 

@@ -90,6 +90,8 @@ void filter_write_slices(filter *f, tm_slices *slices, const char *summary, ...)
         f->output && begin_file(f, &fd, &file)
             ? tm_slices_write_file(slices, file.path, f->threads, &error)
             : tm_slices_write(slices, fd, f->threads, &error);
+    if (status != TM_OK)
+        filter_name_output(f, &error);
     filter_agree(f, status, &error);
 }
 
@@ -107,7 +109,7 @@ void filter_write_texts(filter *f, const tm_text *text)
         status = tm_write_text(fd, text, &error);
         status = tm_pass_on(fd, status, &error);
     }
-    if (status != TM_OK && f->output)
-        snprintf(error.file, sizeof error.file, "%s", f->output);
+    if (status != TM_OK)
+        filter_name_output(f, &error);
     filter_agree(f, status, &error);
 }
