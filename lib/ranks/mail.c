@@ -77,21 +77,6 @@ tm_status tm_mail_answer(const tm_mail *mail, const void *answer, size_t size, v
     return status;
 }
 
-tm_status tm_ranks_runs(size_t count, size_t **first, tm_error *error)
-{
-    const unsigned ranks = tm_ranks_count();
-    void *all = NULL;
-    size_t *runs = calloc(ranks + (size_t)1, sizeof *runs);
-    tm_status status = tm_ranks_enough(runs, error);
-    if (status == TM_OK)
-        status = tm_ranks_share(&count, 1, sizeof count, &all, NULL, error);
-    for (unsigned r = 0; r < ranks && status == TM_OK; r++)
-        runs[r + 1] = runs[r] + ((const size_t *)all)[r];
-    free(all);
-    *first = runs;
-    return status;
-}
-
 unsigned tm_rank_of(const size_t *first, size_t item)
 {
     unsigned begin = 0, end = tm_ranks_count();

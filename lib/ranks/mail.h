@@ -33,10 +33,6 @@ tm_status tm_mail_send(tm_mail *mail, const void *item, size_t size, void **got,
 tm_status tm_mail_answer(const tm_mail *mail, const void *answer, size_t size, void **to,
                          tm_error *error);
 
-/* Of something that ranks have one after the other, who has what: rank r from (*first)[r]
- * up to (*first)[r + 1], for the `count` that this one has. [ranks + 1], to be freed. */
-tm_status tm_ranks_runs(size_t count, size_t **first, tm_error *error);
-
 /* Which rank has it. O(log ranks). */
 unsigned tm_rank_of(const size_t *first, size_t item);
 
