@@ -125,6 +125,24 @@ END
     [ "$(header .face cross.tm | cut -d ' ' -f 1)" -eq 8 ]
 }
 
+@test "a good surface is returned byte for byte, with a node that no triangle has" {
+    surface-import --no-history -o good.tm - <<'END'
+OFF
+5 4 0
+0 0 0
+9 9 9
+1 0 0
+0 1 0
+0 0 1
+3 0 3 2
+3 0 2 4
+3 2 3 4
+3 3 0 4
+END
+    surface-mend --no-history -q good.tm | cmp - good.tm
+    [ "$(header .node good.tm | cut -d ' ' -f 1)" -eq 5 ]
+}
+
 @test "usage is exit 2, the wrong kind exit 3" {
     for wrong in --weld=x --weld=-1 --fill=x --islands --cut; do
         run -2 surface-mend "$wrong" sphere.off

@@ -229,12 +229,27 @@ static void test_vtu_strings(void **state)
     }
 }
 
+/* An error without a line gets none. */
+static void test_lines(void **state)
+{
+    (void)state;
+    tm_error error;
+    tm_fail_at(&error, TM_ERROR_INPUT, "file", 3, NULL, "wrong");
+    tm_error_add_lines(4, &error);
+    assert_int_equal(error.line, 7);
+    tm_fail_at(&error, TM_ERROR_INPUT, "file", 0, NULL, "wrong");
+    tm_error_add_lines(4, &error);
+    assert_int_equal(error.line, 0);
+    tm_error_add_lines(4, NULL);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_surfaces),      cmocka_unit_test(test_abaqus),
         cmocka_unit_test(test_abaqus_quotes), cmocka_unit_test(test_medit_cut),
         cmocka_unit_test(test_openfoam),      cmocka_unit_test(test_vtu_strings),
+        cmocka_unit_test(test_lines),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -121,6 +121,12 @@ static void test_free_forms(void **state)
     assert_int_equal(read_text(&stream, "termesh 1\n.end", 14, NULL), TM_OK);
     assert_written(&stream, 1, "termesh 1\n.end\n");
     tm_stream_free(&stream);
+    static const char short_name[] =
+        "termesh 1\n.node\n1 3 0 0\n0 0 0 0\n.x\n1\n0 7\n.end\n";
+    assert_int_equal(read_text(&stream, short_name, sizeof short_name - 1, &error),
+                     TM_OK);
+    assert_written(&stream, 2, short_name);
+    tm_stream_free(&stream);
 }
 
 /* Every proper beginning of a stream is an error, but for the last line feed. */
