@@ -100,6 +100,18 @@ is_near() {
         mended.tm)" = "0 1" ]
 }
 
+@test "markers and attributes of nodes stay, and what refining drops is said" {
+    awk '/^\.node/ { print; getline; print $1, 3, 2, 1; nodes = 1; next } /^\./ { nodes = 0 }
+        nodes { print $0, 5, 1 + $1 % 9; next } 1' bad.tm >marked.tm
+    octree-repair -q -t 0.2 -o mended.tm marked.tm
+    rows() { awk '/^\.node/,/^\.mix/ { if (NF == 7) print $1, $5, $6, $7 }' "$1"; }
+    rows marked.tm | cmp - <(rows mended.tm)
+    run -0 --separate-stderr octree-repair --method refine -t 0.2 -o mended.tm marked.tm
+    [[ "$stderr" == *"(attributes of .node, markers of .node): left out" ]]
+    [ "$(header .node mended.tm | cut -d ' ' -f 2-)" = "3 1 0" ]
+    run -3 octree-repair --strict --method refine -t 0.2 marked.tm
+}
+
 @test "places of nodes are found where the stream does not say them" {
     # Without the attribute; the node that is off its patch is off the surface.
     awk '/^\.node/ { nodes = 1; print; getline; print $1, 3, 0, 0; next }

@@ -15,7 +15,7 @@ typedef struct tm_repair_notes {
     bool attributed;    /* the attribute of .node says where nodes are */
     bool regions;       /* nodes between regions have places, too: no octree is found */
     tm_error no_octree; /* why there is none; its message is empty where there is one */
-    char dropped[256];  /* blocks that were removed, with blanks between */
+    char dropped[256];  /* what was removed, with commas between */
 } tm_repair_notes;
 
 /* Takes the arrays of .node and .mix; the blocks stay. TM_ERROR_INPUT: there are no

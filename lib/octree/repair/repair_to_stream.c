@@ -63,15 +63,6 @@ static tm_status spread_elements(const tm_repair_state *state, tm_block *mix,
         free(mix->attribute);
         mix->attribute = to;
     }
-    if (mix->markers) {
-        int32_t *to = tm_new(elements, sizeof *to);
-        if (!to)
-            return tm_fail_memory(error);
-        for (size_t e = 0; e < elements; e++)
-            to[e] = mix->marker[state->origin[e]];
-        free(mix->marker);
-        mix->marker = to;
-    }
     return TM_OK;
 }
 
@@ -128,7 +119,7 @@ static void note_dropped(tm_repair_notes *notes, const char *name)
 {
     const size_t used = strlen(notes->dropped);
     snprintf(notes->dropped + used, sizeof notes->dropped - used, "%s%s",
-             used > 0 ? " " : "", name);
+             used > 0 ? ", " : "", name);
 }
 
 static void remove_others(tm_stream *stream, bool remade, tm_repair_notes *notes)
@@ -162,9 +153,6 @@ static tm_status give_levels(const tm_repair_state *state, tm_block *mix, bool l
                              tm_error *error)
 {
     mix->attributes = levels ? 1 : 0;
-    mix->markers = false;
-    free(mix->marker);
-    mix->marker = NULL;
     if (!renew((void **)&mix->attribute, levels ? state->mesh.elements : 0,
                sizeof *mix->attribute))
         return tm_fail_memory(error);
@@ -258,6 +246,10 @@ static tm_status give_remade(tm_repair_state *state, tm_stream *stream,
     const bool levels = has_levels(mix, tm_stream_find(stream, ".octant"));
     if (!levels && mix->attributes > 0)
         note_dropped(notes, "attributes of .mix");
+    if (node->attributes > 1) /* the first says what a node is on */
+        note_dropped(notes, "attributes of .node");
+    if (node->markers)
+        note_dropped(notes, "markers of .node");
     tm_status status = give_levels(state, mix, levels, error);
     node->attributes = 1;
     node->markers = false;
