@@ -403,6 +403,12 @@ lost = [abs(json.load(open("%d.json" % n))["volume"] - 1 + 0.0698 / 8) for n in 
 assert lost[0] > 3 * lost[1] > 9 * lost[2] and lost[3] < 4e-4, lost'
 }
 
+@test "--resolve splits nothing at edges and corners that octants have to themselves" {
+    surface cube off >cube.off
+    octree-mesh -q --no-history -s 3 --resolve 0 -o plain.tm cube.off
+    octree-mesh -q --no-history -s 3 --resolve 2 cube.off | cmp - plain.tm
+}
+
 @test "--most: what would be too much is refused, with what fits" {
     surface sphere off >sphere.off
     octree-mesh -q --json count.json -s 5 sphere.off >mesh.tm
