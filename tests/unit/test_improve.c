@@ -506,11 +506,51 @@ static void test_features(void **state)
     tm_stream_free(&stream);
 }
 
+/* Nodes of a side whose markers are not those of their neighbours in it stay, and those
+ * of an edge of the cube. */
+static void test_unlike_nodes(void **state)
+{
+    (void)state;
+    tm_stream stream;
+    tm_tet_mesh mesh;
+    tm_features before, after;
+    tm_tet_marks marks = {0};
+    make_mesh(&mesh, &stream, GRID, 0, false);
+    int32_t *marker = mesh.node_marker;
+    mesh.node_marker = NULL;
+    assert_int_equal(tm_features_find(&before, &mesh, NULL, &marks, NULL), TM_OK);
+    mesh.node_marker = realloc(marker, mesh.nodes * sizeof *marker);
+    assert_non_null(mesh.node_marker);
+    bool *unlike = calloc(mesh.nodes, sizeof *unlike);
+    for (size_t v = 0; v < mesh.nodes; v++)
+        mesh.node_marker[v] = before.dimension[v] < 3 ? (int32_t)random_below(8) / 6 : 0;
+    for (size_t f = 0; f < mesh.faces; f++)
+        for (int i = 0; i < 3; i++) {
+            const uint32_t a = mesh.face[f].node[i], b = mesh.face[f].node[(i + 1) % 3];
+            const bool along = before.dimension[a] == before.dimension[b] &&
+                               (before.dimension[a] == 2 ||
+                                (before.dimension[a] == 1 &&
+                                 (before.line[a][0] == b || before.line[a][1] == b)));
+            if (along && mesh.node_marker[a] != mesh.node_marker[b])
+                unlike[a] = unlike[b] = true;
+        }
+    assert_int_equal(tm_features_find(&after, &mesh, NULL, &marks, NULL), TM_OK);
+    for (size_t v = 0; v < mesh.nodes; v++)
+        assert_int_equal(after.dimension[v], unlike[v] ? 0 : before.dimension[v]);
+    free(unlike);
+    tm_features_free(&before);
+    tm_features_free(&after);
+    tm_tet_marks_free(&marks);
+    tm_tet_mesh_free(&mesh);
+    tm_stream_free(&stream);
+}
+
 int main(void)
 {
     random_start();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_features),
+        cmocka_unit_test(test_unlike_nodes),
         cmocka_unit_test(test_operations),
         cmocka_unit_test(test_operations_with_regions),
         cmocka_unit_test(test_operations_within),

@@ -194,6 +194,7 @@ static void fix_listed(tm_features *features, const tm_tet_mesh *mesh,
 static void fix_marked(tm_features *features, const tm_tet_mesh *mesh,
                        const tm_edge_map *edges)
 {
+    const uint8_t unlike = 0x80; /* until all edges have been looked at */
     uint8_t *dimension = features->dimension;
     const int32_t *marker = mesh->node_marker;
     if (!marker)
@@ -202,12 +203,14 @@ static void fix_marked(tm_features *features, const tm_tet_mesh *mesh,
         uint64_t key = edges->slot[s].key;
         uint32_t a = (uint32_t)(key >> 32), b = (uint32_t)key;
         int place = edges->slot[s].value == SMOOTH ? IN_FACET : ON_EDGE;
-        if (key != 0 && marker[a] != marker[b] && dimension[a] == place &&
-            dimension[b] == place)
-            dimension[a] = dimension[b] = FIXED;
+        if (key != 0 && marker[a] != marker[b] && (dimension[a] & ~unlike) == place &&
+            (dimension[b] & ~unlike) == place) {
+            dimension[a] |= unlike;
+            dimension[b] |= unlike;
+        }
     }
     for (size_t v = 0; v < mesh->nodes; v++)
-        if (dimension[v] == INSIDE && marker[v] != 0)
+        if (dimension[v] & unlike || (dimension[v] == INSIDE && marker[v] != 0))
             dimension[v] = FIXED;
 }
 
