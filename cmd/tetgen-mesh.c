@@ -390,13 +390,14 @@ static void fill_surface(settings *s, tm_polygon_surface *surface, tm_format for
                          tm_stream *mesh)
 {
     tm_surface_defects defects;
-    size_t dropped, mended;
+    size_t dropped, mended, cut;
     tm_error error, why = {.status = TM_OK};
     if (tm_coordinates_check((const double(*)[3])surface->xyz, surface->nodes,
                              surface->base, &error) != TM_OK)
         mesh_input_fail(&f, &error);
     if (tm_surface_drop_degenerate(surface, &mended, &error) != TM_OK ||
         tm_surface_drop_duplicates(surface, &dropped, &error) != TM_OK ||
+        tm_surface_cut_slit(surface, &cut, &error) != TM_OK ||
         tm_surface_find_defects(surface, &defects, &error) != TM_OK)
         filter_fail(&f, &error);
     if (mended > 0)
@@ -407,6 +408,11 @@ static void fill_surface(settings *s, tm_polygon_surface *surface, tm_format for
     if (dropped > 0)
         filter_note(&f, "faces in the place of an earlier one, which are dropped: %zu",
                     dropped);
+    if (cut > 0)
+        filter_note(&f,
+                    "faces that have a corner twice, slit open, which are cut into "
+                    "triangles: %zu",
+                    cut);
     check_surface(surface, &defects, format, s);
     if (surface->facets > 0)
         tetgen_find_parts(&f, &s->parts, surface, &why);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* gmsh-export: a stream as a mesh in a format that Gmsh writes. */
-#include "../common/gmsh/gmsh_write.h"
+#include "../common/gmsh/gmsh_names.h"
 #include "../common/input/left_out.h"
 #include "../common/input/mesh_input.h"
 
@@ -98,12 +98,62 @@ static void refuse_cells(const gmsh_plan *plan)
         }
 }
 
+/* Numbers run together, or become others, that are too long for a format. */
+static void refuse_numbers(const gmsh_plan *plan)
+{
+    const gmsh_output_format *to = &gmsh_output_formats[format];
+    size_t elements = 0;
+    int32_t most = 0;
+    tm_error error;
+    for (int d = 0; d < GMSH_DIMENSIONS; d++) {
+        elements += plan->items[d];
+        for (size_t i = 0; i < plan->values[d]; i++)
+            for (size_t g = 0; g < plan->value[d][i].groups; g++)
+                if (plan->value[d][i].group[g] > most)
+                    most = plan->value[d][i].group[g];
+    }
+    if (most > to->most)
+        tm_fail(&error, TM_ERROR_INPUT,
+                "has a marker or region %d, too long for the format %s (%d at most; msh4 "
+                "has it)",
+                (int)most, to->name, (int)to->most);
+    else if (plan->node->count > to->most_rows || elements > to->most_rows)
+        tm_fail(
+            &error, TM_ERROR_INPUT,
+            "has %zu nodes and %zu elements, too many for the format %s (%zu at most; "
+            "msh4 has them)",
+            plan->node->count, elements, to->name, to->most_rows);
+    else
+        return;
+    mesh_input_fail(&f, &error);
+}
+
+static void leave_out_names(const gmsh_plan *plan)
+{
+    gmsh_lost_names lost;
+    tm_error error;
+    if (gmsh_find_lost_names(&lost, plan, format, &error) != TM_OK)
+        mesh_input_fail(&f, &error);
+    if (lost.cut > 0)
+        filter_leave_out(&f, "what %zu names have behind %d bytes (.group)", lost.cut,
+                         GMSH_NAME_MOST);
+    if (lost.joined > 0)
+        filter_leave_out(&f, "%zu names that are others' in this format (.group)",
+                         lost.joined);
+    if (lost.swapped > 0)
+        filter_leave_out(&f,
+                         "%zu names of groups with the number of one of another "
+                         "dimension, of which Gmsh reads one (.group)",
+                         lost.swapped);
+}
+
 /* What is in the stream, but not in the file. */
 static void leave_out(const tm_stream *stream, const gmsh_plan *plan)
 {
     char row[64];
     snprintf(row, sizeof row, "%s %s", f.name, gmsh_output_formats[format].name);
     mesh_leave_out_of(&f, stream, row);
+    leave_out_names(plan);
     if (plan->unused > 0)
         filter_leave_out(&f, "%zu nodes that nothing has which is written (.node)",
                          plan->unused);
@@ -155,6 +205,7 @@ int main(int argc, char **argv)
     if (gmsh_plan_make(&plan, &stream, &error) != TM_OK)
         mesh_input_fail(&f, &error);
     refuse_cells(&plan);
+    refuse_numbers(&plan);
     leave_out(&stream, &plan);
     filter_stage(&f, "writing by Gmsh");
     if (gmsh_write(&text, &plan, format, f.binary, &error) != TM_OK)

@@ -5,6 +5,7 @@
 #include "vector.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 typedef struct polygon {
@@ -54,6 +55,13 @@ static size_t after(const polygon *p, size_t i)
     return i + 1 < p->k ? i + 1 : 0;
 }
 
+/* Nodes of one place are one, as on both sides of a slit. */
+static bool is_same(const polygon *p, size_t i, size_t j)
+{
+    const double *a = p->xyz[p->node[i]], *b = p->xyz[p->node[j]];
+    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
 /* Whether no corner that could be is in the closed triangle at corner i. */
 static bool is_ear(const polygon *p, size_t i)
 {
@@ -61,8 +69,7 @@ static bool is_ear(const polygon *p, size_t i)
     if (turn(p, h, i, j) <= 0)
         return false;
     for (size_t n = after(p, j); n != h; n = after(p, n)) {
-        uint32_t v = p->node[n];
-        if (v == p->node[h] || v == p->node[i] || v == p->node[j])
+        if (is_same(p, n, h) || is_same(p, n, i) || is_same(p, n, j))
             continue;
         if (turn(p, h, i, n) >= 0 && turn(p, i, j, n) >= 0 && turn(p, j, h, n) >= 0)
             return false;

@@ -13,7 +13,8 @@
 TM_EXTERN_C_BEGIN
 
 /* Cuts the polygon through k nodes of xyz into at most k - 2 triangles, which turn as it
- * does; returns how many. A corner that is the node before again is none. aside: room for
+ * does; returns how many. A corner that is the node before again is none. Corners may
+ * be in one place, where the polygon is slit open to its holes. aside: room for
  * k items, apart from node. A flat triangle is made only where nothing else is left.
  * O(k^2) for convex ones, O(k^3) at most. */
 size_t tm_cut_ears(const double (*xyz)[3], const uint32_t *node, size_t k,

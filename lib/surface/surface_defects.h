@@ -39,6 +39,13 @@ tm_status tm_surface_drop_duplicates(tm_polygon_surface *surface, size_t *droppe
 tm_status tm_surface_drop_degenerate(tm_polygon_surface *surface, size_t *mended,
                                      tm_error *error);
 
+/* Takes facets out whose only polygon has a point more than once, as where a face with
+ * holes is slit open along bridges to them, and appends the triangles that tm_cut_ears()
+ * makes of them, with their markers; those with a point twice are left out. *cut is how
+ * many facets that were. Facets of several polygons, or with holes, stay.
+ * O(n log n) in the number of corners, where such polygons are small. */
+tm_status tm_surface_cut_slit(tm_polygon_surface *surface, size_t *cut, tm_error *error);
+
 TM_EXTERN_C_END
 
 #endif

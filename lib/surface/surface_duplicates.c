@@ -2,6 +2,7 @@
 #include "surface_defects.h"
 
 #include "../base/array.h"
+#include "../geom/ears.h"
 #include "point_table.h"
 #include "surface_parts.h"
 
@@ -32,6 +33,13 @@ static int compare_facets(const void *a, const void *b)
     return order != 0 ? order : (p->facet > q->facet) - (p->facet < q->facet);
 }
 
+/* Whether a facet is one polygon, without holes. */
+static bool is_polygon(const tm_polygon_surface *surface, size_t f)
+{
+    return surface->facet_start[f + 1] - surface->facet_start[f] == 1 &&
+           surface->facet_hole_start[f + 1] == surface->facet_hole_start[f];
+}
+
 /* Lists the facets of one polygon of so many nodes or more, without holes, in `sorted`;
  * sorts their nodes. */
 static size_t sort_facets(const tm_polygon_surface *surface, size_t least, uint32_t *node,
@@ -40,8 +48,7 @@ static size_t sort_facets(const tm_polygon_surface *surface, size_t least, uint3
     size_t count = 0;
     for (size_t f = 0; f < surface->facets; f++) {
         const size_t p = surface->facet_start[f];
-        if (surface->facet_start[f + 1] - p != 1 ||
-            surface->facet_hole_start[f + 1] != surface->facet_hole_start[f])
+        if (!is_polygon(surface, f))
             continue;
         uint32_t *first = node + surface->start[p];
         const size_t nodes = surface->start[p + 1] - surface->start[p];
@@ -149,8 +156,7 @@ static size_t mend_polygons(tm_polygon_surface *surface, const uint32_t *unique,
     size_t mended = 0, corners = 0;
     for (size_t f = 0; f < surface->facets; f++) {
         const size_t first = surface->facet_start[f], end = surface->facet_start[f + 1];
-        const bool alone = end - first == 1 && surface->facet_hole_start[f] ==
-                                                   surface->facet_hole_start[f + 1];
+        const bool alone = is_polygon(surface, f);
         for (size_t p = first; p < end; p++) {
             uint32_t *item = surface->item + surface->start[p];
             const size_t count = surface->start[p + 1] - surface->start[p];
@@ -183,4 +189,89 @@ tm_status tm_surface_drop_degenerate(tm_polygon_surface *surface, size_t *mended
     free(unique);
     free(gone);
     return done ? TM_OK : tm_fail_memory(error);
+}
+
+/* A polygon is slit open where it has a point twice. room: for its corners. */
+static bool is_slit(const uint32_t *node, size_t k, uint32_t *room)
+{
+    memcpy(room, node, k * sizeof *room);
+    qsort(room, k, sizeof *room, tm_compare_numbers);
+    for (size_t i = 1; i < k; i++)
+        if (room[i] == room[i - 1])
+            return true;
+    return false;
+}
+
+/* Triangles of facets that are gone, with their markers. */
+typedef struct cut_facets {
+    uint32_t (*triangle)[3];
+    int32_t *marker;
+    size_t triangles;
+} cut_facets;
+
+/* Cuts the polygons that are slit open and sets gone[f] of their facets; returns how
+ * many. triangle and marker have room for one of each corner, room for two numbers of
+ * each. */
+static size_t cut_polygons(const tm_polygon_surface *surface, const uint32_t *unique,
+                           bool *gone, uint32_t *room, cut_facets *to)
+{
+    size_t cut = 0;
+    for (size_t f = 0; f < surface->facets; f++) {
+        const size_t p = surface->facet_start[f];
+        if (!is_polygon(surface, f))
+            continue;
+        const size_t k = surface->start[p + 1] - surface->start[p];
+        for (size_t i = 0; i < k; i++)
+            room[i] = unique[surface->item[surface->start[p] + i]];
+        if (!is_slit(room, k, room + k))
+            continue;
+        const size_t made = tm_cut_ears((const double(*)[3])surface->xyz, room, k,
+                                        room + k, to->triangle + to->triangles);
+        for (size_t t = 0; t < made; t++)
+            to->marker[to->triangles++] = surface->facet_marker[f];
+        gone[f] = true;
+        cut++;
+    }
+    return cut;
+}
+
+static tm_status add_cut(tm_polygon_surface *surface, const cut_facets *cut,
+                         tm_error *error)
+{
+    const int32_t next = surface->next_marker;
+    tm_status status = TM_OK;
+    for (size_t t = 0; t < cut->triangles && status == TM_OK; t++) {
+        const uint32_t *v = cut->triangle[t];
+        surface->next_marker = cut->marker[t];
+        if (v[0] != v[1] && v[1] != v[2] && v[2] != v[0])
+            status = tm_polygon_surface_add_polygon(surface, v, 3, error);
+    }
+    surface->next_marker = next;
+    return status;
+}
+
+tm_status tm_surface_cut_slit(tm_polygon_surface *surface, size_t *cut, tm_error *error)
+{
+    *cut = 0;
+    if (surface->facets == 0)
+        return TM_OK;
+    uint32_t *unique, *room = tm_new(2 * surface->corners, sizeof *room);
+    bool *gone;
+    cut_facets to = {.triangle = tm_new(surface->corners, sizeof *to.triangle),
+                     .marker = tm_new(surface->corners, sizeof *to.marker)};
+    tm_status status = weld(surface, &unique, &gone) && room && to.triangle && to.marker
+                           ? TM_OK
+                           : tm_fail_memory(error);
+    if (status == TM_OK)
+        *cut = cut_polygons(surface, unique, gone, room, &to);
+    if (*cut > 0) {
+        drop_facets(surface, gone);
+        status = add_cut(surface, &to, error);
+    }
+    free(unique);
+    free(gone);
+    free(room);
+    free(to.triangle);
+    free(to.marker);
+    return status;
 }

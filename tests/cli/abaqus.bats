@@ -391,6 +391,44 @@ END
     [ "$(grep '^\*NSET' long.inp | wc -L)" -le 92 ] # a name of 80
 }
 
+@test "names that are the same in several dimensions, or once they are set's names" {
+    for seed in $(seq 40); do
+        python3 - "$seed" >names.tm <<'END'
+import random, sys
+random.seed(int(sys.argv[1]))
+values = [random.sample(range(1, 30), 4) for _ in range(4)]
+print('termesh 1\n.node\n4 3 0 1')
+for i, xyz in enumerate(('0 0 0', '1 0 0', '0 1 0', '0 0 1')):
+    print(i + 1, xyz, values[0][i])
+print('.ele\n1 4 1\n1 1 2 3 4', values[3][0])
+print('.face\n4 1')
+for i, face in enumerate(('1 3 2', '1 2 4', '2 3 4', '3 1 4')):
+    print(i + 1, face, values[2][i])
+rows = []
+for d, here in enumerate((values[0], [], values[2], values[3][:1])):
+    pool = ['a b', 'a_b', 'a/b', 'A_B', 'part', 'Part', 'x' * 79, 'x' * 78 + '-', '9', 'Face9']
+    for v in here:
+        pool += [f'a_b_{v}', f'a_b_{v}_{v}', f'part_{v}', 'x' * 65 + f'_{v}', f'Face9_{v}']
+    for v, name in zip(here, random.sample(pool, len(here))):
+        if random.random() < .9:
+            rows.append(f'{d} {v} {name}')
+print('.group\n%d 0' % len(rows))
+for i, row in enumerate(rows):
+    print(i + 1, row)
+print('.end')
+END
+        abaqus-export --strict -o names.inp names.tm
+        run -0 --separate-stderr abaqus-import -o read.tm names.inp
+        [ "$stderr" = "" ]
+        in_order read.tm >back.tm
+        in_order names.tm >right.tm
+        same_mesh right.tm back.tm
+        for kind in '*NSET, NSET=' '*ELSET, ELSET=' '*SURFACE, TYPE=ELEMENT, NAME='; do
+            [ "$(sed -n "s/^$kind//p" names.inp | tr '[:lower:]' '[:upper:]' | sort | uniq -d)" = "" ]
+        done
+    done
+}
+
 @test "Gmsh's files: entities without a group, and groups by name" {
     load gmsh
     need_gmsh

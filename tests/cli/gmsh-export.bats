@@ -264,6 +264,102 @@ END
     [ ! -e b.msh ]
 }
 
+# corner FACE REGION NAME…: a tetrahedron with markers FACE, 2 and 3 and a region, and
+# .group with these names, "DIMENSION VALUE NAME".
+corner() {
+    printf '%s\n' 'termesh 1' .node '4 3 0 0' '1 0 0 0' '2 1 0 0' '3 0 1 0' '4 0 0 1' \
+        .ele '1 4 1' "1 1 2 3 4 $2" .face '4 1' "1 1 3 2 $1" '2 1 2 4 2' '3 2 3 4 3' '4 3 1 4 3' \
+        .edge '1 1' '1 1 2 40'
+    printf '%s\n' .group "$(($# - 2)) 0"
+    printf '%s\n' "${@:3}" | grep . | cat -n | awk '{ $1 = $1 } 1'
+    echo .end
+}
+
+@test "numbers of groups: the highest that a format has comes back, a higher one is refused" {
+    numbered() {
+        [ "$1" = face ] && corner "$2" 5 '3 1 none' || corner 5 "$2" '3 1 none'
+    }
+    while read -r format most; do
+        for kind in face region; do
+            numbered "$kind" "$most" >most.tm
+            run -0 --separate-stderr gmsh-export --format "$format" -o "a.$format" most.tm
+            if [[ $format != key ]]; then
+                gmsh-import -q --format "${format/msh4/msh}" "a.$format" >back.tm
+                diff <(rows .face most.tm | sort) <(rows .face back.tm | sort)
+                diff <(rows .ele most.tm) <(rows .ele back.tm)
+            fi
+            [[ $format != msh4 ]] || continue
+            for number in $((most + 1)) 2147483647; do
+                numbered "$kind" "$number" >above.tm
+                run -3 --separate-stderr gmsh-export -o b.out --format "$format" above.tm
+                [ "$stderr" = "gmsh-export: above.tm: has a marker or region $number, too long for the format $format ($most at most; msh4 has it)" ]
+                [ ! -e b.out ]
+            done
+        done
+    done <<'END'
+bdf 99999999
+unv 999999999
+key 999999
+msh4 2147483647
+END
+}
+
+@test "names that Gmsh cuts, joins or takes for another group's: left out, with --strict refused" {
+    # loses FORMAT WHAT: of names.tm
+    loses() {
+        run -0 --separate-stderr gmsh-export --format "$1" -o a.out names.tm
+        [ "$stderr" = "${2:+gmsh-export: names.tm: $2 (.group): left out}" ] || { echo "$1: $stderr" && false; }
+        local status=3
+        [ "$2" ] || status=0
+        run -$status gmsh-export --strict -q --format "$1" -o b.out names.tm
+    }
+    local format long joined='1 names that are others'\'' in this format'
+    long=$(printf '%0128d' 0)
+    for format in msh4 msh40 msh2; do
+        corner 1 4 "2 1 $long" >names.tm
+        loses $format ''
+        gmsh-export -q --format $format -o a.msh names.tm
+        gmsh-import -q a.msh | grep -x "1 2 1 $long"
+        corner 1 4 "2 1 1$long" "3 4 äöü$long" >names.tm
+        loses $format 'what 2 names have behind 128 bytes'
+        corner 1 4 '2 1 a"b' "2 2 a'b" '2 3 a b' "3 4 a'b" >names.tm
+        loses $format "$joined"
+        corner 1 4 '2 1 a b' '2 2 a_b' '3 4 a b' >names.tm
+        loses $format ''
+    done
+    for format in inp key unv; do
+        corner 1 4 "2 1 1$long" '2 2 a b' '3 4 c d' >names.tm
+        loses $format ''
+        corner 1 4 '2 1 a b' '2 2 a_b' '3 4 c d' >names.tm
+        loses $format "$joined"
+        corner 1 4 '2 1 a b c' '2 2 a_b c' '2 3 a b_c' >names.tm
+        loses $format "${joined/1 names/2 names}"
+        # what is not there does not count
+        corner 1 4 '2 1 a b' '2 9 a_b' '3 9 a b' >names.tm
+        loses $format ''
+    done
+    corner 1 4 '2 1 a b' '2 2 a_b' >names.tm
+    run -0 --separate-stderr gmsh-export -o a.su2 names.tm
+    [ "${stderr_lines[1]}" = "gmsh-export: names.tm: $joined (.group): left out" ]
+    # sets of .inp are their names, in capitals or not; .key has them of each dimension
+    corner 1 4 '2 1 part' '3 4 Part' >names.tm
+    loses inp "$joined"
+    loses key ''
+    loses unv ''
+    # Gmsh reads one name for each number of .unv
+    corner 4 4 '2 4 inlet' '2 2 outlet' '3 4 steel' >names.tm
+    loses unv '2 names of groups with the number of one of another dimension, of which Gmsh reads one'
+    loses msh4 ''
+    corner 4 4 '2 2 outlet' '3 4 steel' >names.tm
+    loses unv '1 names of groups with the number of one of another dimension, of which Gmsh reads one'
+    corner 4 4 '2 4 steel' '3 4 steel' >names.tm
+    loses unv ''
+    gmsh-export -q -o a.unv names.tm
+    gmsh-import -q a.unv | grep -c ' 4 steel$' | grep -x 2
+    corner 4 4 '1 40 rim' >names.tm
+    loses unv ''
+}
+
 @test "names of several names are all those groups again" {
     sed 's/^2 0$/3 0/' >t.tm <<'END'
 termesh 1

@@ -304,6 +304,53 @@ END
     is_refused "6: a second section Vertices" "${head[@]}" Vertices 1 '0 0 0 0' End
 }
 
+@test "numbers behind the rows of a section are refused, in each, and others are skipped" {
+    # SECTION LINE NUMBERS…: a row has one number more, or a row is too many
+    local head=('MeshVersionFormatted 2' 'Dimension 3' Vertices 8 '0 0 0 0' '1 0 0 0'
+        '1 1 0 0' '0 1 0 0' '0 0 1 0' '1 0 1 0' '1 1 1 0' '0 1 1 0')
+    while read -r section row; do
+        for more in 5 5.5 -1; do
+            printf '%s\n' "${head[@]}" "$section" 1 "$row" End >right.mesh
+            medit-import -q -o right.tm right.mesh
+            printf '%s\n' "${head[@]}" "$section" 1 "$row $more" End >long.mesh
+            printf '%s\n' "${head[@]}" "$section" 1 "$row" '' "$more" End >behind.mesh
+            run -3 --separate-stderr medit-import long.mesh
+            [ "$output" = "" ]
+            [ "$stderr" = "medit-import: long.mesh:15: '$more' is where a word such as End should be" ]
+            run -3 --separate-stderr medit-import behind.mesh
+            [ "$stderr" = "medit-import: behind.mesh:17: '$more' is where a word such as End should be" ]
+        done
+    done <<'END'
+Edges 1 2 0
+Triangles 1 2 3 0
+Quadrilaterals 1 2 3 4 0
+Tetrahedra 1 2 3 5 0
+Prisms 1 2 3 5 6 7 0
+Hexahedra 1 2 3 4 5 6 7 8 0
+Pyramids 1 2 3 4 5 0
+Corners 1
+RequiredVertices 1
+END
+    # as Gmsh 4.8 writes tetrahedra of second order
+    printf '%s\n' "${head[@]}" Tetrahedra 1 '1 2 3 5 4 6 7 8 1 2 3' End >second.mesh
+    run -3 medit-import second.mesh
+    # behind the vertices, the dimension, and in solutions
+    printf '%s\n' "${head[@]}" '1 2 3 4' End >vertices.mesh
+    run -3 --separate-stderr medit-import vertices.mesh
+    [ "$stderr" = "medit-import: vertices.mesh:13: '1' is where a word such as End should be" ]
+    printf '%s\n' "${head[0]}" 'Dimension 3 3' "${head[@]:2}" End >dimension.mesh
+    run -3 --separate-stderr medit-import dimension.mesh
+    [ "$stderr" = "medit-import: dimension.mesh:2: '3' is where a word such as End should be" ]
+    printf '%s\n' "${head[@]}" End >right.mesh
+    printf '%s\n' 'MeshVersionFormatted 2' 'Dimension 3' SolAtVertices 8 '1 1' 1 2 3 4 5 6 7 '8 9' End >long.sol
+    run -3 --separate-stderr medit-import --sol long.sol right.mesh
+    [ "$stderr" = "medit-import: long.sol:13: '9' is where a word such as End should be" ]
+    # whatever a section has that is not known
+    printf '%s\n' "${head[@]}" Unknown 2 '1 2 3 "a" -4.5' 1 Vertexes 7 End >unknown.mesh
+    run -0 --separate-stderr medit-import unknown.mesh
+    [ "$stderr" = "medit-import: unknown.mesh: other sections: Unknown, Vertexes: left out" ]
+}
+
 @test "damaged files: never a crash, a hang, or much memory" {
     meshes mixed 2 | without_attributes elements >mixed.tm
     medit-export -q --sol mixed.sol -o mixed.mesh mixed.tm

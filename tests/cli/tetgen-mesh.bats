@@ -314,6 +314,67 @@ END
         cmp - <(surface box off | tetgen-mesh --no-history)
 }
 
+# slit_box HOLES KIND prints a cube with square shafts through it, OFF, of which the top and
+# the bottom are a polygon each, slit open from the front to the holes. doubled: the slits
+# have nodes of their own on each side; touching: each hole begins at the front itself.
+slit_box() {
+    awk -v holes="$1" -v kind="$2" '
+        function node(x, y) { xyz[n] = x " " y; return n++ }
+        function wall(a, b) { from[++faces] = a; to[faces] = b }
+        BEGIN {
+            n = 0
+            top = node(0, 0)
+            last = top
+            for (i = 0; i < holes; i++) {
+                l = (i + .2) / holes; r = (i + .8) / holes
+                rim = node(l, 0)
+                a = kind == "touching" ? rim : node(l, .3)
+                b = node(l, .7); c = node(r, .7); d = node(r, .3)
+                a2 = kind == "doubled" ? node(l, .3) : a
+                rim2 = kind == "doubled" ? node(l, 0) : rim
+                wall(last, rim); last = rim2
+                wall(a, b); wall(b, c); wall(c, d); wall(d, a2)
+                list = kind == "touching" ? rim " " b " " c " " d " " rim : \
+                    rim " " a " " b " " c " " d " " a2 " " rim2
+                top = top " " list
+            }
+            e = node(1, 0); g = node(1, 1); h = node(0, 1)
+            wall(last, e); wall(e, g); wall(g, h); wall(h, 0)
+            top = top " " e " " g " " h
+            print "OFF\n" 2 * n, faces + 2, 0
+            for (z = 0; z < 2; z++)
+                for (i = 0; i < n; i++)
+                    print xyz[i], z
+            k = split(top, v)
+            printf "%d", k
+            for (i = 1; i <= k; i++)
+                printf " %d", v[i] + n
+            printf "\n%d", k
+            for (i = k; i > 0; i--)
+                printf " %d", v[i]
+            print ""
+            for (i = 1; i <= faces; i++)
+                print 4, from[i], to[i], to[i] + n, from[i] + n
+        }'
+}
+
+@test "polygons that are slit open to their holes: the holes stay" {
+    for holes in 1 2 5; do
+        for kind in shared doubled touching; do
+            echo "$holes $kind"
+            slit_box $holes $kind >slit.off
+            run -0 --separate-stderr tetgen-mesh slit.off
+            [[ $stderr == *'faces that have a corner twice, slit open, which are cut into triangles: 2'* ]]
+            echo "$output" >mesh.tm
+            volume=.76
+            [ $kind != touching ] || volume=.67
+            fills mesh.tm $volume
+            surface-import slit.off | tetgen-mesh --quiet >mesh.tm
+            fills mesh.tm $volume
+        done
+    done
+}
+
 @test "binary STL with bytes behind the last triangle" {
     surface sphere stl-binary >exact.stl
     tetgen-mesh --no-history exact.stl >expected.tm

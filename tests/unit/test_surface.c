@@ -2,6 +2,7 @@
 /* What is made of surfaces that are known: counts, inside, features, errors. */
 #include "../../lib/surface/surface.h"
 #include "../../lib/surface/measure/surface_curvature.h"
+#include "../../lib/surface/surface_defects.h"
 #include "random.h"
 #include "surface_shapes.h"
 
@@ -651,6 +652,99 @@ static void test_curvature(void **state)
     assert_true(range[0] > 0.7 / 4 && range[1] < 2.0 / 4);
 }
 
+static double between(double low, double high)
+{
+    return low + random_unit() * (high - low);
+}
+
+/* A square with holes above each other, which is slit open from a side to each, in turned
+ * order; `own`: the slits have nodes of their own on each side. Returns its area. */
+static double add_slit(tm_polygon_surface *p, unsigned holes, bool own, unsigned begin)
+{
+    uint32_t node[4 + 7 * 8], turned[4 + 7 * 8];
+    size_t k = 0;
+    double area = 1;
+    node[k++] = add_node(p, 0, 0, 0);
+    node[k++] = add_node(p, 1, 0, 0);
+    node[k++] = add_node(p, 1, 1, 0);
+    node[k++] = add_node(p, 0, 1, 0);
+    for (unsigned h = 0; h < holes; h++) {
+        const double step = 1.0 / holes, y = 1 - (h + 1) * step;
+        const double low = y + between(0.1, 0.4) * step;
+        const double high = y + between(0.6, 0.9) * step;
+        const double left = between(0.1, 0.4), right = between(0.6, 0.9);
+        const uint32_t rim = node[k++] = add_node(p, 0, low, 0);
+        const uint32_t first = node[k++] = add_node(p, left, low, 0);
+        node[k++] = add_node(p, left, high, 0);
+        node[k++] = add_node(p, right, high, 0);
+        node[k++] = add_node(p, right, low, 0);
+        node[k++] = own ? add_node(p, left, low, 0) : first;
+        node[k++] = own ? add_node(p, 0, low, 0) : rim;
+        area -= (right - left) * (high - low);
+    }
+    for (size_t i = 0; i < k; i++)
+        turned[i] = node[(i + begin) % k];
+    add_polygon(p, turned, k);
+    return area;
+}
+
+/* Of triangles that all look up. */
+static double area_of(const double (*xyz)[3], const uint32_t *corner, size_t triangles)
+{
+    double sum = 0;
+    for (size_t t = 0; t < triangles; t++, corner += 3) {
+        const double *a = xyz[corner[0]], *b = xyz[corner[1]], *c = xyz[corner[2]];
+        const double area =
+            ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2;
+        assert_true(area >= 0);
+        sum += area;
+    }
+    return sum;
+}
+
+/* What other filters are given. */
+static double area_of_faces(const tm_polygon_surface *p)
+{
+    tm_stream stream;
+    tm_error error;
+    tm_stream_init(&stream);
+    assert_int_equal(tm_polygon_surface_to_stream(p, &stream, "", &error), TM_OK);
+    const tm_block *face = tm_stream_find(&stream, ".face");
+    const double area =
+        area_of((const double(*)[3])p->xyz, face->integer + 3 * 12, face->count - 12);
+    tm_stream_free(&stream);
+    return area;
+}
+
+/* Slit polygons become triangles, and others stay as they are. */
+static void test_slit(void **state)
+{
+    (void)state;
+    for (unsigned round = 0; round < 200; round++) {
+        const unsigned holes = 1 + round % 8;
+        tm_polygon_surface p;
+        tm_error error;
+        size_t cut = 1;
+        tm_polygon_surface_init(&p);
+        add_cube(&p, 2, 2, 2, 1);
+        assert_int_equal(tm_surface_cut_slit(&p, &cut, &error), TM_OK);
+        assert_int_equal(cut, 0);
+        p.has_facet_markers = true;
+        p.next_marker = 7;
+        const double area = add_slit(&p, holes, round % 3 == 0, random_below(60));
+        assert_near(area_of_faces(&p), area, 1e-12);
+        assert_int_equal(tm_surface_cut_slit(&p, &cut, &error), TM_OK);
+        assert_int_equal(cut, 1);
+        assert_int_equal(p.start[6], 24);
+        assert_int_equal(p.corners, p.start[6] + 3 * (p.facets - 6));
+        assert_int_equal(p.facet_marker[6], 7);
+        assert_int_equal(p.facet_marker[p.facets - 1], 7);
+        assert_near(area_of((const double(*)[3])p.xyz, p.item + p.start[6], p.facets - 6),
+                    area, 1e-12);
+        tm_polygon_surface_free(&p);
+    }
+}
+
 int main(void)
 {
     random_start();
@@ -665,7 +759,7 @@ int main(void)
         cmocka_unit_test(test_curves),       cmocka_unit_test(test_feature_angle),
         cmocka_unit_test(test_markers),      cmocka_unit_test(test_needles),
         cmocka_unit_test(test_rough),        cmocka_unit_test(test_rough_crossing),
-        cmocka_unit_test(test_curvature),
+        cmocka_unit_test(test_curvature),    cmocka_unit_test(test_slit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

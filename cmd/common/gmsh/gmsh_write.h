@@ -31,7 +31,9 @@ typedef struct gmsh_output_format {
     const char *suffix; /* by which Gmsh tells it */
     bool has_binary;
     bool has_points;
-    unsigned shapes; /* bit k: cells of k nodes */
+    unsigned shapes;  /* bit k: cells of k nodes */
+    int32_t most;     /* the highest number of a group: above, numbers run together */
+    size_t most_rows; /* of nodes and of elements, likewise */
 } gmsh_output_format;
 extern const gmsh_output_format gmsh_output_formats[GMSH_OUTPUTS];
 

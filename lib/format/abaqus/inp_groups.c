@@ -91,13 +91,14 @@ static uint32_t group_of(const tm_inp_groups *groups, size_t set, size_t instanc
     return TM_INP_NONE;
 }
 
-/* The group that a surface shares its name with, or its own. */
+/* The group that a surface shares its name with, or its own; what abaqus-export says a
+ * value of is that alone. */
 static uint32_t same_name(const tm_inp_groups *groups, uint32_t group)
 {
     const tm_inp_group *is = &groups->group[group];
     const tm_inp_model *model = groups->model;
     const tm_inp_set *set = &model->set[is->set], *other = NULL;
-    if (set->kind == TM_INP_FACES)
+    if (set->kind == TM_INP_FACES && set->dimension < 0)
         other = tm_inp_find_set(model, TM_INP_ELEMENTS, set->scope, set->name);
     const uint32_t same =
         other ? group_of(groups, (size_t)(other - model->set), is->instance)

@@ -39,6 +39,7 @@ static void append_value(tm_inp_name *to)
     const size_t most = TM_INP_NAME - VALUE_ROOM;
     const size_t size = strlen(to->name) < most ? strlen(to->name) : most;
     snprintf(to->name + size, VALUE_ROOM, "_%d", (int)to->value);
+    to->has_value = true;
 }
 
 static void make_name(tm_inp_name *to, tm_group_dimension dimension, const char *name)
@@ -66,7 +67,7 @@ tm_status tm_inp_names_add(tm_inp_names *names, tm_group_dimension dimension,
     if (!moved)
         return tm_fail_memory(error);
     names->list = moved;
-    moved[names->count].value = value;
+    moved[names->count] = (tm_inp_name){.value = value};
     make_name(&moved[names->count++], dimension, name);
     return TM_OK;
 }
@@ -80,6 +81,8 @@ static int by_name(const void *a, const void *b)
 {
     const tm_inp_name *p = a, *q = b;
     const int order = strcasecmp(p->name, q->name);
+    if (order == 0 && p->has_value != q->has_value)
+        return p->has_value ? -1 : 1;
     return order != 0 ? order : compare_values(p, q);
 }
 
@@ -88,17 +91,28 @@ static int by_value(const void *a, const void *b)
     return compare_values(a, b);
 }
 
+/* Appends their values to names that others have; false where there are none. Those with
+ * a value differ from each other. */
+static bool part_names(tm_inp_name *list, size_t count)
+{
+    bool parted = false;
+    qsort(list, count, sizeof *list, by_name);
+    /* the last of each first, while the one before still has its old name */
+    for (size_t i = count; i-- > 1;)
+        if (strcasecmp(list[i].name, list[i - 1].name) == 0) {
+            append_value(&list[i]);
+            parted = true;
+        }
+    return parted;
+}
+
 void tm_inp_names_end(tm_inp_names *names)
 {
-    tm_inp_name *list = names->list;
     if (names->count == 0)
         return;
-    qsort(list, names->count, sizeof *list, by_name);
-    /* the last of each first, while the one before still has its old name */
-    for (size_t i = names->count; i-- > 1;)
-        if (strcasecmp(list[i].name, list[i - 1].name) == 0)
-            append_value(&list[i]);
-    qsort(list, names->count, sizeof *list, by_value);
+    while (part_names(names->list, names->count))
+        ;
+    qsort(names->list, names->count, sizeof *names->list, by_value);
 }
 
 const char *tm_inp_name_of(const tm_inp_names *names, int32_t value)

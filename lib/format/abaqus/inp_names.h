@@ -10,6 +10,7 @@ enum { TM_INP_NAME = 81 };
 
 typedef struct tm_inp_name {
     int32_t value;
+    bool has_value; /* behind the name */
     char name[TM_INP_NAME];
 } tm_inp_name;
 
@@ -25,7 +26,8 @@ typedef struct tm_inp_names {
 tm_status tm_inp_names_add(tm_inp_names *names, tm_group_dimension dimension,
                            int32_t value, const char *name, tm_error *error);
 
-/* Makes those differ that would be the same in capitals. O(n log n). */
+/* Makes those differ that would be the same in capitals. O(n log n), as often as what is
+ * changed for that has the name of another one. */
 void tm_inp_names_end(tm_inp_names *names);
 
 /* The name of a value that is there. O(log n). */

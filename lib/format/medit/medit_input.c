@@ -114,6 +114,7 @@ tm_status tm_medit_count(tm_medit_input *input, size_t numbers, size_t *count)
     const tm_status status =
         tm_medit_integer(input, "a number of rows", 0, INT32_MAX, &value);
     *count = (size_t)value;
+    input->is_read = true;
     if (status != TM_OK)
         return status;
     const size_t left = input->binary ? (size_t)(input->end - input->at) / INTEGER
@@ -160,11 +161,17 @@ static tm_status next_text(tm_medit_input *input, const tm_medit_section **secti
                            char name[TM_MEDIT_NAME])
 {
     tm_word word;
+    bool is_word;
     do {
         if (!tm_scan_seek(&input->scan))
             return tm_medit_fail(input, "the file ends without the word End");
         word = tm_scan_word(&input->scan);
-    } while (!isalpha((unsigned char)*word.begin));
+        is_word = isalpha((unsigned char)*word.begin);
+        if (!is_word && input->is_read)
+            return tm_medit_fail(input, "'%.*s' is where a word such as End should be",
+                                 tm_word_shown(word), word.begin);
+    } while (!is_word);
+    input->is_read = false;
     *section = NULL;
     for (size_t s = 0; s < SECTIONS && !*section; s++)
         if (tm_word_is_like(word, sections[s].word))
@@ -203,6 +210,7 @@ static tm_status take_dimension(tm_medit_input *input)
         return tm_medit_fail(input, "the dimension is %lld (2 or 3 would be right)",
                              (long long)value);
     input->dimension = (int)value;
+    input->is_read = true;
     return status;
 }
 

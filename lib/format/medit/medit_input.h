@@ -36,6 +36,7 @@ typedef struct tm_medit_input {
     bool binary, big;
     int version;
     int dimension; /* 2 or 3 */
+    bool is_read;  /* of the section that is left: its rows, else they are skipped */
     tm_scan scan;  /* of text */
     const char *begin, *at, *end;
     const char *next; /* binary: the section behind this one, or NULL */
@@ -47,8 +48,9 @@ tm_status tm_medit_begin(tm_medit_input *input, const tm_medit_bytes *bytes,
                          tm_error *error);
 
 /* Goes to the next section that there is: *section is NULL for one that is not in the
- * table, and *name has its name. At the end of the file TM_ERROR_INPUT: End is missing.
- */
+ * table, and *name has its name. What the one before it has is skipped, unless its rows
+ * were counted: then TM_ERROR_INPUT where more than those is there, in text. So it is at
+ * the end of the file: End is missing. */
 enum { TM_MEDIT_NAME = 48 };
 tm_status tm_medit_next(tm_medit_input *input, const tm_medit_section **section,
                         char name[TM_MEDIT_NAME]);
