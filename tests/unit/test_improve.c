@@ -410,6 +410,40 @@ static void make_box(tm_tet_mesh *mesh, tm_stream *stream, int n, double by,
     }
 }
 
+/* Where what the improver does by itself is small enough, nothing else is done because a
+ * mesh has to become smaller; where it is not, much less good may not become of that. */
+static void test_shrinking(void **state)
+{
+    (void)state;
+    const double heights[] = {1, 0.1, 0.01}, growths[] = {0, 0.9, 0.6, 0.4};
+    for (size_t h = 0; h < sizeof heights / sizeof *heights; h++) {
+        double share = 0;
+        size_t tets = 0;
+        for (size_t k = 0; k < sizeof growths / sizeof *growths; k++) {
+            tm_stream stream;
+            tm_tet_mesh mesh;
+            make_box(&mesh, &stream, 5, 0.9, heights[h]);
+            tm_improve_options options = {.angle = 30,
+                                          .measure = TM_MEASURE_DIHEDRAL,
+                                          .max_growth = growths[k],
+                                          .ops = TM_IMPROVE_ALL_OPS};
+            const double most = growths[k] * (double)mesh.tets;
+            const tm_improve_report report = run(&mesh, &options);
+            const double now = (double)report.bad_after / (double)mesh.tets;
+            if (k == 0) {
+                share = now;
+                tets = mesh.tets;
+            } else if ((double)tets <= most) {
+                assert_true(now <= share);
+            } else {
+                assert_true(now <= 2 * share + 0.1);
+            }
+            tm_tet_mesh_free(&mesh);
+            tm_stream_free(&stream);
+        }
+    }
+}
+
 /* Bricks, each cut into 6: no angle is above 90 degrees, and those below a limit are only
  * gone if larger ones are made. */
 static void test_bricks(void **state)
@@ -558,6 +592,7 @@ int main(void)
         cmocka_unit_test(test_parts_within),
         cmocka_unit_test(test_every_palette),
         cmocka_unit_test(test_growth),
+        cmocka_unit_test(test_shrinking),
         cmocka_unit_test(test_bricks),
         cmocka_unit_test(test_flat_mesh),
         cmocka_unit_test(test_deterministic),

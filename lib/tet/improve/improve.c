@@ -383,6 +383,38 @@ static void run_all(tm_improver *m)
     tm_improve_worst(m, reach);
 }
 
+static void run_at_most(tm_improver *m, size_t most, size_t bad)
+{
+    const size_t tets = m->mesh->tets;
+    m->most_tets = most;
+    m->full_size = tets < most ? tets : most;
+    m->angle_badness = tets <= most ? badness_of(m, bad) : HUGE_VAL;
+    run_all(m);
+}
+
+/* A mesh that has to become smaller becomes so, too, by what makes it better. Only where
+ * that was not enough it is coarsened, from there on; or, where what is good by then does
+ * not give way, as it was before. */
+static void run_within_growth(tm_improver *m, size_t bad)
+{
+    const size_t most = m->most_tets;
+    const bool shrinks = m->mesh->tets > most;
+    const tm_angle_limits limits = m->cost.limits;
+    if (shrinks) {
+        tm_improve_keep(m, &m->whole);
+        run_at_most(m, SIZE_MAX, bad);
+        m->cost.limits = limits;
+    }
+    if (!shrinks || m->mesh->tets > most)
+        run_at_most(m, most, bad);
+    if (shrinks && m->mesh->tets > most) {
+        tm_improve_restore(m, &m->whole);
+        m->cost.limits = limits;
+        run_at_most(m, most, bad);
+    }
+    m->most_tets = most;
+}
+
 /* *distance is how far the surface has moved. */
 static tm_status improve_once(tm_tet_mesh *mesh, const tm_improve_options *options,
                               tm_improve_report *report, double *distance,
@@ -395,9 +427,7 @@ static tm_status improve_once(tm_tet_mesh *mesh, const tm_improve_options *optio
     tm_status status = tm_improve_start(m, mesh, options, report, error);
     if (status == TM_OK) {
         report->bad_before = tm_improve_count_bad_angles(m->mesh, m->options->angle);
-        m->angle_badness =
-            mesh->tets <= m->most_tets ? badness_of(m, report->bad_before) : HUGE_VAL;
-        run_all(m);
+        run_within_growth(m, report->bad_before);
         status = m->status;
         report->bad_after = tm_improve_count_bad_angles(m->mesh, m->options->angle);
         report->too_large = mesh->tets > m->most_tets;

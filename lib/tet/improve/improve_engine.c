@@ -279,7 +279,8 @@ void tm_improve_finish(tm_improver *m)
         free(list[k]);
     free(m->quality);
     free(m->node);
-    tm_improve_state *state[] = {&m->best, &m->earlier, &m->reached, &m->input, &m->kept};
+    tm_improve_state *state[] = {&m->best,  &m->earlier, &m->reached,
+                                 &m->input, &m->whole,   &m->kept};
     for (size_t k = 0; k < sizeof state / sizeof state[0]; k++) {
         tm_tet_mesh_free(&state[k]->mesh);
         tm_features_free(&state[k]->features);

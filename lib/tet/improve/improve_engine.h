@@ -87,6 +87,7 @@ typedef struct tm_improver {
     bool recording;           /* of what changes */
     tm_improve_state reached; /* the last target that left nothing bad */
     tm_improve_state input;   /* where there are several targets, or most is bad */
+    tm_improve_state whole;   /* the input, where the mesh has to become smaller */
     tm_improve_state kept;    /* before other ways, or the worst ones, were tried */
 
     tm_space space; /* around the mesh */
