@@ -68,6 +68,8 @@ static void write_json(filter *f, const tm_dual_report *r)
                                          ROW("nodes", nodes),
                                          ROW("nodes_cut", cut),
                                          ROW("nodes_taken_apart", taken_apart),
+                                         ROW("rounds", rounds),
+                                         ROW("work", work),
                                          ROW("points_moved", moved),
                                          ROW("wrong_pyramids", wrong_pyramids),
                                          ROW("bad_facets", bad_facets),

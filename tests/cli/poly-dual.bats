@@ -197,3 +197,46 @@ END
     [[ $output == *'has .facet or .cell already'* ]]
     run -2 poly-dual --feature-angle 91 boxes.tm
 }
+
+# Thin tetrahedra around an edge: hub N.
+hub() {
+    awk -v n="$1" 'BEGIN {
+        printf "termesh 1\n.node\n%d 3 0 0\n", n + 2
+        for (i = 1; i <= n; i++)
+            print i, cos(6.283185307179586 * i / n), sin(6.283185307179586 * i / n), 0
+        print n + 1, 0, 0, -0.5 "\n" n + 2, 0, 0, 0.5
+        printf ".ele\n%d 4 0\n", n
+        for (i = 1; i <= n; i++)
+            print i, i, i % n + 1, n + 1, n + 2
+        print ".end"
+    }'
+}
+
+# Points on a sphere, the same ones each time: on_sphere N.
+on_sphere() {
+    awk -v n="$1" 'BEGIN {
+        print n, 3
+        for (i = 1; i <= n; i++) {
+            s = (s + 0.7548776662466927) % 1
+            t = (t + 0.5698402909980532) % 1
+            z = 2 * s - 1
+            r = sqrt(1 - z * z)
+            print i, r * cos(6.283185307179586 * t), r * sin(6.283185307179586 * t), z
+        }
+    }' | tetgen-mesh
+}
+
+@test "what takes too long is bounded: the work by the size, and the rounds" {
+    on_sphere 150 >points.tm
+    hub 150 >hub.tm
+    for mesh in points hub; do
+        poly-dual -q --json "$out/json" -o "$out/dual.tm" $mesh.tm
+        mesh-check -q "$out/dual.tm"
+        poly-stats "$out/dual.tm" | grep -q '^ *pyramids without volume *0$'
+        tets=$(header .ele $mesh.tm | cut -d ' ' -f 1)
+        grep -oE '"(rounds|work)": [0-9]+' "$out/json" | awk -v tets="$tets" '
+            /rounds/ { rounds = $2 }
+            /work/ { work = $2 }
+            END { exit !(rounds > 0 && rounds <= 40 && work <= 50000 * tets) }'
+    done
+}

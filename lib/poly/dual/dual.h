@@ -36,12 +36,16 @@ typedef struct tm_dual_report {
     size_t tets, cells, facets, nodes;
     size_t cut;            /* nodes whose cells were cut where the mesh is concave */
     size_t taken_apart;    /* nodes with a cell for each tetrahedron */
+    size_t rounds;         /* of moving points, and cutting what is wrong still */
+    size_t work;           /* of moving them: as tm_fit_report */
     size_t moved;          /* points that were moved for better facets */
     size_t wrong_pyramids; /* of a facet and a centroid: not of positive volume */
     size_t bad_facets;     /* of which checkMesh complains, and cells but for concave */
     size_t concave;        /* cells that it finds concave */
     size_t lost_edges;     /* of .edge with a marker, that are inside: dropped */
 } tm_dual_report;
+
+enum { TM_DUAL_WORK = 1000 };
 
 /* The blocks of a dual mesh: .node, .edge, .facet and .cell. */
 typedef struct tm_dual_blocks {
@@ -53,8 +57,11 @@ typedef struct tm_dual_blocks {
  * are on; facets the markers of faces, cells the number of their tetrahedra and the
  * attributes of these. Every cell is closed, a ball, and sees all its facets from its
  * centroid as OpenFOAM's checkMesh asks, but for report->wrong_pyramids. With
- * feature_angle 0 no volume of a region changes. TM_ERROR_SYSTEM where memory is out or
- * there are 2^31 points. *made is to be freed, after an error too. Expected O(n). */
+ * feature_angle 0 no volume of a region changes. Points are moved until TM_DUAL_WORK
+ * has been done for each corner of a facet at first; after that nodes with a wrong
+ * pyramid are taken apart at once, later with those beside them, so that this ends.
+ * TM_ERROR_SYSTEM where memory is out or there are 2^31 points. *made is to be freed,
+ * after an error too. Expected O(n). */
 tm_status tm_dual_make(tm_dual_blocks *made, const tm_tet_mesh *mesh,
                        const tm_dual_options *options, tm_dual_report *report,
                        tm_error *error);

@@ -11,7 +11,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ROUNDS = 36 };
+/* Of moving points; and so many times, after the work is spent, only nodes with a wrong
+ * pyramid are taken apart. */
+enum { ROUNDS = 36, LATE_ROUNDS = 1000 };
 
 /* The least barycentric coordinate that a point may have. */
 static const double least_coordinate = 0.03;
@@ -47,12 +49,15 @@ static tm_status move_points(tm_dual *d, const tm_poly_arrays *mesh,
     tm_status status = fixed && corner ? TM_OK : tm_fail_memory(error);
     for (size_t p = 0; p < d->points && fixed && corner; p++)
         fixed[p] = !find_corners(d, p, corner[p]);
+    if (d->most == 0)
+        d->most = 1 + TM_DUAL_WORK * mesh->facet_start[mesh->facets];
     const tm_fit_options options = {.fixed = fixed,
                                     .corner = (const uint32_t(*)[4])corner,
                                     .point = (const double(*)[3])d->mesh->xyz,
                                     .least = least_coordinate,
                                     .convex = d->options->convex,
-                                    .rounds = ROUNDS};
+                                    .rounds = ROUNDS,
+                                    .work = d->spent ? 1 : d->most - report->work};
     tm_fit_report fit;
     if (status == TM_OK)
         status = tm_polyhedra_fit(mesh, d->xyz, &options, &fit, error);
@@ -61,6 +66,10 @@ static tm_status move_points(tm_dual *d, const tm_poly_arrays *mesh,
     if (status != TM_OK)
         return status;
     report->moved += fit.moved;
+    report->work += fit.work;
+    report->rounds++;
+    d->spent = report->work >= d->most;
+    d->late += d->spent;
     report->bad_facets = tm_fit_faults_left(&fit) - fit.after[TM_FIT_CONCAVE];
     return TM_OK;
 }
@@ -77,7 +86,8 @@ static bool is_wrong(const tm_poly_centroids *m, size_t f, int side)
 static void cut_more(tm_dual *d, uint32_t c, tm_dual_level most)
 {
     uint8_t *level = &d->level[d->cell_node[c]];
-    const tm_dual_level next = tm_dual_next_level((tm_dual_level)*level);
+    const tm_dual_level next =
+        d->spent ? TM_DUAL_PIECES : tm_dual_next_level((tm_dual_level)*level);
     if (next == *level || next > most)
         return;
     *level = (uint8_t)next;
@@ -94,6 +104,14 @@ static void cut_wrong(tm_dual *d, const tm_poly_centroids *m, tm_dual_level most
                 report->wrong_pyramids++;
                 cut_more(d, m->mesh->side[f][s], most);
             }
+}
+
+/* Takes the nodes beside those apart that are. */
+static void take_more_apart(tm_dual *d)
+{
+    for (size_t t = 0; t < d->mesh->slots; t++)
+        for (int i = 0; i < 4 && d->frozen[t]; i++)
+            d->level[d->mesh->tet[t][i]] = TM_DUAL_PIECES;
 }
 
 /* Whether a cell is concave at a facet on a wall. */
@@ -137,6 +155,9 @@ static tm_status cut(tm_dual *d, const tm_poly_arrays *mesh, bool moved,
     d->again = false;
     if (status == TM_OK)
         cut_wrong(d, &m, moved ? TM_DUAL_PIECES : TM_DUAL_TO_CUT, report);
+    d->again |= d->late == 1 && report->wrong_pyramids > 0;
+    if (d->again && d->late > LATE_ROUNDS)
+        take_more_apart(d);
     if (status == TM_OK && moved)
         cut_concave(d, &m, TM_DUAL_TO_CUT_MORE, report);
     tm_poly_centroids_free(&m);

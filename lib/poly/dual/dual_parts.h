@@ -76,6 +76,9 @@ typedef struct tm_dual {
     uint8_t *cuts; /* [pieces]: bit k: the face opposite corner k is cut at the piece's */
     bool has_cuts; /* faces that need not stay may be between cells of a node */
     size_t cut_nodes;
+    size_t most;   /* of the report's work */
+    bool spent;    /* no more points are moved */
+    size_t late;   /* rounds since then */
     bool again;    /* there are nodes to be cut */
     bool *touched; /* [nodes]: has constrained faces or is cut */
 

@@ -107,10 +107,13 @@ void tm_dual_put_at_centroid(tm_dual *d, size_t t)
     }
 }
 
-/* Where a node is taken apart, the points in its tetrahedra are their centroids. */
+/* Where a node is taken apart, the points in its tetrahedra are their centroids; again
+ * where they were moved from there and no more are. */
 static void freeze(tm_dual *d)
 {
     const tm_tet_mesh *mesh = d->mesh;
+    if (d->spent)
+        memset(d->frozen, 0, mesh->slots * sizeof *d->frozen);
     for (size_t t = 0; t < mesh->slots; t++)
         for (int i = 0; i < 4 && !d->frozen[t]; i++) {
             if (d->level[mesh->tet[t][i]] != TM_DUAL_PIECES)

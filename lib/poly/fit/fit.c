@@ -212,16 +212,17 @@ static bool move_node(fitter *w, uint32_t v, int round)
 static bool fit(fitter *w, tm_fit_report *r)
 {
     const size_t few = 20; /* less of what is bad by a part of so much is little */
+    const size_t most = w->o->work > 0 ? w->o->work : SIZE_MAX;
     size_t least = SIZE_MAX;
     bool done = true;
     for (int i = 0, idle = 0; i < w->o->rounds && idle < STEPS && done; i++) {
         const size_t bad = find_bad(w, i >= 2);
         idle = bad < least - least / few ? 0 : idle + 1;
         least = idle == 0 ? bad : least;
-        if (bad == 0)
+        if (bad == 0 || w->a.work >= most)
             break;
         done = i < STEPS || widen(w);
-        for (uint32_t v = 0; v < w->a.m.mesh->nodes && done; v++) {
+        for (uint32_t v = 0; v < w->a.m.mesh->nodes && done && w->a.work < most; v++) {
             if (!w->tried[v] || w->missed[v] >= STEPS)
                 continue;
             done = tm_fit_around_find(&w->a, v);
@@ -232,6 +233,7 @@ static bool fit(fitter *w, tm_fit_report *r)
                 forget_misses(w);
         }
     }
+    r->work = w->a.work;
     return done;
 }
 

@@ -32,6 +32,7 @@ typedef enum tm_fit_fault {
 typedef struct tm_fit_report {
     size_t before[TM_FIT_FAULTS], after[TM_FIT_FAULTS];
     size_t moved; /* nodes, as often as they were */
+    size_t work;  /* corners of facets that were judged because a node was tried */
 } tm_fit_report;
 
 typedef struct tm_fit_options {
@@ -44,6 +45,7 @@ typedef struct tm_fit_options {
     double least;
     bool convex; /* concave cells are faults */
     int rounds;  /* at most */
+    size_t work; /* no more nodes are tried after so much; 0: any */
 } tm_fit_options;
 
 /* Moves nodes of facets and cells with faults, or nearly so, by pattern search. A step is

@@ -245,6 +245,7 @@ bool tm_fit_around_find(tm_fit_around *a, uint32_t v)
     if (!list_near(a, v) || !make_room(a))
         return false;
     find_watched(a);
+    a->work += a->nears;
     a->now = (tm_fit_sum){{0}, 0, 0};
     for (size_t k = 0; k < a->watched; k++)
         tm_fit_add_facet(&a->now, &a->verdict[a->near[k]]);
@@ -286,10 +287,11 @@ static bool is_better(const tm_fit_sum *after, const tm_fit_sum *before)
 }
 
 /* Adds the facets near[from … to) again, as long as less is missing than so much. */
-static void add_facets(const tm_fit_around *a, size_t from, size_t to, double missing,
+static void add_facets(tm_fit_around *a, size_t from, size_t to, double missing,
                        tm_fit_sum *sum)
 {
     for (size_t k = from; k < to && sum->missing < missing; k++) {
+        a->work += tm_facet_corners(a->m.mesh, a->near[k]);
         a->fresh[k] = tm_fit_judge_facet(&a->m, a->near[k], missing - sum->missing);
         tm_fit_add_facet(sum, &a->fresh[k]);
     }

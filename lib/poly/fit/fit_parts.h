@@ -96,6 +96,7 @@ typedef struct tm_fit_around {
     tm_fit_cell *rest; /* [cells]: without the node's facets, if something is bad */
     size_t fresh_room, rest_room;
     tm_fit_state first, last; /* where the node was found, and before the last move */
+    size_t work;              /* see tm_fit_report */
     tm_fit_sum before, now;   /* of the node's facets, its cells, and what is watched */
 } tm_fit_around;
 
