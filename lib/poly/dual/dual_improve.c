@@ -13,7 +13,7 @@
 
 /* Of moving points; and so many times, after the work is spent, only nodes with a wrong
  * pyramid are taken apart. */
-enum { ROUNDS = 36, LATE_ROUNDS = 1000 };
+enum { ROUNDS = 36, LATE_ROUNDS = 50 };
 
 /* The least barycentric coordinate that a point may have. */
 static const double least_coordinate = 0.03;
