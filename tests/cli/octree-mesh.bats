@@ -884,3 +884,34 @@ run_limited() {
         exec octree-mesh --no-history -j 1 -s 2 box.off
     ) >found 2>message || status=$?
 }
+
+@test "--most: --curvature is foreseen on thin parts too" {
+    cat >plate.off <<'END'
+OFF
+8 6 0
+0 0 0
+1 0 0
+1 1 0
+0 1 0
+0 0 0.06
+1 0 0.06
+1 1 0.06
+0 1 0.06
+4 0 3 2 1
+4 4 5 6 7
+4 0 1 5 4
+4 1 2 6 5
+4 2 3 7 6
+4 3 0 4 7
+END
+    # A flat cone; both have two sides in the octants that flat parts have.
+    awk 'BEGIN { print "OFF"; print 34, 64, 0; print 0, 0, 0; print 0, 0, 0.1
+        for (i = 0; i < 32; i++) print cos(i * atan2(0, -1) / 16), sin(i * atan2(0, -1) / 16), 0
+        for (i = 0; i < 32; i++) { a = 2 + i; b = 2 + (i + 1) % 32; print 3, 0, b, a; print 3, 1, a, b } }' >cone.off
+    for of in plate cone; do
+        octree-mesh --no-history -q -s 2 --curvature 20 --resolve 0 -o of.tm "$of.off"
+        elements=$(header .mix of.tm | cut -d ' ' -f 1)
+        run -0 --separate-stderr octree-mesh -s 2 --curvature 20 --resolve 0 --most $((3 * elements)) -o of.tm "$of.off"
+        run -3 --separate-stderr octree-mesh -s 2 --curvature 20 --resolve 0 --most $((elements / 3)) -o of.tm "$of.off"
+    done
+}

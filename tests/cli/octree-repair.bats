@@ -351,3 +351,29 @@ END
     octree-repair -q --method refine -i 1 --octants one.ref -o split.tm sphere.tm || [ $? -eq 1 ]
     [ "$(rows .octant split.tm | awk '$2 == 4' | wc -l)" = 8 ]
 }
+
+# A ring N nodes long and M around, whose hole is a point, turned by an angle.
+make_horn() {
+    awk -v n="$1" -v m="$2" -v turn="$3" 'BEGIN {
+        print "OFF"; print n * m, 2 * n * m, 0
+        for (i = 0; i < n; i++) for (j = 0; j < m; j++) {
+            a = 2 * atan2(0, -1) * i / n + turn; b = 2 * atan2(0, -1) * j / m
+            print (1 + cos(b)) * cos(a), (1 + cos(b)) * sin(a), sin(b) }
+        for (i = 0; i < n; i++) for (j = 0; j < m; j++) {
+            a = i * m; b = (i + 1) % n * m; k = (j + 1) % m
+            print 3, a + j, b + j, b + k; print 3, a + j, b + k, a + k } }'
+}
+
+@test "elements that are inverted inside become valid, and the worst stays good" {
+    found=0
+    for horn in "16 12 0" "20 8 .1" "24 12 .1"; do
+        # shellcheck disable=SC2086 # three arguments
+        make_horn $horn >horn.off
+        octree-mesh -q -s 4 -o horn.tm horn.off
+        octree-repair -q --json report.json -o mended.tm horn.tm
+        found=$((found + $(sed 's/.*"before": {[^}]*"invalid": \([0-9]*\).*/\1/' report.json)))
+        [ "$(report invalid)" = 0 ]
+        awk -v worst="$(report worst)" 'BEGIN { exit worst < 0.2 }'
+    done
+    [ "$found" -gt 0 ]
+}

@@ -183,6 +183,7 @@ static inline void check_score(const tm_repair_state *s, const tm_repair_score *
     assert_true(score->worst == worst);
     assert_true(score->least == lowest);
     assert_true(score->good == fmax(threshold, 0.2));
+    assert_true(score->valid == 0.2);
     assert_true(fabs(score->average - sum / (double)s->mesh.elements) < 1e-12);
 }
 
@@ -190,8 +191,7 @@ static inline void check_score(const tm_repair_state *s, const tm_repair_score *
 static inline void check_not_worse(const tm_repair_score *before,
                                    const tm_repair_score *after)
 {
-    const double flat = 0.02;
-    const double good = after->invalid < before->invalid ? flat : before->good;
+    const double good = after->invalid < before->invalid ? before->valid : before->good;
     assert_true(after->worst >= fmin(before->worst, good));
     assert_true(after->least >= fmin(before->least, good));
     assert_true(after->invalid <= before->invalid);

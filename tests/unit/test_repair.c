@@ -145,6 +145,15 @@ static void check_stream(repair_case *c, const tm_repair_report *report)
     tm_stream_free(&old);
 }
 
+/* What all of the repair promises: the worst J_ENS may fall further for fewer invalid
+ * elements than that of a step. */
+static void check_repaired(const tm_repair_report *report)
+{
+    tm_repair_score before = report->before;
+    before.valid = TM_REPAIR_FLAT;
+    check_not_worse(&before, &report->after);
+}
+
 /* Repairs a case that was started; ends it. */
 static tm_repair_report repair(repair_case *c, tm_repair_options options)
 {
@@ -164,7 +173,7 @@ static tm_repair_report repair(repair_case *c, tm_repair_options options)
     assert_true(report.iterations <= options.iterations);
     assert_true(w.visits > 0);
     if (options.method == TM_REPAIR_FULL) {
-        check_not_worse(&report.before, &report.after);
+        check_repaired(&report);
         if (c->state.remade)
             assert_true((double)c->state.mesh.elements <=
                         options.growth * (double)elements);
@@ -311,7 +320,7 @@ static void test_divided(void **unused)
         tm_repair_report report;
         assert_ok(tm_repair(&c.state, &c.surface, &options, &report, &error), &error);
         check_score(&c.state, &report.after, threshold);
-        check_not_worse(&report.before, &report.after);
+        check_repaired(&report);
         divided += c.state.divided;
         check_stream(&c, &report);
         end_case(&c);

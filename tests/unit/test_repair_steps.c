@@ -92,7 +92,7 @@ static void test_take_back(void **unused)
     assert_ok(tm_repair_save(&points, s, &error), &error);
     memcpy(s->mesh.xyz[first], place[0], sizeof place[0]);
     s->mesh.xyz[second][1] += off;
-    assert_ok(tm_repair_take_back(s, &points, 0.2, before.least, &error), &error);
+    assert_ok(tm_repair_take_back(s, &points, 0.2, before.worst, &error), &error);
     assert_memory_equal(s->mesh.xyz[first], place[0], sizeof place[0]);
     assert_memory_equal(s->mesh.xyz[second], place[1], sizeof place[1]);
     const tm_repair_score after = measured(s, 0.2);
@@ -357,13 +357,13 @@ static void make_hexahedron(double xyz[8][3], double by)
             xyz[v][i] = cube[v][i] + by * (2 * random_unit() - 1);
 }
 
-/* A hexahedron whose corners are good, but that is inverted inside. */
-static void find_uncertified(tm_mixed_mesh *mesh)
+/* A hexahedron whose corners are better than that, but that is inverted inside. */
+static void find_uncertified(tm_mixed_mesh *mesh, double least)
 {
     enum { TRIES = 10000000 };
     for (int i = 0; i < TRIES; i++) {
         make_hexahedron(mesh->xyz, 0.8);
-        if (tm_mixed_jens(mesh, 0) > 0.02 &&
+        if (tm_mixed_jens(mesh, 0) > least &&
             tm_certify(8, (const double(*)[3])mesh->xyz, mesh->item) != TM_POSITIVE)
             return;
     }
@@ -400,22 +400,85 @@ static tm_repair_state state_of(hexahedron *h)
                              .origin = h->origin};
 }
 
-/* An element that is not valid inside counts as 0: it may become lower ones that are. */
+/* An element that is not valid inside counts as 0, but what is good stays so: it may
+ * become lower ones that are valid only where nothing else helps. */
 static void test_uncertified(void **unused)
 {
     (void)unused;
     hexahedron h;
     const tm_repair_state s = state_of(&h);
     tm_mixed_mesh mesh = s.mesh;
-    find_uncertified(&mesh);
-    const tm_repair_score score = measured(&s, 0.01);
+    find_uncertified(&mesh, 0.02);
+    tm_repair_score score = measured(&s, 0.01);
     assert_int_equal(score.invalid, 1);
     assert_int_equal(score.bad, 1);
     assert_true(score.worst > 0.02);
     assert_true(score.least == 0);
     const tm_repair_score valid = {.bad = 1, .worst = 0.02, .least = 0.02, .good = 0.2};
+    assert_false(tm_repair_better(&valid, &score));
+    score.valid = TM_REPAIR_FLAT;
     assert_true(tm_repair_better(&valid, &score));
     assert_false(tm_repair_better(&score, &valid));
+}
+
+/* Puts a hexahedron into a mesh, with nodes of its own that do not move. */
+static void add_hexahedron(tm_repair_state *s, const tm_repair_state *one)
+{
+    tm_error error;
+    tm_repair_state old = *s;
+    const size_t nodes = old.mesh.nodes, items = old.mesh.start[old.mesh.elements];
+    s->mesh.nodes += 8;
+    s->mesh.elements += 1;
+    assert_ok(tm_repair_allocate(s, items + 8, &error), &error);
+    memcpy(s->mesh.xyz, old.mesh.xyz, nodes * sizeof *s->mesh.xyz);
+    memcpy(s->mesh.xyz + nodes, one->mesh.xyz, 8 * sizeof *s->mesh.xyz);
+    memcpy(s->mesh.start, old.mesh.start, s->mesh.elements * sizeof *s->mesh.start);
+    s->mesh.start[s->mesh.elements] = items + 8;
+    memcpy(s->mesh.item, old.mesh.item, items * sizeof *s->mesh.item);
+    memcpy(s->rule, old.rule, nodes * sizeof *s->rule);
+    memcpy(s->on, old.on, nodes * sizeof *s->on);
+    memcpy(s->octant, old.octant, old.mesh.elements * sizeof *s->octant);
+    memcpy(s->origin, old.origin, old.mesh.elements * sizeof *s->origin);
+    s->octant[old.mesh.elements] = TM_NONE;
+    s->origin[old.mesh.elements] = (uint32_t)old.mesh.elements;
+    for (uint32_t i = 0; i < 8; i++) {
+        s->mesh.item[items + i] = (uint32_t)nodes + i;
+        s->rule[nodes + i] = one->rule[i];
+        s->on[nodes + i] = one->on[i];
+    }
+    old.octree = (tm_octree){.leaves = 0};
+    old.row = old.id = NULL;
+    tm_repair_state_free(&old);
+}
+
+/* Where an element is not valid inside, others are worth no less for it. */
+static void test_uncertified_elsewhere(void **unused)
+{
+    (void)unused;
+    size_t brought = 0;
+    for (int round = 0; round < 2 * ROUNDS; round++) {
+        tm_error error;
+        repair_case c;
+        hexahedron h;
+        const tm_repair_state one = state_of(&h);
+        tm_mixed_mesh mesh = one.mesh;
+        find_uncertified(&mesh, 0.2);
+        start_random_case(&c);
+        damage(&c, 0, 10 + random_below(10));
+        add_hexahedron(&c.state, &one);
+        const double threshold = random_between(0, 0.3);
+        const tm_repair_score before = measured(&c.state, threshold);
+        tm_repair_score after = before;
+        const tm_repair_effort effort = {random_below(3), TM_REPAIR_GOOD, 0x1p-4, 10000,
+                                         100000};
+        assert_ok(tm_repair_move(&c.state, &c.surface, threshold, effort, &after, &error),
+                  &error);
+        check_score(&c.state, &after, threshold);
+        check_not_worse(&before, &after);
+        brought += before.off_surface - after.off_surface;
+        end_case(&c);
+    }
+    assert_true(brought > 0);
 }
 
 /* Less than 1e-6 is not valid, whatever the threshold, in every function that says so. */
@@ -496,6 +559,7 @@ static void test_better(void **unused)
         s[i].bad = s[i].invalid + random_below(2);
         s[i].least = s[i].invalid ? 0 : s[i].worst;
         s[i].good = threshold;
+        s[i].valid = random_below(2) ? TM_REPAIR_FLAT : TM_REPAIR_GOOD;
     }
     for (int i = 0; i < SCORES; i++)
         for (int j = 0; j < SCORES; j++) {
@@ -602,12 +666,19 @@ int main(void)
 {
     random_start();
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_least),       cmocka_unit_test(test_uncertified),
-        cmocka_unit_test(test_better),      cmocka_unit_test(test_forced),
-        cmocka_unit_test(test_star),        cmocka_unit_test(test_rules),
-        cmocka_unit_test(test_move),        cmocka_unit_test(test_divide),
-        cmocka_unit_test(test_take_back),   cmocka_unit_test(test_shape),
-        cmocka_unit_test(test_octants),     cmocka_unit_test(test_remake),
+        cmocka_unit_test(test_least),
+        cmocka_unit_test(test_uncertified),
+        cmocka_unit_test(test_uncertified_elsewhere),
+        cmocka_unit_test(test_better),
+        cmocka_unit_test(test_forced),
+        cmocka_unit_test(test_star),
+        cmocka_unit_test(test_rules),
+        cmocka_unit_test(test_move),
+        cmocka_unit_test(test_divide),
+        cmocka_unit_test(test_take_back),
+        cmocka_unit_test(test_shape),
+        cmocka_unit_test(test_octants),
+        cmocka_unit_test(test_remake),
         cmocka_unit_test(test_remake_tips),
     };
     return cmocka_run_group_tests(tests, start_mpi, NULL);

@@ -40,17 +40,10 @@ static bool choose_point(const tm_surface *surface, const double centre[3], doub
     return length > 0;
 }
 
-/* Whether the solid or a gap in it ends within two sides of the octant behind or before
- * the surface. */
-static bool is_thin(const tm_surface *surface, const double low[3], double side)
+bool tm_octant_is_thin_at(const tm_surface *surface, uint32_t triangle,
+                          const double point[3], const double normal[3], double side)
 {
     enum { SIDES = 2 };
-    double centre[3], point[3], normal[3];
-    uint32_t triangle;
-    for (int i = 0; i < 3; i++)
-        centre[i] = low[i] + side / 2;
-    if (!choose_point(surface, centre, side, point, normal, &triangle))
-        return false;
     for (int s = 1; s <= SIDES; s++)
         for (int way = -1; way <= 1; way += 2) {
             double q[3];
@@ -60,6 +53,18 @@ static bool is_thin(const tm_surface *surface, const double low[3], double side)
                 return true;
         }
     return false;
+}
+
+/* Whether the solid or a gap in it ends within two sides of the octant behind or before
+ * the surface. */
+static bool is_thin(const tm_surface *surface, const double low[3], double side)
+{
+    double centre[3], point[3], normal[3];
+    uint32_t triangle;
+    for (int i = 0; i < 3; i++)
+        centre[i] = low[i] + side / 2;
+    return choose_point(surface, centre, side, point, normal, &triangle) &&
+           tm_octant_is_thin_at(surface, triangle, point, normal, side);
 }
 
 /* Whether triangles look in opposite directions, as those of both sides of a thin wall.

@@ -10,9 +10,6 @@
 
 enum { CHILDREN = 8, BATCH = 4, SHIFTS = 32 };
 
-/* What is in an octant that is crowded gets leaves of so many levels more. */
-enum { SPACE = 2 };
-
 typedef enum side { UNKNOWN, INSIDE, OUTSIDE } side;
 
 /* What of one surface meets an octant: a part of the source's stack of triangles. Where
@@ -133,7 +130,7 @@ static bool is_crowded(const descent *d, octant *o, bool deep)
     const source *from = &d->source[0];
     if (tm_octant_is_crowded(from->surface, d->is_corner, from->triangle + own->start,
                              own->count, o->low, o->high[0] - o->low[0]))
-        o->crowded = deep ? 1 : SPACE;
+        o->crowded = deep ? 1 : TM_CROWDED_LEVELS;
     return o->crowded > 0;
 }
 
@@ -148,7 +145,8 @@ static bool is_large(const descent *d, octant *o, const tm_octree_rule *rule)
         return is_crowded(d, o, true);
     if (!rule->largest)
         return true;
-    if ((level + rule->spread + SPACE > rule->level && is_crowded(d, o, false)) ||
+    if ((level + rule->spread + TM_CROWDED_LEVELS > rule->level &&
+         is_crowded(d, o, false)) ||
         level + rule->spread < rule->level)
         return true;
     for (size_t i = 0; i < own->count; i++)

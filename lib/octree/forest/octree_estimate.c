@@ -23,6 +23,7 @@ typedef struct {
     const tm_octree_rule *rule; /* with levels */
     size_t rules;
     double side;                  /* of root cubes */
+    double coarser;               /* times larger are leaves to be */
     double area;                  /* of the surface, along the three axes together */
     double volume;                /* of the solid */
     double layer, behind, filled; /* elements */
@@ -80,14 +81,32 @@ static bool holds(const tm_octree_rule *rule, const double point[3])
     }
 }
 
-/* The level that a rule for the surface asks for at a triangle of it. */
-static unsigned level_at(const estimator *e, const tm_octree_rule *rule, size_t t)
+/* The level that a rule for the surface asks for at a point of a triangle of it. Where it
+ * has larger leaves for what bends less, thin parts have none, as in descent.c. */
+static unsigned level_at(const estimator *e, const tm_octree_rule *rule, size_t t,
+                         const double point[3])
 {
     if (!rule->largest)
         return rule->level;
-    unsigned level = rule->level > rule->spread ? rule->level - rule->spread : 0;
-    while (level < rule->level && ldexp(e->side, -(int)level) > rule->largest[t])
-        level++;
+    const unsigned spread = rule->spread + TM_CROWDED_LEVELS - 1;
+    unsigned crowded = 0, level = rule->level > spread ? rule->level - spread : 0;
+    double normal[3];
+    const uint32_t *v = e->surface->triangle[t];
+    tm_triangle_normal(normal, e->surface->xyz[v[0]], e->surface->xyz[v[1]],
+                       e->surface->xyz[v[2]]);
+    const double length = tm_norm(normal);
+    for (int i = 0; i < 3; i++)
+        normal[i] /= length;
+    for (; level < rule->level; level++) {
+        const double side = ldexp(e->side, -(int)level);
+        if (tm_octant_is_thin_at(e->surface, (uint32_t)t, point, normal,
+                                 e->coarser * side))
+            crowded = TM_CROWDED_LEVELS;
+        if (crowded == 0 && level + rule->spread >= rule->level &&
+            side <= rule->largest[t])
+            break;
+        crowded -= crowded > 0;
+    }
     return level;
 }
 
@@ -100,9 +119,10 @@ static double side_at(estimator *e, const double point[3], size_t t)
         const tm_octree_rule *rule = &e->rule[r];
         if (rule->level <= level)
             continue;
-        if (rule->kind == TM_RULE_SURFACE && t != TM_NONE)
-            level = level_at(e, rule, t) > level ? level_at(e, rule, t) : level;
-        else if (holds(rule, point))
+        if (rule->kind == TM_RULE_SURFACE && t != TM_NONE) {
+            const unsigned at = level_at(e, rule, t, point);
+            level = at > level ? at : level;
+        } else if (holds(rule, point))
             level = rule->level;
     }
     const double side = ldexp(e->side, -(int)level);
@@ -152,7 +172,7 @@ static void point_of(const tm_surface *s, size_t t, size_t k, double point[3])
                    v * (s->xyz[n[2]][i] - s->xyz[n[0]][i]);
 }
 
-static void count_surface(estimator *e, double coarser)
+static void count_surface(estimator *e)
 {
     for (size_t t = 0; t < e->surface->triangles; t++) {
         const double area = area_of(e->surface, t);
@@ -161,7 +181,7 @@ static void count_surface(estimator *e, double coarser)
         for (size_t k = 0; k < points && area > 0; k++) {
             double point[3];
             point_of(e->surface, t, k, point);
-            const double side = coarser * side_at(e, point, t);
+            const double side = e->coarser * side_at(e, point, t);
             const double in_layer = area / (double)points / (side * side);
             const double thickness = e->volume / (e->area * side);
             e->layer += in_layer;
@@ -180,7 +200,7 @@ static bool has_part(const estimator *e)
 
 /* What rules that are not for the surface make of the solid: points of its box that are
  * inside stand for equal parts of the volume. */
-static void count_volume(estimator *e, double coarser)
+static void count_volume(estimator *e)
 {
     const tm_surface *s = e->surface;
     const unsigned along = has_part(e) ? BOX_POINTS : 1;
@@ -194,7 +214,7 @@ static void count_volume(estimator *e, double coarser)
                        (s->high[i] - s->low[i]) * ((double)at[i] + 0.5) / (double)along;
         if (along > 1 && !tm_surface_has_mesh(s, point))
             continue;
-        const double side = coarser * side_at(e, point, TM_NONE);
+        const double side = e->coarser * side_at(e, point, TM_NONE);
         points++;
         filled += 1 / (side * side * side);
     }
@@ -205,7 +225,7 @@ tm_status tm_octree_estimate(const tm_surface *surface, const tm_octree_rule *ru
                              size_t rules, double coarser, double *elements, double *side,
                              tm_error *error)
 {
-    estimator e = {.surface = surface, .rules = rules};
+    estimator e = {.surface = surface, .rules = rules, .coarser = coarser};
     tm_octree_rule *levels = tm_new(rules, sizeof *levels);
     if (!levels)
         return tm_fail_memory(error);
@@ -215,8 +235,8 @@ tm_status tm_octree_estimate(const tm_surface *surface, const tm_octree_rule *ru
     if (status == TM_OK) {
         e.rule = levels;
         measure(&e);
-        count_surface(&e, coarser);
-        count_volume(&e, coarser);
+        count_surface(&e);
+        count_volume(&e);
         *elements = e.layer + fmax(e.behind, e.filled);
         *side = coarser * e.smallest;
     }

@@ -13,7 +13,8 @@ TM_EXTERN_C_BEGIN
  * leaves. From areas and the volume, and where a rule is for a part of the space from
  * points of that. On solids that are some leaves thick it is within a factor of two, as
  * measured; more is said for thinner ones, and what lists of leaves and balance split is
- * not counted. TM_ERROR_INPUT as of tm_octree_build(). O(triangles + 40 000 × rules). */
+ * not counted. TM_ERROR_INPUT as of tm_octree_build(). O(triangles + 40 000 × rules);
+ * with larger leaves where the surface bends less it is asked as often how thin it is. */
 tm_status tm_octree_estimate(const tm_surface *surface, const tm_octree_rule *rule,
                              size_t rules, double coarser, double *elements, double *side,
                              tm_error *error);

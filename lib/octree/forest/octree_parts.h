@@ -46,6 +46,14 @@ bool tm_octant_is_crowded(const tm_surface *surface, const bool *is_corner,
                           const uint32_t *triangle, size_t count, const double low[3],
                           double side);
 
+/* Levels that an octant in one that is crowded gets more. */
+enum { TM_CROWDED_LEVELS = 2 };
+
+/* Whether the solid, or a gap in it, ends within two such sides behind or before a point
+ * of a triangle, whose unit normal is given. */
+bool tm_octant_is_thin_at(const tm_surface *surface, uint32_t triangle,
+                          const double point[3], const double normal[3], double side);
+
 /* octree_estimate.c: sizes as levels. */
 
 /* The least size that a rule has; 0 where none has any. */

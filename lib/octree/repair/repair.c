@@ -277,6 +277,28 @@ static tm_status show(const repair *r, bool off_surface, size_t *count, tm_error
     return status;
 }
 
+/* What makes fewer elements invalid counts more than the worst J_ENS, but is tried last.
+ */
+static tm_status make_valid_leniently(const repair *r, tm_error *error)
+{
+    const double threshold = r->options->threshold;
+    tm_repair_state made = {0};
+    tm_status status = tm_repair_copy_mesh(&made, r->state, error);
+    if (status == TM_OK) {
+        made.lenient = true;
+        const tm_repair_score before = tm_repair_measure(&made, threshold);
+        tm_repair_score now = before;
+        status = mend(r, &made, SIZE_MAX, &now, error);
+        made.lenient = false;
+        if (status == TM_OK && tm_repair_better(&now, &before)) {
+            tm_repair_take_mesh(r->state, &made);
+            r->report->after = tm_repair_measure(r->state, threshold);
+        }
+    }
+    tm_repair_state_free(&made);
+    return status;
+}
+
 static tm_status run_full(repair *r, tm_error *error)
 {
     tm_repair_score *score = &r->report->after;
@@ -295,6 +317,8 @@ static tm_status run_full(repair *r, tm_error *error)
         failures = better ? 0 : failures + 1;
         wide = !better && !wide;
     }
+    if (status == TM_OK && score->invalid > 0 && !r->state->rest && !is_stopped(r))
+        status = make_valid_leniently(r, error);
     return status;
 }
 

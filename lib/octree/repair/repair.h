@@ -46,6 +46,8 @@ typedef struct tm_repair_report {
  * began with
  * (tm_repair_better()), and a step that does not make it better is taken back: so the
  * worst J_ENS ends at or above the floor of report->before, whatever is gained elsewhere.
+ * Where elements are left that are invalid all is tried once more, and kept if fewer are
+ * then, with the worst at or above its old value or TM_REPAIR_FLAT.
  *
  * 1. Nodes move (../../optimise/optimise.h), with more and more effort, until no element
  * is bad and no node off the surface. 2. Elements that stay bad are divided

@@ -33,6 +33,7 @@ tm_status tm_repair_copy_mesh(tm_repair_state *to, const tm_repair_state *from,
     to->progress = from->progress;
     to->stop = from->stop;
     to->rest = from->rest;
+    to->lenient = from->lenient;
     const tm_status status = tm_repair_allocate(to, items, error);
     if (status != TM_OK)
         return status;

@@ -132,10 +132,12 @@ tm_status tm_repair_divide(tm_repair_state *state, const tm_surface *surface,
                            double threshold, tm_repair_score *score, size_t *divided,
                            tm_error *error)
 {
-    const tm_repair_effort effort = {1, TM_REPAIR_FLAT, 1, 4000, 200000};
+    const tm_repair_effort effort = {1, TM_REPAIR_GOOD, 1, 4000, 200000};
     divider d = {.state = state, .threshold = threshold};
-    tm_repair_state made = {
-        .progress = state->progress, .stop = state->stop, .rest = state->rest};
+    tm_repair_state made = {.progress = state->progress,
+                            .stop = state->stop,
+                            .rest = state->rest,
+                            .lenient = state->lenient};
     tm_progress_stage(state->progress, "dividing elements");
     tm_status status = find_divisions(&d, error);
     if (status == TM_OK && d.divisions > 0)

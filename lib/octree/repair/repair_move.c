@@ -60,7 +60,7 @@ static tm_status move(mover *m, int rounds, double threshold, tm_repair_score *s
             report.moved > 0 || report.off_surface_after != report.off_surface_before;
     }
     if (status == TM_OK && changed)
-        status = tm_repair_take_back(m->state, &before, threshold, score->least, error);
+        status = tm_repair_take_back(m->state, &before, threshold, score->worst, error);
     if (status == TM_OK && changed)
         *score = tm_repair_measure(m->state, threshold);
     tm_repair_points_free(&before);
@@ -77,16 +77,16 @@ static size_t most_measured(const tm_repair_state *state, const tm_repair_effort
     return wanted < most ? wanted : most;
 }
 
-/* Moves nodes of a mesh, all of it or a part: `least` is that of the whole. */
+/* Moves nodes of a mesh, all of it or a part: `worst` is that of the whole. */
 static tm_status move_in(tm_repair_state *state, const tm_surface *surface,
-                         double threshold, tm_repair_effort effort, double least,
+                         double threshold, tm_repair_effort effort, double worst,
                          tm_error *error)
 {
     tm_boundary boundary = {0};
     if (surface)
         boundary = tm_boundary_of_surface(surface);
     tm_repair_score score = tm_repair_measure(state, threshold);
-    score.least = least;
+    score.worst = worst;
     const double aim = fmax(threshold, effort.aim);
     mover m = {
         .state = state,
@@ -153,7 +153,7 @@ static uint32_t *find_core(const tm_repair_state *state, double threshold, size_
 /* Where little is bad the mesh around it is enough. */
 static tm_status move_part(tm_repair_state *state, const tm_surface *surface,
                            double threshold, tm_repair_effort effort,
-                           const uint32_t *core, size_t cores, double least,
+                           const uint32_t *core, size_t cores, double worst,
                            tm_error *error)
 {
     tm_node_elements around = {0};
@@ -165,7 +165,7 @@ static tm_status move_part(tm_repair_state *state, const tm_surface *surface,
     trial.part.stop = state->stop;
     trial.part.mesh.threads = state->mesh.threads;
     if (status == TM_OK)
-        status = move_in(&trial.part, surface, threshold, effort, least, error);
+        status = move_in(&trial.part, surface, threshold, effort, worst, error);
     if (status == TM_OK)
         tm_trial_commit(&trial);
     tm_trial_free(&trial);
@@ -185,12 +185,12 @@ tm_status tm_repair_move(tm_repair_state *state, const tm_surface *surface,
     const size_t elements = state->mesh.elements + (rest ? rest->elements : 0);
     tm_status status = TM_OK;
     if (cores > 0 && cores < elements / TM_REPAIR_PART_LESS)
-        status = move_part(state, surface, threshold, effort, core, cores, score->least,
+        status = move_part(state, surface, threshold, effort, core, cores, score->worst,
                            error);
     else if (cores > 0 && rest)
         status = tm_repair_fail_part(&rest->whole, error);
     else if (cores > 0)
-        status = move_in(state, surface, threshold, effort, score->least, error);
+        status = move_in(state, surface, threshold, effort, score->worst, error);
     free(core);
     if (status == TM_OK && cores > 0)
         *score = tm_repair_measure(state, threshold);

@@ -16,8 +16,8 @@ enum { RINGS = 2, CORE_MOST = 24 };
 /* Elements at a tip that are as good are not made anew, whatever the threshold is: it is
  * not sharp. */
 static const double not_sharp = 0.3;
-static const tm_repair_effort effort[] = {{1, TM_REPAIR_FLAT, 1, 0, 15000},
-                                          {1, TM_REPAIR_FLAT, 1, 0, 20000}}; /* whole */
+static const tm_repair_effort effort[] = {{1, TM_REPAIR_GOOD, 1, 0, 15000},
+                                          {1, TM_REPAIR_GOOD, 1, 0, 20000}}; /* whole */
 
 /* What comes in the place of one element, with nodes of the whole mesh. */
 typedef struct {

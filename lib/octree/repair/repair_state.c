@@ -61,8 +61,10 @@ static void measure_part(void *context, size_t first, size_t past)
 tm_repair_score tm_repair_measure(const tm_repair_state *state, double threshold)
 {
     const tm_mixed_mesh *mesh = &state->mesh;
-    tm_repair_score score = {
-        .worst = 1, .least = 1, .good = fmax(threshold, TM_REPAIR_GOOD)};
+    tm_repair_score score = {.worst = 1,
+                             .least = 1,
+                             .good = fmax(threshold, TM_REPAIR_GOOD),
+                             .valid = state->lenient ? TM_REPAIR_FLAT : TM_REPAIR_GOOD};
     double sum = 0;
     for (size_t v = 0; v < mesh->nodes; v++)
         score.off_surface += state->rule[v].off_surface;
@@ -94,7 +96,7 @@ tm_status tm_repair_fail_part(bool *why, tm_error *error)
 
 bool tm_repair_better(const tm_repair_score *a, const tm_repair_score *b)
 {
-    const double good = a->invalid < b->invalid ? TM_REPAIR_FLAT : b->good;
+    const double good = a->invalid < b->invalid ? fmin(b->good, b->valid) : b->good;
     if (a->invalid > b->invalid || a->off_surface > b->off_surface ||
         (a->bad > b->bad && a->invalid == b->invalid) ||
         a->least < fmin(b->least, good) || a->worst < fmin(b->worst, good))

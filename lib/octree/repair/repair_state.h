@@ -14,8 +14,9 @@ TM_EXTERN_C_BEGIN
  * be so in other programs too. */
 #define TM_REPAIR_LEAST 1e-6
 
-/* No step makes an element that was above fall below; and one of which all elements are
- * as good as the second, or the threshold, may cost a little of the worst. */
+/* No step makes an element that was above the first fall below. The worst J_ENS may fall
+ * to the larger of the threshold and the second; to the second where fewer elements are
+ * invalid then, and to the first if that is not possible else. */
 #define TM_REPAIR_FLAT 0.02
 #define TM_REPAIR_GOOD 0.2
 
@@ -42,6 +43,7 @@ typedef struct tm_repair_state {
     uint32_t *id;       /* [octants]: in .oct and .ref; NULL: their numbers from 0 */
     bool divided;       /* some elements are parts of what they were; nodes were added */
     bool remade;        /* from another octree: all of it is new */
+    bool lenient;       /* the worst may fall to TM_REPAIR_FLAT for fewer invalid ones */
     const tm_progress *progress; /* of the repair; NULL in trials */
     const tm_stop *stop;         /* the same */
     tm_repair_rest *rest;        /* NULL: this is all of the mesh */
@@ -56,6 +58,7 @@ typedef struct tm_repair_score {
     double worst;   /* J_ENS; 1 of no elements */
     double least;   /* the same of tm_repair_quality() */
     double good;    /* the larger of the threshold and TM_REPAIR_GOOD */
+    double valid;   /* what the worst may fall to where fewer are invalid */
     double average; /* of J_ENS; 0 of no elements */
 } tm_repair_score;
 
@@ -72,8 +75,8 @@ tm_repair_score tm_repair_measure(const tm_repair_state *state, double threshold
 
 /* The rule of all steps: whether `a`, made from `b`, is to be kept. It must not have more
  * invalid elements; nor more nodes that are off the surface; nor more bad elements,
- * unless fewer are invalid; nor a lower least, unless that is good still; and one of
- * these must be better. */
+ * unless fewer are invalid; nor a lower worst or least, unless that is good still, or
+ * `valid` where fewer are invalid; and one of these must be better. */
 bool tm_repair_better(const tm_repair_score *a, const tm_repair_score *b);
 
 /* The octants that hold a bad element, but for those of `except` ([elements], or NULL),

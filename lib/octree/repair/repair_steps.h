@@ -46,10 +46,11 @@ tm_status tm_repair_move(tm_repair_state *state, const tm_surface *surface,
                          tm_repair_score *score, tm_error *error);
 
 /* Takes back what has moved since `before` was saved, piece by piece, where it is not
- * better by tm_repair_better(), or an element fell below max(half of the worst there,
- * TM_REPAIR_FLAT); `least` is that of all the mesh before. O(elements). */
+ * better by tm_repair_better(), or an element fell below max(half of the worst J_ENS
+ * there, TM_REPAIR_FLAT), but for fewer invalid ones; `worst` is the J_ENS of all the
+ * mesh before. O(elements). */
 tm_status tm_repair_take_back(tm_repair_state *state, const tm_repair_points *before,
-                              double threshold, double least, tm_error *error);
+                              double threshold, double worst, tm_error *error);
 
 /* Makes elements at sharp tips of the surface anew (sharp_corner.h), where that makes
  * those around better; *count counts. */

@@ -17,7 +17,7 @@ typedef struct {
     tm_repair_state *state;
     const tm_repair_points *before;
     double threshold;
-    double least;                /* of the whole mesh, before */
+    double worst;                /* J_ENS of the whole mesh, before */
     uint32_t *root;              /* [nodes]: of those that moved; else TM_NONE */
     tm_repair_score (*score)[2]; /* [nodes]: of the piece at a root, before and after */
 } judge;
@@ -131,9 +131,9 @@ static tm_status take_back_doubles(const judge *j, tm_error *error)
  * such, or it is good still. */
 static double find_good(const judge *j, uint32_t piece)
 {
-    const double least = j->score[piece][0].least;
-    const double half = least < TM_REPAIR_FLAT ? least : fmax(least / 2, TM_REPAIR_FLAT);
-    return fmax(half, fmin(j->least, fmax(j->threshold, TM_REPAIR_GOOD)));
+    const double worst = j->score[piece][0].worst;
+    const double half = worst < TM_REPAIR_FLAT ? worst : fmax(worst / 2, TM_REPAIR_FLAT);
+    return fmax(half, fmin(j->worst, fmax(j->threshold, TM_REPAIR_GOOD)));
 }
 
 /* Whether a piece stays as it is now. */
@@ -141,7 +141,13 @@ static bool is_kept(const judge *j, uint32_t piece)
 {
     tm_repair_score was = j->score[piece][0];
     was.good = find_good(j, piece);
+    was.valid = j->state->lenient ? TM_REPAIR_FLAT : TM_REPAIR_GOOD;
     return tm_repair_better(&j->score[piece][1], &was);
+}
+
+static bool fell(double is, double was, double good)
+{
+    return is < was && is < good;
 }
 
 /* Whether an element of a piece that does not stay is worse than it was. */
@@ -150,10 +156,11 @@ static bool is_worse(const judge *j, size_t e)
     const tm_mixed_mesh *now = &j->state->mesh;
     tm_mixed_mesh old = *now;
     old.xyz = j->before->xyz;
-    const double is = tm_repair_quality(now, e, tm_mixed_jens(now, e));
-    const double was = tm_repair_quality(&old, e, tm_mixed_jens(&old, e));
-    const double good = fmax(find_good(j, piece_of(j, e)), TM_REPAIR_FLAT);
-    return is < was && is < fmax(good, j->threshold);
+    const double is = tm_mixed_jens(now, e), was = tm_mixed_jens(&old, e);
+    const double good =
+        fmax(j->threshold, fmax(find_good(j, piece_of(j, e)), TM_REPAIR_FLAT));
+    return fell(is, was, good) ||
+           fell(tm_repair_quality(now, e, is), tm_repair_quality(&old, e, was), good);
 }
 
 /* Takes back the nodes of an element; says whether there was one. */
@@ -184,13 +191,13 @@ static void take_back_worse(const judge *j, const uint32_t *list, size_t element
 }
 
 tm_status tm_repair_take_back(tm_repair_state *state, const tm_repair_points *before,
-                              double threshold, double least, tm_error *error)
+                              double threshold, double worst, tm_error *error)
 {
     const size_t nodes = state->mesh.nodes, elements = state->mesh.elements;
     judge j = {state,
                before,
                threshold,
-               least,
+               worst,
                tm_new(nodes, sizeof *j.root),
                tm_new(nodes, sizeof *j.score)};
     uint32_t *list = tm_new(elements, sizeof *list);

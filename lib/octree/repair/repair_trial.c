@@ -123,6 +123,7 @@ static tm_status fill(tm_trial *t, tm_error *error)
 {
     const tm_mixed_mesh *mesh = &t->whole->mesh;
     tm_repair_state *p = &t->part;
+    p->lenient = t->whole->lenient;
     p->mesh.nodes = t->nodes;
     p->mesh.elements = t->elements;
     p->mesh.xyz = tm_new(t->nodes, sizeof *p->mesh.xyz);
