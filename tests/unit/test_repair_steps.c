@@ -546,6 +546,29 @@ static void test_forced(void **unused)
 }
 
 /* All pairs of scores: never better both ways, never where one thing is worse. */
+/* A mesh that takes another's place has its octants, with their ids. */
+static void test_take_mesh(void **unused)
+{
+    (void)unused;
+    repair_case c;
+    tm_error error;
+    tm_repair_state copy = {0};
+    start_random_case(&c);
+    tm_repair_state *s = &c.state;
+    const tm_leaf *leaf = s->octree.leaf;
+    uint32_t *id = calloc(s->octree.leaves + 1, sizeof *id);
+    free(s->id);
+    s->id = id;
+    assert_int_equal(tm_repair_copy_mesh(&copy, s, &error), TM_OK);
+    const double(*xyz)[3] = (const double(*)[3])copy.mesh.xyz;
+    tm_repair_take_mesh(s, &copy);
+    assert_ptr_equal(s->mesh.xyz, xyz);
+    assert_ptr_equal(s->octree.leaf, leaf);
+    assert_ptr_equal(s->id, id);
+    assert_null(copy.mesh.xyz);
+    end_case(&c);
+}
+
 static void test_better(void **unused)
 {
     (void)unused;
@@ -670,6 +693,7 @@ int main(void)
         cmocka_unit_test(test_uncertified),
         cmocka_unit_test(test_uncertified_elsewhere),
         cmocka_unit_test(test_better),
+        cmocka_unit_test(test_take_mesh),
         cmocka_unit_test(test_forced),
         cmocka_unit_test(test_star),
         cmocka_unit_test(test_rules),

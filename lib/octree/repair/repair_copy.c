@@ -51,9 +51,11 @@ void tm_repair_take_mesh(tm_repair_state *state, tm_repair_state *by)
 {
     by->octree = state->octree;
     by->row = state->row;
+    by->id = state->id;
     by->remade = state->remade;
     state->octree = (tm_octree){.leaves = 0};
     state->row = NULL;
+    state->id = NULL;
     tm_repair_state_free(state);
     *state = *by;
     *by = (tm_repair_state){0};
