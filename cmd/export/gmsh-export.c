@@ -142,8 +142,8 @@ static void leave_out_names(const gmsh_plan *plan)
                          lost.joined);
     if (lost.swapped > 0)
         filter_leave_out(&f,
-                         "%zu names of groups with the number of one of another "
-                         "dimension, of which Gmsh reads one (.group)",
+                         "%zu names of groups with the number of one of a higher "
+                         "dimension, whose name Gmsh reads (.group)",
                          lost.swapped);
 }
 

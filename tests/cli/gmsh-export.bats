@@ -348,10 +348,12 @@ END
     loses unv ''
     # Gmsh reads one name for each number of .unv
     corner 4 4 '2 4 inlet' '2 2 outlet' '3 4 steel' >names.tm
-    loses unv '2 names of groups with the number of one of another dimension, of which Gmsh reads one'
+    loses unv '1 names of groups with the number of one of a higher dimension, whose name Gmsh reads'
     loses msh4 ''
+    corner 4 4 '2 4 inlet' >names.tm
+    loses unv '1 names of groups with the number of one of a higher dimension, whose name Gmsh reads'
     corner 4 4 '2 2 outlet' '3 4 steel' >names.tm
-    loses unv '1 names of groups with the number of one of another dimension, of which Gmsh reads one'
+    loses unv ''
     corner 4 4 '2 4 steel' '3 4 steel' >names.tm
     loses unv ''
     gmsh-export -q -o a.unv names.tm

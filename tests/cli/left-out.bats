@@ -164,7 +164,7 @@ region name
 part
 unknown block
 END
-    # msh4 msh2 msh1 mesh inp unv su2
+    # msh4 msh2 msh1 mesh inp unv su2; the cells have the region 1, as those names
     diff - table <<'END'
 nothing               . . . . . . .
 node attribute        x x x x x x x
@@ -176,8 +176,8 @@ region                . . . . . . x
 odd region            x x x x x x x
 other attribute       x x x x x x x
 node name             . . x x x x x
-edge name             . . x x . . x
-face name             . . x x . . .
+edge name             . . x x . x x
+face name             . . x x . x .
 region name           . . x x . . x
 part                  x x x x x x x
 unknown block         x x x x x x x

@@ -110,20 +110,17 @@ static bool name_groups(named_group *list, size_t groups, const gmsh_plan *plan,
     return true;
 }
 
-/* Of groups in the order of compare_groups(): names of those with a number that groups of
- * other names, or of none, have. */
+/* Of groups in the order of compare_groups(): names where another dimension has the
+ * number, too, and the last of these, whose name Gmsh reads, another name or none. */
 static size_t count_swapped(const named_group *list, size_t groups)
 {
     size_t count = 0;
-    for (size_t begin = 0, end; begin < groups; begin = end) {
-        size_t named = 0;
-        bool same = true;
-        for (end = begin; end < groups && list[end].group == list[begin].group; end++) {
-            named += list[end].name != NULL;
-            same &= list[end].name && list[begin].name &&
-                    strcmp(list[end].name, list[begin].name) == 0;
-        }
-        count += end - begin > 1 && !same ? named : 0;
+    for (size_t i = 0; i < groups; i++) {
+        size_t last = i;
+        while (last + 1 < groups && list[last + 1].group == list[i].group)
+            last++;
+        count += list[i].name &&
+                 (!list[last].name || strcmp(list[i].name, list[last].name) != 0);
     }
     return count;
 }

@@ -11,8 +11,8 @@ enum { GMSH_NAME_MOST = 128 }; /* bytes of a name in .msh */
 typedef struct gmsh_lost_names {
     size_t cut;     /* are longer than .msh has room for */
     size_t joined;  /* are another group's, too, once they are written */
-    size_t swapped; /* .unv: groups of other dimensions have the number, and Gmsh reads
-                       one name for all of them */
+    size_t swapped; /* .unv: a group of a higher dimension has the number, and Gmsh reads
+                       the name of that for both */
 } gmsh_lost_names;
 
 /* Counts them; names are those of the dimensions that the format has. TM_ERROR_SYSTEM
