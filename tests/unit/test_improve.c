@@ -556,6 +556,10 @@ static void test_unlike_nodes(void **state)
     mesh.node_marker = realloc(marker, mesh.nodes * sizeof *marker);
     assert_non_null(mesh.node_marker);
     bool *unlike = calloc(mesh.nodes, sizeof *unlike);
+    /* It ends the marked edge inside, but is in the side, too. */
+    const uint32_t end = grid_node(GRID, 1, 1, 0);
+    assert_int_equal(before.dimension[end], 0);
+    before.dimension[end] = 2;
     for (size_t v = 0; v < mesh.nodes; v++)
         mesh.node_marker[v] = before.dimension[v] < 3 ? (int32_t)random_below(8) / 6 : 0;
     for (size_t f = 0; f < mesh.faces; f++)
@@ -569,6 +573,7 @@ static void test_unlike_nodes(void **state)
                 unlike[a] = unlike[b] = true;
         }
     assert_int_equal(tm_features_find(&after, &mesh, NULL, &marks, NULL), TM_OK);
+    before.dimension[end] = 0;
     for (size_t v = 0; v < mesh.nodes; v++)
         assert_int_equal(after.dimension[v], unlike[v] ? 0 : before.dimension[v]);
     free(unlike);

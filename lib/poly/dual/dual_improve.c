@@ -50,7 +50,8 @@ static tm_status move_points(tm_dual *d, const tm_poly_arrays *mesh,
     for (size_t p = 0; p < d->points && fixed && corner; p++)
         fixed[p] = !find_corners(d, p, corner[p]);
     if (d->most == 0)
-        d->most = 1 + TM_DUAL_WORK * mesh->facet_start[mesh->facets];
+        d->most =
+            1 + (mesh->facets > 0 ? TM_DUAL_WORK * mesh->facet_start[mesh->facets] : 0);
     const tm_fit_options options = {.fixed = fixed,
                                     .corner = (const uint32_t(*)[4])corner,
                                     .point = (const double(*)[3])d->mesh->xyz,
