@@ -204,8 +204,8 @@ static tm_status missing_row(reader *r, const tm_block *block, size_t row, size_
                 tm_lines_quote(r->lines.at, text));
 }
 
-/* The number of the first row of the first .node is the stream's index base; where that has
- * no row, of the next block that has one. */
+/* The number of the first row of the first .node is the stream's index base; where that
+ * has no row, of the next block that has one. */
 static tm_status read_base(reader *r, const tm_block *block)
 {
     int64_t number;
