@@ -14,7 +14,7 @@
 
 #include <cmocka.h>
 
-enum { KINDS = 4, NODES = 8, GRID = 9 };
+enum { KINDS = 4, NODES = 8, GRID = 5 };
 
 typedef double element[NODES][3];
 
@@ -93,10 +93,10 @@ static double determinant(size_t nodes, const element p, const double at[3])
 }
 
 /* The least determinant on a grid, and, from its lowest place, on finer ones. */
-static double least_determinant(size_t nodes, const element p)
+static double least_near(size_t nodes, const element p, double centre[3], double width)
 {
-    double centre[3] = {0.5, 0.5, 0.5}, width = 1, least = INFINITY;
-    for (int level = 0; level < 8; level++) {
+    double least = INFINITY;
+    for (int level = 0; level < 14; level++) {
         double best[3] = {centre[0], centre[1], centre[2]};
         for (int n = 0; n < GRID * GRID * GRID; n++) {
             const int step[3] = {n % GRID, n / GRID % GRID, n / GRID / GRID};
@@ -112,8 +112,20 @@ static double least_determinant(size_t nodes, const element p)
                 memcpy(best, at, sizeof best);
             }
         }
-        memcpy(centre, best, sizeof centre);
-        width /= 4;
+        memcpy(centre, best, sizeof best);
+        width /= 2;
+    }
+    return least;
+}
+
+/* There may be several low places. */
+static double least_determinant(size_t nodes, const element p)
+{
+    double least = INFINITY;
+    for (int octant = 0; octant < 8; octant++) {
+        double centre[3] = {0.25 + (octant & 1) * 0.5, 0.25 + (octant >> 1 & 1) * 0.5,
+                            0.25 + (octant >> 2) * 0.5};
+        least = fmin(least, least_near(nodes, p, centre, 0.5));
     }
     return least;
 }
