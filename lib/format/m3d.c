@@ -80,7 +80,7 @@ static size_t read_letter(reader *r)
     tm_scan_seek(&r->scan);
     tm_word word = tm_scan_word(&r->scan);
     for (size_t k = 1; k <= NODES_MAX && word.size == 1; k++)
-        if (letter_of[k] == *word.begin)
+        if (letter_of[k] != '\0' && letter_of[k] == *word.begin)
             return k;
     tm_scan_fail(&r->scan, r->error,
                  word.size > 0 ? "'%.*s' is no element (T, P, R or H)"

@@ -144,3 +144,10 @@ END
     done
     [ ! -e out ]
 }
+
+@test "a byte of 0 is no letter of an element: exit 3" {
+    printf '[Nodes, ARRAY1<STRING>]\n1\n\n1 0 0 0\n\n[Elements, ARRAY1<STRING>]\n1\n\n\0 0 1000.0 0.45 1.0\n' >zero.m3d
+    run -3 --separate-stderr m3d-import zero.m3d
+    [ "$output" = "" ]
+    [[ "$stderr" == *"is no element (T, P, R or H)"* ]]
+}
