@@ -37,10 +37,9 @@ static bool has_names(gmsh_output format, int dimension)
 /* Programs that read .inp take capitals for small letters. */
 static void write_name(char *name, gmsh_output format)
 {
+    gmsh_change_quotes(name);
     for (char *at = name; *at; at++) {
-        if (*at == '"')
-            *at = '\'';
-        else if (*at == ' ' && !is_msh(format))
+        if (*at == ' ' && !is_msh(format))
             *at = '_';
         else if (*at >= 'A' && *at <= 'Z' && format == GMSH_TO_INP)
             *at = (char)(*at - 'A' + 'a');

@@ -181,6 +181,12 @@ static tm_status add_entities(const gmsh_plan *plan, int d, tm_error *error)
     return failed ? gmsh_fail(TM_ERROR_SYSTEM, error) : TM_OK;
 }
 
+void gmsh_change_quotes(char *name)
+{
+    for (char *at = name; (at = strchr(at, '"'));)
+        *at = '\'';
+}
+
 /* The name of a group as Gmsh writes it: in quotes. */
 static tm_status set_name(const gmsh_plan *plan, int d, int32_t value, int32_t group,
                           tm_error *error)
@@ -192,8 +198,7 @@ static tm_status set_name(const gmsh_plan *plan, int d, int32_t value, int32_t g
     char *name = strdup(known);
     if (!name)
         return tm_fail_memory(error);
-    for (char *at = name; (at = strchr(at, '"'));)
-        *at = '\'';
+    gmsh_change_quotes(name);
     gmshModelSetPhysicalName(d, group, name, &failed);
     free(name);
     return failed ? gmsh_fail(TM_ERROR_SYSTEM, error) : TM_OK;

@@ -79,6 +79,9 @@ typedef struct gmsh_plan {
 tm_status gmsh_plan_make(gmsh_plan *plan, const tm_stream *stream, tm_error *error);
 void gmsh_plan_free(gmsh_plan *plan);
 
+/* Gmsh writes names in quotes: makes quotes in them apostrophes. */
+void gmsh_change_quotes(char *name);
+
 /* Lets Gmsh write a file; appends it to *text. TM_ERROR_SYSTEM with what Gmsh says where
  * it cannot. */
 tm_status gmsh_write(tm_text *text, const gmsh_plan *plan, gmsh_output format,

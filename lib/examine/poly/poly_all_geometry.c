@@ -28,20 +28,6 @@ double tm_facet_volume_ratio(const tm_poly_centroids *m, size_t f)
     return most > 0 ? fmin(a, b) / most : 0;
 }
 
-/* The least for the sides from … to - 1 of a triangle seen from its corner, by the lines
- * from the centroids to that. */
-static inline double sight_of(const double p[3], const double q[3],
-                              const double line[2][3], int from, int to)
-{
-    double normal[3], least = HUGE_VAL;
-    tm_cross(normal, p, q);
-    for (int s = from; s < to; s++) {
-        const double sight = tm_dot(normal, line[s]);
-        least = sight < least ? sight : least;
-    }
-    return least;
-}
-
 /* From the centroids of the sides from … to - 1, of the triangles of a facet around a
  * point, but for those with its corner `base`; or what is not above `above`. The triangle
  * that ends before the base comes first, then the one that begins after it: they are the
@@ -51,7 +37,7 @@ static double least_sight(const tm_poly_centroids *m, size_t f, int from, int to
 {
     const size_t count = tm_facet_corners(m->mesh, f);
     const double area = m->face[f].size;
-    double least = HUGE_VAL, line[2][3], p[3], q[3];
+    double least = HUGE_VAL, line[2][3], p[3], q[3], normal[3];
     for (int s = from; s < to; s++) {
         tm_subtract(line[s], point, m->cell[m->mesh->side[f][s]].centre);
         const double scale = tm_norm(line[s]) * area * (s == 0 ? 1 : -1);
@@ -60,19 +46,18 @@ static double least_sight(const tm_poly_centroids *m, size_t f, int from, int to
         for (int x = 0; x < 3; x++)
             line[s][x] /= scale;
     }
-    /* From corner `first` on, `triangles` of them. */
-    const bool is_fan = base < count;
-    const size_t first = is_fan ? (base + 1) % count : count - 1;
-    const size_t triangles = is_fan ? count - 2 : count;
-    for (int pass = is_fan ? 0 : 1; pass < 2; pass++) {
-        size_t i = pass == 0 ? (base + count - 2) % count : first;
-        tm_subtract(p, tm_facet_corner(m->mesh, f, i), point);
-        for (size_t k = 0; k < (pass == 0 ? 1 : triangles) && least > above; k++) {
-            i = i + 1 < count ? i + 1 : 0;
-            tm_subtract(q, tm_facet_corner(m->mesh, f, i), point);
-            least = fmin(least, sight_of(p, q, (const double(*)[3])line, from, to));
-            memcpy(p, q, sizeof p);
+    size_t last = base < count ? (base + count - 2) % count : count - 1;
+    tm_subtract(p, tm_facet_corner(m->mesh, f, last), point);
+    for (size_t k = 0; k < count && least > above; k++) {
+        const size_t i = last + 1 < count ? last + 1 : 0;
+        tm_subtract(q, tm_facet_corner(m->mesh, f, i), point);
+        tm_cross(normal, p, q);
+        for (int s = from; s < to && last != base && i != base; s++) {
+            const double sight = tm_dot(normal, line[s]);
+            least = sight < least ? sight : least;
         }
+        memcpy(p, q, sizeof p);
+        last = i;
     }
     return least;
 }

@@ -15,9 +15,9 @@ enum { PATCHES = 8 };
 enum { DIRECTIONS = 8 };
 
 /* A point of the surface close to the middle of an octant, away from the border of its
- * triangle, and the normal there. False of a triangle without area. */
-static bool choose_point(const tm_surface *surface, const double centre[3], double side,
-                         double point[3], double normal[3], uint32_t *triangle)
+ * triangle. */
+static void choose_point(const tm_surface *surface, const double centre[3], double side,
+                         double point[3], uint32_t *triangle)
 {
     const double away = 0.1; /* sides of the octant, at most */
     tm_surface_point at = {.triangle = TM_NONE};
@@ -26,24 +26,28 @@ static bool choose_point(const tm_surface *surface, const double centre[3], doub
     double to_middle[3];
     for (int i = 0; i < 3; i++)
         p[i] = surface->xyz[surface->triangle[at.triangle][i]];
-    tm_triangle_normal(normal, p[0], p[1], p[2]);
-    const double length = tm_norm(normal);
     for (int i = 0; i < 3; i++)
         to_middle[i] = (p[0][i] + p[1][i] + p[2][i]) / 3 - at.xyz[i];
     const double far = tm_norm(to_middle);
     const double step = far > 0 ? fmin(1, away * side / far) : 0;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++)
         point[i] = at.xyz[i] + step * to_middle[i];
-        normal[i] /= length;
-    }
     *triangle = at.triangle;
-    return length > 0;
 }
 
 bool tm_octant_is_thin_at(const tm_surface *surface, uint32_t triangle,
-                          const double point[3], const double normal[3], double side)
+                          const double point[3], double side)
 {
     enum { SIDES = 2 };
+    const uint32_t *v = surface->triangle[triangle];
+    double normal[3];
+    tm_triangle_normal(normal, surface->xyz[v[0]], surface->xyz[v[1]],
+                       surface->xyz[v[2]]);
+    const double length = tm_norm(normal);
+    if (!(length > 0))
+        return false;
+    for (int i = 0; i < 3; i++)
+        normal[i] /= length;
     for (int s = 1; s <= SIDES; s++)
         for (int way = -1; way <= 1; way += 2) {
             double q[3];
@@ -59,12 +63,12 @@ bool tm_octant_is_thin_at(const tm_surface *surface, uint32_t triangle,
  * the surface. */
 static bool is_thin(const tm_surface *surface, const double low[3], double side)
 {
-    double centre[3], point[3], normal[3];
+    double centre[3], point[3];
     uint32_t triangle;
     for (int i = 0; i < 3; i++)
         centre[i] = low[i] + side / 2;
-    return choose_point(surface, centre, side, point, normal, &triangle) &&
-           tm_octant_is_thin_at(surface, triangle, point, normal, side);
+    choose_point(surface, centre, side, point, &triangle);
+    return tm_octant_is_thin_at(surface, triangle, point, side);
 }
 
 /* Whether triangles look in opposite directions, as those of both sides of a thin wall.

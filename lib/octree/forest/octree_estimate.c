@@ -90,17 +90,9 @@ static unsigned level_at(const estimator *e, const tm_octree_rule *rule, size_t 
         return rule->level;
     const unsigned spread = rule->spread + TM_CROWDED_LEVELS - 1;
     unsigned crowded = 0, level = rule->level > spread ? rule->level - spread : 0;
-    double normal[3];
-    const uint32_t *v = e->surface->triangle[t];
-    tm_triangle_normal(normal, e->surface->xyz[v[0]], e->surface->xyz[v[1]],
-                       e->surface->xyz[v[2]]);
-    const double length = tm_norm(normal);
-    for (int i = 0; i < 3; i++)
-        normal[i] /= length;
     for (; level < rule->level; level++) {
         const double side = ldexp(e->side, -(int)level);
-        if (tm_octant_is_thin_at(e->surface, (uint32_t)t, point, normal,
-                                 e->coarser * side))
+        if (tm_octant_is_thin_at(e->surface, (uint32_t)t, point, e->coarser * side))
             crowded = TM_CROWDED_LEVELS;
         if (crowded == 0 && level + rule->spread >= rule->level &&
             side <= rule->largest[t])

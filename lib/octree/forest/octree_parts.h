@@ -50,9 +50,9 @@ bool tm_octant_is_crowded(const tm_surface *surface, const bool *is_corner,
 enum { TM_CROWDED_LEVELS = 2 };
 
 /* Whether the solid, or a gap in it, ends within two such sides behind or before a point
- * of a triangle, whose unit normal is given. */
+ * of a triangle; false of one without area. */
 bool tm_octant_is_thin_at(const tm_surface *surface, uint32_t triangle,
-                          const double point[3], const double normal[3], double side);
+                          const double point[3], double side);
 
 /* octree_estimate.c: sizes as levels. */
 
