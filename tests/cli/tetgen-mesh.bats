@@ -199,8 +199,13 @@ END
     [[ $stderr == *'<stdin>: has no nodes: they are in a .node file beside it'* ]]
     rm cube.node
     run --separate-stderr tetgen-mesh cube.poly
+    [ "$status" -eq 3 ]
+    [ "$stderr" = \
+        'tetgen-mesh: cube.poly: has no nodes, and there is no file cube.node with them' ]
+    mkdir cube.node
+    run --separate-stderr tetgen-mesh cube.poly
     [ "$status" -eq 4 ]
-    [[ $stderr == 'tetgen-mesh: cube.node: cannot open: '* ]]
+    [[ $stderr == 'tetgen-mesh: cube.node: '* ]]
 }
 
 @test "a hole of a .poly file stays empty" {

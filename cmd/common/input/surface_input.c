@@ -40,6 +40,13 @@ static tm_status read_nodes_beside(const filter *f, tm_polygon_surface *surface,
     node_file(f->input, &file);
     if (file.failed)
         return tm_fail_memory(error);
+    if (access(file.byte, F_OK) != 0) {
+        const tm_status missing =
+            tm_fail_at(error, TM_ERROR_INPUT, f->input, 0, NULL,
+                       "has no nodes, and there is no file %s with them", file.byte);
+        tm_text_free(&file);
+        return missing;
+    }
     filter_read_file(f, file.byte, &bytes);
     const tm_status status =
         tm_plc_read(surface, TM_PLC_NODE, bytes.byte, bytes.size, file.byte, error);
