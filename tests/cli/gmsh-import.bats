@@ -462,3 +462,26 @@ END
         done
     done
 }
+
+@test "where Gmsh has no memory for a kind of elements they are not left out" {
+    case ${TM_BUILD:?} in */san*) skip "the sanitizers have an allocator of their own" ;; esac
+    printf '%s\n' '$MeshFormat' '2.2 0 8' '$EndMeshFormat' '$Nodes' 4 '1 0 0 0' '2 1 0 0' \
+        '3 0 1 0' '4 0 0 1' '$EndNodes' '$Elements' 1 '1 4 2 7 1 1 2 3 4' '$EndElements' >one.msh
+    with_fault() {
+        head -c 72 /dev/zero >count
+        TM_FAULTS_COUNT=count TM_FAULTS=$1 LD_PRELOAD=$TM_BUILD/faults/preload.so \
+            gmsh-import one.msh >out.tm 2>message
+    }
+    with_fault 'none 0 0'
+    mv out.tm one.tm
+    calls=$(od -An -t u8 -N 8 count)
+    for ((call = calls - 99; call <= calls; call++)); do
+        status=0
+        with_fault "memory $call $call" || status=$?
+        case $status in
+        0) diff out.tm one.tm ;;
+        3 | 4) [ "$(tail -n 1 out.tm)" != .end ] ;;
+        *) return 1 ;;
+        esac
+    done
+}

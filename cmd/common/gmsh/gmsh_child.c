@@ -35,16 +35,33 @@ _Noreturn static void end_for_memory(void)
     _exit(EXIT_FAILURE);
 }
 
-tm_status gmsh_fail(tm_status status, tm_error *error)
+/* What Gmsh has said last, or NULL: to be freed by gmshFree(). */
+static char *last_error(void)
 {
     char *what = NULL;
     int failed;
     gmshLoggerGetLastError(&what, &failed);
     if (!failed && what && strstr(what, "Out of memory"))
         end_for_memory();
-    if (!failed && what && strstr(what, "Unable to open file")) /* which is open here */
-        status = TM_ERROR_SYSTEM;
     if (!failed && what && *what)
+        return what;
+    gmshFree(what);
+    return NULL;
+}
+
+bool gmsh_says_why(void)
+{
+    char *what = last_error();
+    gmshFree(what);
+    return what != NULL;
+}
+
+tm_status gmsh_fail(tm_status status, tm_error *error)
+{
+    char *what = last_error();
+    if (what && strstr(what, "Unable to open file")) /* which is open here */
+        status = TM_ERROR_SYSTEM;
+    if (what)
         tm_fail(error, status, "Gmsh: %s", what);
     else
         tm_fail(error, status,

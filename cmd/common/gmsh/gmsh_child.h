@@ -45,4 +45,8 @@ size_t gmsh_link_hide(const gmsh_link *link, char *bytes, size_t size);
  */
 tm_status gmsh_fail(tm_status status, tm_error *error);
 
+/* Whether Gmsh has said what is wrong. It does so of kinds of elements that it knows the
+ * number of and no more; not where memory is out. */
+bool gmsh_says_why(void);
+
 #endif

@@ -81,6 +81,8 @@ static tm_status write_run(int fd, int type, gmsh_record record, const size_t *t
     size_t locals = 0;
     gmshModelMeshGetElementProperties(type, &name, &dimension, &order, &each, &local,
                                       &locals, &primary, &failed);
+    if (failed && !gmsh_says_why())
+        return gmsh_fail(TM_ERROR_SYSTEM, error);
     const int corners = failed ? 0 : corners_of(name);
     tm_status status = TM_OK;
     if (corners > 0 && corners <= each && record.count * (size_t)each == nodes) {
