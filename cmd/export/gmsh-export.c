@@ -2,6 +2,7 @@
 /* gmsh-export: a stream as a mesh in a format that Gmsh writes. */
 #include "../common/gmsh/gmsh_names.h"
 #include "../common/input/left_out.h"
+#include "../common/input/rounded.h"
 #include "../common/input/mesh_input.h"
 
 #include "../../lib/element/shape.h"
@@ -207,6 +208,8 @@ int main(int argc, char **argv)
     refuse_cells(&plan);
     refuse_numbers(&plan);
     leave_out(&stream, &plan);
+    if (!f.binary)
+        rounded_note(&f, &stream, gmsh_output_formats[format].digits);
     filter_stage(&f, "writing by Gmsh");
     if (gmsh_write(&text, &plan, format, f.binary, &error) != TM_OK)
         mesh_input_fail(&f, &error);

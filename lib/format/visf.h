@@ -33,8 +33,10 @@ typedef struct tm_visf_options {
     bool per_cell;   /* each cell has its own polygons */
 } tm_visf_options;
 
+enum { TM_VISF_DIGITS = 9 }; /* significant ones, of a coordinate in text */
+
 /* Appends the main mesh of a stream, as tm_content_of() says, to *text. Coordinates have
- * nine significant digits, or are the nearest floats. Polygons are outward for the first
+ * TM_VISF_DIGITS, or are the nearest floats. Polygons are outward for the first
  * of their two cells, or per cell: then each is there once for each of its cells,
  * outward, cell by cell. Neighbours are the other polygons with an edge in common, per
  * cell those of the same cell. TM_ERROR_INPUT as tm_cell_faces_find(), or where a

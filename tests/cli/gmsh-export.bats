@@ -439,3 +439,16 @@ END
     run -3 --separate-stderr gmsh-export a.msh b.tm
     [[ "$stderr" == *'b.tm: holds polyhedra (.cell), but gmsh-export takes points'* ]]
 }
+
+@test "corners that are one in the digits of a format are told" {
+    printf '%s\n' 'termesh 1' .node '4 3 0 0' '0 1e6 0 0' '1 1000000.001 0 0' '2 1e6 1 0' \
+        '3 1e6 0 1' .ele '1 4 0' '0 0 1 2 3' .end >far.tm
+    for format in bdf key mesh msh; do
+        run -0 --separate-stderr gmsh-export "far.$format" far.tm
+        if [ "$format" = bdf ]; then
+            [ "$stderr" = 'gmsh-export: far.tm: 1 of 1 tetrahedra have two corners that are one in the 9 digits of the file' ]
+        else
+            [ "$stderr" = "" ]
+        fi
+    done
+}

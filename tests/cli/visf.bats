@@ -345,3 +345,24 @@ END
     grep -x '2 1.5 1' half.visf
     env LOCPATH="$(comma_locale)" LC_ALL=comma visf-import half.visf | grep -x '11 2 1.5 1'
 }
+
+@test "corners that are one in nine digits, or in floats, are told" {
+    # 1e-3 apart at 1e6, and at 0; -0 is 0
+    for at in 1000000 0 -0; do
+        printf '%s\n' 'termesh 1' .node '4 3 0 0' "0 $at $at $at" "1 ${at#-}.001 $at $at" \
+            "2 $at ${at#-}.001 $at" "3 $at $at ${at#-}.001" .ele '1 4 0' '0 0 1 2 3' .end >"$at.tm"
+    done
+    run -0 --separate-stderr visf-export 1000000.tm
+    [ "$stderr" = \
+        'visf-export: 1000000.tm: 1 of 1 tetrahedra have two corners that are one in the 9 digits of the file' ]
+    run -0 --separate-stderr visf-export --binary big -o out.visf 1000000.tm
+    [ "$stderr" = "visf-export: 1000000.tm: 1 of 1 tetrahedra have two corners that \
+are one in the 32-bit floats of the file" ]
+    polylla3d -q 1000000.tm >cells.tm
+    run -0 --separate-stderr visf-export cells.tm
+    [[ "$stderr" == *'4 of 4 facets have two corners'* ]]
+    for at in 0 -0; do
+        run -0 --separate-stderr visf-export "./$at.tm"
+        [ "$stderr" = "" ]
+    done
+}

@@ -31,19 +31,20 @@ enum {
 enum { FIELD_OF_8 = 99999999, FIELD_OF_9 = 999999999, BELOW_PART = 999999 };
 
 const gmsh_output_format gmsh_output_formats[GMSH_OUTPUTS] = {
-    [GMSH_MSH4] = {"msh4", "msh41", true, true, ALL, INT32_MAX, SIZE_MAX},
-    [GMSH_MSH40] = {"msh40", "msh40", false, true, ALL, INT32_MAX, SIZE_MAX},
-    [GMSH_MSH2] = {"msh2", "msh22", true, true, ALL, INT32_MAX, SIZE_MAX},
-    [GMSH_MSH1] = {"msh1", "msh1", false, true, ALL, INT32_MAX, SIZE_MAX},
-    [GMSH_TO_MEDIT] = {"mesh", "mesh", false, false, TET | HEX, INT32_MAX, SIZE_MAX},
-    [GMSH_TO_INP] = {"inp", "inp", false, false, TET | WEDGE | HEX, INT32_MAX, SIZE_MAX},
-    [GMSH_TO_BDF] = {"bdf", "bdf", false, false, ALL, FIELD_OF_8, FIELD_OF_8},
-    [GMSH_TO_UNV] = {"unv", "unv", false, false, TET | WEDGE | HEX, FIELD_OF_9,
+    [GMSH_MSH4] = {"msh4", "msh41", true, true, 16, ALL, INT32_MAX, SIZE_MAX},
+    [GMSH_MSH40] = {"msh40", "msh40", false, true, 16, ALL, INT32_MAX, SIZE_MAX},
+    [GMSH_MSH2] = {"msh2", "msh22", true, true, 16, ALL, INT32_MAX, SIZE_MAX},
+    [GMSH_MSH1] = {"msh1", "msh1", false, true, 16, ALL, INT32_MAX, SIZE_MAX},
+    [GMSH_TO_MEDIT] = {"mesh", "mesh", false, false, 14, TET | HEX, INT32_MAX, SIZE_MAX},
+    [GMSH_TO_INP] = {"inp", "inp", false, false, 14, TET | WEDGE | HEX, INT32_MAX,
+                     SIZE_MAX},
+    [GMSH_TO_BDF] = {"bdf", "bdf", false, false, 9, ALL, FIELD_OF_8, FIELD_OF_8},
+    [GMSH_TO_UNV] = {"unv", "unv", false, false, 17, TET | WEDGE | HEX, FIELD_OF_9,
                      FIELD_OF_9},
-    [GMSH_TO_SU2] = {"su2", "su2", false, false, ALL, INT32_MAX, SIZE_MAX},
-    [GMSH_TO_KEY] = {"key", "key", false, false, ALL, BELOW_PART, SIZE_MAX},
-    [GMSH_TO_MED] = {"med", "med", false, true, ALL, INT32_MAX, SIZE_MAX},
-    [GMSH_TO_CGNS] = {"cgns", "cgns", false, true, ALL, INT32_MAX, SIZE_MAX},
+    [GMSH_TO_SU2] = {"su2", "su2", false, false, 16, ALL, INT32_MAX, SIZE_MAX},
+    [GMSH_TO_KEY] = {"key", "key", false, false, 12, ALL, BELOW_PART, SIZE_MAX},
+    [GMSH_TO_MED] = {"med", "med", false, true, 17, ALL, INT32_MAX, SIZE_MAX},
+    [GMSH_TO_CGNS] = {"cgns", "cgns", false, true, 17, ALL, INT32_MAX, SIZE_MAX},
 };
 
 gmsh_output gmsh_output_of(const char *name)

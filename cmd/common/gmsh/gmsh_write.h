@@ -31,6 +31,7 @@ typedef struct gmsh_output_format {
     const char *suffix; /* by which Gmsh tells it */
     bool has_binary;
     bool has_points;
+    int digits;       /* of a coordinate, in text */
     unsigned shapes;  /* bit k: cells of k nodes */
     int32_t most;     /* the highest number of a group: above, numbers run together */
     size_t most_rows; /* of nodes and of elements, likewise */
