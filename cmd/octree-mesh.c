@@ -258,9 +258,9 @@ static void note_topology(const filter *f, const tm_surface *s,
         snprintf(place, sizeof place, ", as near (%g, %g, %g)", at[0], at[1], at[2]);
     filter_note(f,
                 "the boundary has %zu components and Euler number %lld, the surface %zu "
-                "and %lld: a part or a gap of it is too thin for this level%s",
+                "and %lld: %sa part or a gap of it is too thin for this level%s",
                 r->components, (long long)r->euler, s->components, (long long)s->euler,
-                place);
+                s->touching ? "parts that touch are joined, or " : "", place);
 }
 
 /* What of the surface could not be made, and where; leaf_side is that of the smallest

@@ -661,7 +661,7 @@ END
     awk 'NR > 2 && NR <= 10 { print $1 + 1, $2 + 1, $3; next } { print }' box.off >beside.off
     together box.off beside.off >edge.off
     run -0 --separate-stderr octree-mesh -s 3 --json count.json -o mesh.tm edge.off
-    [[ "${stderr_lines[0]}" == 'octree-mesh: edge.off: parts of the surface touch at 2 nodes, and along edges between these: they are apart there, each with nodes of its own' ]]
+    [[ "${stderr_lines[0]}" == 'octree-mesh: edge.off: parts of the surface touch at 2 nodes, and along edges between these: they count as apart there, and each has nodes of its own' ]]
     [ "$(json count.json components)" = 2 ]
     # a sheet in a cube
     printf 'OFF\n4 1 0\n0.3 0.3 0.5\n0.7 0.3 0.5\n0.7 0.7 0.5\n0.3 0.7 0.5\n4 0 1 2 3\n' \

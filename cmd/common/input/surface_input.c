@@ -232,7 +232,7 @@ static void note_mending(const filter *f, const tm_surface *s)
         filter_note(
             f,
             "%s: parts of the surface touch at %zu nodes, and along edges between "
-            "these: they are apart there, each with nodes of its own",
+            "these: they count as apart there, and each has nodes of its own",
             name, s->touching);
     note_rough(f, s, name);
     if (s->crossings)
