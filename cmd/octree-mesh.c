@@ -310,6 +310,11 @@ static void note_losses(const filter *f, const tm_surface *s,
                     r->off_surface, s->walls ? "some of them" : "them");
     if (r->invalid)
         filter_note(f, "%zu elements are inverted", r->invalid);
+    if (r->not_positive)
+        filter_note(f,
+                    "%zu elements are inverted inside, though not at a corner, where "
+                    "walls meet (octree-repair mends them)",
+                    r->not_positive);
 }
 
 /* Whether several ranks can make the mesh: not where regions are within others, or meet
@@ -383,6 +388,7 @@ static void write_json(filter *f, const report *r)
                                          ROW("boundary_nodes", boundary_nodes),
                                          ROW("held_back", mesh.off_surface),
                                          ROW("inverted", mesh.invalid),
+                                         ROW("not_positive", mesh.not_positive),
                                          ROW("lost_octants", mesh.lost),
                                          ROW("rounded_tips", mesh.rounded),
                                          ROW("dropped_pieces", mesh.dropped),

@@ -541,6 +541,27 @@ for f in faces:
     print(3, *f)'
 }
 
+@test "rough surfaces: every element is positive inside, too" {
+    for seed in 1 3 6 7 10 13; do
+        revolved >noisy.off <<END
+import math, random
+random.seed($seed)
+around, rings = 24, 12
+nodes = [(0, 0, 1), (0, 0, -1)]
+for r in range(1, rings):
+    for a in range(around):
+        u, w = math.pi * r / rings, 2 * math.pi * a / around
+        d = 1 + 0.2 * random.uniform(-1, 1)
+        nodes.append((d * math.sin(u) * math.cos(w), d * math.sin(u) * math.sin(w),
+                      d * math.cos(u)))
+END
+        for level in 4 5; do
+            octree-mesh -q -s "$level" noisy.off >noisy.tm
+            jens-stats --quiet --certify noisy.tm
+        done
+    done
+}
+
 @test "a rough body beside it leaves a smooth one its edges, and a note says so" {
     # a sphere of many triangles whose nodes go in and out
     revolved >noisy.off <<'END'

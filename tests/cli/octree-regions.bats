@@ -307,6 +307,21 @@ END
     [ "$(json report.json held_back)" -lt 200 ]
 }
 
+@test "where walls meet, elements inverted inside are told; octree-repair mends them" {
+    for turn in 0 0.2; do
+        tetrahedra "$turn" >walls.off
+        run -0 --separate-stderr octree-mesh -s 4 --json report.json -o walls.tm walls.off
+        count=$(json report.json not_positive)
+        [ "$count" -gt 0 ]
+        [[ "$stderr" == *"$count elements are inverted inside, though not at a corner"* ]]
+        run -1 jens-stats --quiet --certify walls.tm
+        [[ "$output" == *"not positive: $count "* ]]
+        run octree-repair -q -t 0.2 -o mended.tm walls.tm
+        [ "$status" -le 1 ]
+        jens-stats --quiet --certify --fail-below 0.2 mended.tm
+    done
+}
+
 @test "walls at sharp angles: with the regions of centres where that holds fewer nodes" {
     # 981 nodes are held, and the worst J_ENS is 0.1375, where they are laid out
     tetrahedra 0.2 >walls.off

@@ -24,6 +24,7 @@ typedef struct tm_octree_mesh_report {
     double feature_lost_at[3];
     size_t off_surface;  /* boundary nodes that are not on the surface */
     size_t invalid;      /* elements with J_ENS <= 0 */
+    size_t not_positive; /* others that are not certified (certify.h); where walls meet */
     double worst;        /* J_ENS; where walls meet */
     size_t regions;      /* 0 where none is inside of another */
     size_t regions_lost; /* shells inside of others that have none, or around such */

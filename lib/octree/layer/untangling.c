@@ -4,6 +4,7 @@
 
 #include "../../base/array.h"
 #include "../../base/parallel.h"
+#include "../../element/certify.h"
 #include "../../element/shape.h"
 #include "../../geom/vector.h"
 #include "../../optimise/optimise_surface.h"
@@ -18,14 +19,18 @@ enum { HALVES = 5 };
 /* An element below is not taken for valid: it must be so in other programs too. */
 static const double least_valid = 1e-6;
 
+/* What is asked of an element. */
+typedef bool element_test(const tm_mixed_mesh *mesh, size_t e);
+
 typedef struct {
     tm_mixed_mesh *mesh;
+    element_test *passes;
     const tm_mesh_share *share; /* NULL: this is the whole mesh */
     const double (*base)[3];
     uint8_t *steps;  /* [nodes]: how often it went half of its way back */
     bool *changed;   /* [nodes]: in the last round */
     bool *to_change; /* [nodes]: in this one */
-    size_t invalid;  /* elements whose nodes are all on the lattice */
+    size_t failed;   /* elements whose nodes are all on the lattice */
 } retreat;
 
 /* Whether an element's faces, each a fan of triangles, enclose a negative volume: its
@@ -80,6 +85,43 @@ static bool is_valid(const tm_mixed_mesh *mesh, size_t e)
     return tm_mixed_jens(mesh, e) >= least_valid && !is_turned(mesh, e);
 }
 
+/* The same, and positive all over it, which the corners of a hexahedron do not say. */
+static bool is_certified(const tm_mixed_mesh *mesh, size_t e)
+{
+    return is_valid(mesh, e) &&
+           tm_certify(mesh->start[e + 1] - mesh->start[e], (const double(*)[3])mesh->xyz,
+                      mesh->item + mesh->start[e]) == TM_POSITIVE;
+}
+
+typedef struct {
+    const tm_mixed_mesh *mesh;
+    element_test *passes;
+    size_t first;
+    size_t failed;
+} failed_counter;
+
+static void count_chunk(void *context, size_t first, size_t past)
+{
+    failed_counter *c = context;
+    size_t failed = 0;
+    for (size_t e = first; e < past; e++)
+        failed += !c->passes(c->mesh, c->first + e);
+    if (failed > 0)
+        __atomic_fetch_add(&c->failed, failed, __ATOMIC_RELAXED);
+}
+
+/* Elements of all ranks that do not pass. */
+static size_t count_failed(const tm_octree_mesh *m, element_test *passes)
+{
+    const tm_mixed_mesh *mesh = &m->assembly.mesh;
+    failed_counter c = {
+        .mesh = mesh, .passes = passes, .first = m->share ? m->share->elements.first : 0};
+    const size_t past = m->share ? m->share->elements.past : mesh->elements;
+    tm_parallel_runs(mesh->threads, past - c.first, TM_CHUNK, count_chunk, &c);
+    tm_ranks_sum(&c.failed, 1);
+    return c.failed;
+}
+
 static bool has_changed(const retreat *r, size_t e)
 {
     for (size_t i = r->mesh->start[e]; i < r->mesh->start[e + 1]; i++)
@@ -88,7 +130,7 @@ static bool has_changed(const retreat *r, size_t e)
     return false;
 }
 
-/* Marks the nodes of an invalid element that can go back; false where none can. */
+/* Marks the nodes of an element that can go back; false where none can. */
 static bool mark_nodes(retreat *r, size_t e)
 {
     bool any = false;
@@ -110,7 +152,7 @@ static void restore(retreat *r, size_t n)
         xyz[i] = r->steps[n] > HALVES ? r->base[n][i] : (xyz[i] + r->base[n][i]) / 2;
 }
 
-/* One round over the elements at nodes that changed; false when all are valid. */
+/* One round over the elements at nodes that changed; false when all pass. */
 static bool take_back(retreat *r)
 {
     const tm_mixed_mesh *mesh = r->mesh;
@@ -118,12 +160,12 @@ static bool take_back(retreat *r)
     const size_t past = r->share ? r->share->elements.past : mesh->elements;
     bool any = false;
     for (size_t e = first; e < past; e++) {
-        if (!has_changed(r, e) || is_valid(mesh, e))
+        if (!has_changed(r, e) || r->passes(mesh, e))
             continue;
         if (mark_nodes(r, e))
             any = true;
         else
-            r->invalid++;
+            r->failed++;
     }
     if (r->share)
         tm_mesh_ghosts_mark(&r->share->ghosts, r->to_change);
@@ -141,17 +183,21 @@ static void retreat_all(tm_octree_mesh *m, retreat *r)
     memset(r->changed, true, r->mesh->nodes);
     for (bool more = true; more;)
         more = take_back(r);
-    tm_ranks_sum(&r->invalid, 1);
-    m->report.invalid = r->invalid;
+    tm_ranks_sum(&r->failed, 1);
+    m->report.invalid = r->failed;
     for (size_t s = 0; s < m->boundary.nodes; s++)
         m->off_surface[s] |= r->steps[m->assembly.outer + s] > 0;
 }
 
-static tm_status hold_back(tm_octree_mesh *m, const tm_octree *octree, tm_error *error)
+/* Takes nodes of elements that do not pass back to the lattice, as far as they have to.
+ */
+static tm_status hold_back(tm_octree_mesh *m, const tm_octree *octree,
+                           element_test *passes, tm_error *error)
 {
     const size_t nodes = m->assembly.mesh.nodes;
     double(*base)[3] = tm_new(nodes, sizeof *base);
     retreat r = {.mesh = &m->assembly.mesh,
+                 .passes = passes,
                  .share = m->share,
                  .base = (const double(*)[3])base,
                  .steps = calloc(nodes + 1, 1),
@@ -225,28 +271,6 @@ typedef struct {
     double (*kept)[3]; /* [nodes] */
 } releaser;
 
-typedef struct {
-    const tm_mixed_mesh *mesh;
-    size_t invalid;
-} invalid_counter;
-
-static void count_chunk(void *context, size_t first, size_t past)
-{
-    invalid_counter *c = context;
-    size_t invalid = 0;
-    for (size_t e = first; e < past; e++)
-        invalid += !is_valid(c->mesh, e);
-    if (invalid > 0)
-        __atomic_fetch_add(&c->invalid, invalid, __ATOMIC_RELAXED);
-}
-
-static size_t count_invalid(const tm_mixed_mesh *mesh)
-{
-    invalid_counter c = {.mesh = mesh};
-    tm_parallel_runs(mesh->threads, mesh->elements, TM_CHUNK, count_chunk, &c);
-    return c.invalid;
-}
-
 /* Fills ring[] up to so many: the nodes of invalid elements are the first one. */
 static void find_rings(const releaser *r, int rings)
 {
@@ -285,7 +309,7 @@ static tm_status try_rings(releaser *r, const tm_boundary *boundary,
     enum { RINGS = 4, MANY = 100 };
     tm_mixed_mesh *mesh = &r->m->assembly.mesh;
     const size_t bytes = mesh->nodes * sizeof *mesh->xyz;
-    size_t before = count_invalid(mesh);
+    size_t before = count_failed(r->m, is_valid);
     tm_optimise_report report;
     for (int rings = 1; before > 0 && rings <= RINGS; rings++) {
         memcpy(r->kept, mesh->xyz, bytes);
@@ -295,7 +319,7 @@ static tm_status try_rings(releaser *r, const tm_boundary *boundary,
             tm_mixed_optimise(mesh, r->rule, boundary, options, &report, error);
         if (status != TM_OK)
             return status;
-        const size_t after = count_invalid(mesh);
+        const size_t after = count_failed(r->m, is_valid);
         if (after > before)
             memcpy(mesh->xyz, r->kept, bytes);
         if (after > MANY && after > before / 2)
@@ -384,8 +408,8 @@ static tm_status bring_back(tm_octree_mesh *m, const tm_octree *octree,
         status = improve(m, rule, boundary, progress, &worst, error);
     for (size_t s = 0; s < m->boundary.nodes; s++)
         m->off_surface[s] = rule[m->assembly.outer + s].off_surface;
-    if (status == TM_OK && count_invalid(mesh) > 0)
-        status = hold_back(m, octree, error);
+    if (status == TM_OK && count_failed(m, is_valid) > 0)
+        status = hold_back(m, octree, is_valid, error);
     return status;
 }
 
@@ -418,6 +442,18 @@ static tm_status try_to_bring_back(tm_octree_mesh *m, const tm_octree *octree,
     return status;
 }
 
+/* Nodes of elements that are not positive inside go back towards the lattice, too; not
+ * where walls meet: much goes back there where one node does. */
+static tm_status certify(tm_octree_mesh *m, const tm_octree *octree,
+                         const tm_surface *surface, tm_error *error)
+{
+    m->report.not_positive = count_failed(m, is_certified) - m->report.invalid;
+    if (m->report.not_positive == 0 || surface->walls)
+        return TM_OK;
+    m->report.not_positive = 0;
+    return hold_back(m, octree, is_certified, error);
+}
+
 tm_status tm_untangle_layer(tm_octree_mesh *mesh, const tm_octree *octree,
                             const tm_surface *surface, const tm_progress *progress,
                             tm_error *error)
@@ -432,17 +468,19 @@ tm_status tm_untangle_layer(tm_octree_mesh *mesh, const tm_octree *octree,
     bool valid = status != TM_OK || (worst >= least_valid && !any_is_turned(mesh));
     if (!valid && surface->walls) {
         status = release(mesh, octree, rule, &boundary, progress, error);
-        valid = status != TM_OK || count_invalid(&mesh->assembly.mesh) == 0;
+        valid = status != TM_OK || count_failed(mesh, is_valid) == 0;
         if (status == TM_OK && valid) {
             status = improve(mesh, rule, &boundary, progress, &worst, error);
-            valid = status != TM_OK || count_invalid(&mesh->assembly.mesh) == 0;
+            valid = status != TM_OK || count_failed(mesh, is_valid) == 0;
         }
     }
     if (!valid)
-        status = hold_back(mesh, octree, error);
+        status = hold_back(mesh, octree, is_valid, error);
     if (status == TM_OK && surface->walls && mesh->report.invalid == 0 &&
         count_off_surface(mesh) > 0)
         status = try_to_bring_back(mesh, octree, rule, &boundary, progress, error);
+    if (status == TM_OK)
+        status = certify(mesh, octree, surface, error);
     free(rule);
     mesh->report.off_surface = count_off_surface(mesh);
     return status;
