@@ -334,6 +334,22 @@ static void test_defects(void **state)
     assert_false(defects_of("OFF\n4 0 0\n0 0 0\n1 0 0\n0 1 0\n.5 .5 1e-300\n").flat);
 }
 
+/* Bytes behind the last triangle are such where it has a unit normal, or none; each
+ * component counts. */
+static void test_stl_with_more_behind(void **state)
+{
+    (void)state;
+    enum { HEADER = 80, TRIANGLE = 50, MORE = 7 };
+    for (int k = 0; k < 3; k++)
+        for (int half = 0; half <= 2; half++) {
+            char bytes[HEADER + 4 + TRIANGLE + MORE] = "";
+            const float length = (float)half / 2;
+            bytes[HEADER] = 1;
+            memcpy(bytes + HEADER + 4 + 4 * k, &length, sizeof length);
+            assert_int_equal(tm_stl_is_binary(bytes, sizeof bytes), half != 1);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -345,6 +361,7 @@ int main(void)
         cmocka_unit_test(test_messages),
         cmocka_unit_test(test_stl_that_is_cut_short_says_so),
         cmocka_unit_test(test_defects),
+        cmocka_unit_test(test_stl_with_more_behind),
     };
     make_samples(samples);
     return cmocka_run_group_tests(tests, NULL, NULL);

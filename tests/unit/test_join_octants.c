@@ -227,9 +227,39 @@ static void random_solids(void **state)
     assert_true(found < filled);
 }
 
+/* An attribute that is no place of the first node says of none where it is: inner nodes
+ * move as without it. */
+static void other_attribute(void **state)
+{
+    (void)state;
+    size_t levelled = 0;
+    for (int round = 0; round < ROUNDS; round++) {
+        solid s = {0};
+        tm_stream stream;
+        tm_error error;
+        tm_octant_join join;
+        if (make_solid(&s)) {
+            tm_stream_init(&stream);
+            assert_ok(tm_octree_mesh_to_stream(&s.mesh, &s.octree, &s.surface, false,
+                                               &stream, &error),
+                      &error);
+            tm_block *node = tm_stream_find(&stream, ".node");
+            assert_int_equal(node->attributes, 1);
+            for (size_t v = 0; v < node->count; v++)
+                node->attribute[v] = v == 0 ? 0.5 : 3;
+            assert_ok(tm_join_octants(&stream, &join, &error), &error);
+            levelled += join.levelled;
+            tm_stream_free(&stream);
+        }
+        free_solid(&s);
+    }
+    assert_true(levelled > 0);
+}
+
 int main(void)
 {
     random_start();
-    const struct CMUnitTest tests[] = {cmocka_unit_test(random_solids)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(random_solids),
+                                       cmocka_unit_test(other_attribute)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

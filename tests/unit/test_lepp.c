@@ -330,7 +330,7 @@ static void test_no_meshes(void **state)
     static const uint32_t three[][4] = {{0, 1, 2, 3}, {0, 1, 2, 4}, {0, 1, 2, 7}};
     static const uint32_t overlap[][4] = {{0, 1, 2, 3}, {0, 1, 2, 4}};
     assert_refused(twice, 1, "names a node twice");
-    assert_refused(three, 3, "one face in common");
+    assert_refused(three, 3, "tetrahedra 1, 2 and 3 have one face in common");
     assert_refused(overlap, 2, "same side");
 }
 
@@ -578,6 +578,38 @@ static void test_fixed_paths(void **state)
     }
 }
 
+/* The node within an octahedron goes to its middle, which is a third better for the worst
+ * tetrahedron. */
+static void test_smoothing(void **state)
+{
+    (void)state;
+    static const double xyz[][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0},    {0, -1, 0},
+                                    {0, 0, 1}, {0, 0, -1}, {0.2, 0.2, 0}};
+    static const uint32_t tet[][4] = {{6, 0, 2, 4}, {6, 2, 1, 4}, {6, 1, 3, 4},
+                                      {6, 3, 0, 4}, {6, 2, 0, 5}, {6, 1, 2, 5},
+                                      {6, 3, 1, 5}, {6, 0, 3, 5}};
+    tm_stream stream;
+    tm_tet_mesh mesh;
+    tm_error error = {0};
+    make_stream(&stream, xyz, sizeof xyz / sizeof *xyz, tet, sizeof tet / sizeof *tet);
+    if (tm_tet_mesh_from_stream(&mesh, &stream, 1, &error) != TM_OK)
+        fail_msg("%s", error.what);
+    const double before = worst_quality(&mesh, TM_MEASURE_DIHEDRAL);
+    tm_lepp_options o = usual;
+    o.angle = 89;
+    o.sweeps = TM_SWEEP_SMOOTH;
+    o.stop = TM_LEPP_PASSES;
+    o.passes = 1;
+    o.factor = 100; /* no star gains as much */
+    const tm_lepp_report report = improve(&mesh, &o);
+    const double after = worst_quality(&mesh, TM_MEASURE_DIHEDRAL);
+    assert_true(tm_lepp_swept(&report.smooth) > 0);
+    assert_true(after > 1.1 * before && after < 2 * before);
+    assert_true(tm_norm(mesh.xyz[6]) < 0.01);
+    tm_tet_mesh_free(&mesh);
+    tm_stream_free(&stream);
+}
+
 int main(void)
 {
     random_start();
@@ -596,6 +628,7 @@ int main(void)
                                        cmocka_unit_test(test_field_of_sizes),
                                        cmocka_unit_test(test_sizes_out_of_reach),
                                        cmocka_unit_test(test_bisection_keeps_angles),
-                                       cmocka_unit_test(test_fixed_paths)};
+                                       cmocka_unit_test(test_fixed_paths),
+                                       cmocka_unit_test(test_smoothing)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Polyhedra out of tetrahedra: the complete test for balls against a slow one, and what
  * every partition of small random meshes promises. */
+#include "../../lib/poly/correction.h"
 #include "../../lib/poly/facets.h"
 #include "../../lib/geom/kernel.h"
 #include "../../lib/poly/partition.h"
@@ -174,6 +175,38 @@ static void test_number_used_again(void **state)
     tm_shelling_free(&s);
     tm_tet_mesh_free(&mesh);
     tm_stream_free(&stream);
+}
+
+/* Cells that were taken apart for their gains leave none to take apart. */
+static void test_calm(void **state)
+{
+    (void)state;
+    size_t taken = 0;
+    for (int k = 0; k < 20; k++) {
+        tm_stream stream;
+        tm_tet_mesh mesh;
+        tm_error error;
+        make_mesh(&mesh, &stream, GRID, 0.8, false);
+        uint32_t *cell = malloc(mesh.slots * sizeof *cell);
+        uint32_t *kept = malloc(mesh.slots * sizeof *kept);
+        assert_true(cell && kept);
+        const size_t most = 1 + mesh.slots / 3;
+        size_t cells = most;
+        for (uint32_t t = 0; t < mesh.slots; t++)
+            cell[t] = t < most ? t : random_below((unsigned)most);
+        assert_int_equal(tm_calm_cells(&mesh, cell, &cells, &error), TM_OK);
+        taken += cells - most;
+        const size_t calm = cells;
+        memcpy(kept, cell, mesh.slots * sizeof *cell);
+        assert_int_equal(tm_calm_cells(&mesh, cell, &cells, &error), TM_OK);
+        assert_int_equal(cells, calm);
+        assert_memory_equal(cell, kept, mesh.slots * sizeof *cell);
+        free(kept);
+        free(cell);
+        tm_tet_mesh_free(&mesh);
+        tm_stream_free(&stream);
+    }
+    assert_true(taken > 0);
 }
 
 /* The mesh is the same in another order. */
@@ -364,9 +397,9 @@ int main(void)
 {
     random_start();
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_simple), cmocka_unit_test(test_number_used_again),
-        cmocka_unit_test(test_sort),   cmocka_unit_test(test_partitions),
-        cmocka_unit_test(test_absorb),
+        cmocka_unit_test(test_simple),     cmocka_unit_test(test_number_used_again),
+        cmocka_unit_test(test_calm),       cmocka_unit_test(test_sort),
+        cmocka_unit_test(test_partitions), cmocka_unit_test(test_absorb),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
