@@ -6,6 +6,9 @@
 #include "../../lib/examine/mixed_volume.h"
 #include "../../lib/octree/interior/region_layout.h"
 #include "../../lib/octree/interior/region_leaves.h"
+#include "../../lib/octree/interior/node_lattice.h"
+#include "../../lib/octree/interior/wall_refinement.h"
+#include "../../lib/octree/interior/wall_sectors.h"
 #include "../../lib/octree/layer/adaptive_refinement.h"
 #include "../../lib/octree/layer/octree_mesh_parts.h"
 #include "octree_fixture.h"
@@ -367,6 +370,82 @@ static void test_meshes(void **state)
     }
 }
 
+/* Where leaves are larger than those that a segment runs through, or runs beside: how
+ * many points of it. */
+static size_t count_larger(const tm_octree *octree, const double a[3], const double b[3])
+{
+    enum { POINTS = 20 };
+    tm_node_lattice lattice;
+    tm_error error;
+    size_t count = 0;
+    assert_ok(tm_node_lattice_make(&lattice, octree, &error), &error);
+    for (int k = 0; k <= POINTS; k++)
+        for (int way = 0; way < 27; way++) {
+            const int step[3] = {way % 3 - 1, way / 3 % 3 - 1, way / 9 - 1};
+            double at[3], beside[3];
+            for (int i = 0; i < 3; i++)
+                at[i] = a[i] + k * (b[i] - a[i]) / POINTS;
+            const uint32_t leaf = tm_node_lattice_leaf_at(&lattice, at);
+            if (leaf == TM_NONE)
+                continue;
+            for (int i = 0; i < 3; i++)
+                beside[i] = at[i] + step[i] * tm_leaf_side(octree, &octree->leaf[leaf]);
+            const uint32_t next = tm_node_lattice_leaf_at(&lattice, beside);
+            count +=
+                next != TM_NONE && octree->leaf[next].level < octree->leaf[leaf].level;
+        }
+    tm_node_lattice_free(&lattice);
+    return count;
+}
+
+/* The same of all curves where walls meet sharply. */
+static size_t count_larger_at_walls(const tm_octree *octree, const tm_surface *surface)
+{
+    tm_wall_sectors sectors;
+    tm_error error;
+    size_t count = 0;
+    assert_ok(tm_wall_sectors_find(&sectors, surface, &error), &error);
+    for (size_t c = 0; c < surface->curves; c++)
+        for (size_t i = surface->curve_start[c];
+             sectors.sharp[c] && i + 1 < surface->curve_start[c + 1]; i++)
+            count += count_larger(octree, surface->xyz[surface->curve_node[i]],
+                                  surface->xyz[surface->curve_node[i + 1]]);
+    tm_wall_sectors_free(&sectors);
+    return count;
+}
+
+/* Blocks that lean over: along all curves where walls meet sharply leaves are of one size
+ * then. */
+static void test_refine(void **state)
+{
+    (void)state;
+    const tm_surface_options options = {
+        .feature_angle = TM_FEATURE_ANGLE, .regions = true, .walls = true};
+    size_t before = 0;
+    for (int round = 0; round < ROUNDS; round++) {
+        const tm_octree_rule rule = {.kind = TM_RULE_SURFACE, .level = 4};
+        unsigned label[CUBES];
+        tm_polygon_surface p;
+        tm_surface surface;
+        tm_octree octree;
+        tm_error error;
+        make_surface(&surface, label, &p);
+        tm_surface_free(&surface);
+        for (size_t v = 0; v < p.nodes; v++)
+            p.xyz[v][0] += 0.6 * p.xyz[v][1];
+        assert_ok(tm_surface_build(&surface, &p, &options, &error), &error);
+        assert_ok(tm_octree_build(&octree, &surface, &rule, 1, &error), &error);
+        before += count_larger_at_walls(&octree, &surface);
+        assert_ok(tm_octree_refine_walls(&octree, &surface, &error), &error);
+        assert_ok(tm_octree_check(&octree, &surface, &error), &error);
+        assert_int_equal(count_larger_at_walls(&octree, &surface), 0);
+        tm_octree_free(&octree);
+        tm_surface_free(&surface);
+        tm_polygon_surface_free(&p);
+    }
+    assert_true(before > 0);
+}
+
 /* The ends of patterns: each number is that of one direction and the octants there. */
 static void test_ends(void **state)
 {
@@ -396,7 +475,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_regions), cmocka_unit_test(test_leaves),
         cmocka_unit_test(test_layout),  cmocka_unit_test(test_meshes),
-        cmocka_unit_test(test_ends),
+        cmocka_unit_test(test_refine),  cmocka_unit_test(test_ends),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
