@@ -541,20 +541,25 @@ for f in faces:
     print(3, *f)'
 }
 
-@test "rough surfaces: every element is positive inside, too" {
-    for seed in 1 3 6 7 10 13; do
-        revolved >noisy.off <<END
+# noisy_sphere SEED AROUND RINGS BY: its nodes are in and out by up to so much.
+noisy_sphere() {
+    revolved <<END
 import math, random
-random.seed($seed)
-around, rings = 24, 12
+random.seed($1)
+around, rings = $2, $3
 nodes = [(0, 0, 1), (0, 0, -1)]
 for r in range(1, rings):
     for a in range(around):
         u, w = math.pi * r / rings, 2 * math.pi * a / around
-        d = 1 + 0.2 * random.uniform(-1, 1)
+        d = 1 + $4 * random.uniform(-1, 1)
         nodes.append((d * math.sin(u) * math.cos(w), d * math.sin(u) * math.sin(w),
                       d * math.cos(u)))
 END
+}
+
+@test "rough surfaces: every element is positive inside, too" {
+    for seed in 1 3 6 7 10 13; do
+        noisy_sphere "$seed" 24 12 0.2 >noisy.off
         for level in 4 5; do
             octree-mesh -q -s "$level" noisy.off >noisy.tm
             jens-stats --quiet --certify noisy.tm
@@ -563,19 +568,7 @@ END
 }
 
 @test "a rough body beside it leaves a smooth one its edges, and a note says so" {
-    # a sphere of many triangles whose nodes go in and out
-    revolved >noisy.off <<'END'
-import math, random
-random.seed(5)
-around, rings = 60, 30
-nodes = [(0, 0, 1), (0, 0, -1)]
-for r in range(1, rings):
-    for a in range(around):
-        u, w = math.pi * r / rings, 2 * math.pi * a / around
-        d = 1 + 0.05 * random.uniform(-1, 1)
-        nodes.append((d * math.sin(u) * math.cos(w), d * math.sin(u) * math.sin(w),
-                      d * math.cos(u)))
-END
+    noisy_sphere 5 60 30 0.05 >noisy.off
     run -0 --separate-stderr octree-mesh -s 3 -o rough.tm noisy.off
     [ "$stderr" = 'octree-mesh: noisy.off: the surface is rough all over: no edge of it is kept as sharp' ]
     awk 'NR > 2 && NR <= 10 { print $1 * 2 + 2, $2 * 2 - 1, $3 * 2 - 1; next } { print }' \
