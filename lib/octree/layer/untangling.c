@@ -85,12 +85,17 @@ static bool is_valid(const tm_mixed_mesh *mesh, size_t e)
     return tm_mixed_jens(mesh, e) >= least_valid && !is_turned(mesh, e);
 }
 
-/* The same, and positive all over it, which the corners of a hexahedron do not say. */
+/* Whether the determinant is positive all over it, which the corners of a hexahedron do
+ * not say. */
+static bool is_positive(const tm_mixed_mesh *mesh, size_t e)
+{
+    return tm_certify(mesh->start[e + 1] - mesh->start[e], (const double(*)[3])mesh->xyz,
+                      mesh->item + mesh->start[e]) == TM_POSITIVE;
+}
+
 static bool is_certified(const tm_mixed_mesh *mesh, size_t e)
 {
-    return is_valid(mesh, e) &&
-           tm_certify(mesh->start[e + 1] - mesh->start[e], (const double(*)[3])mesh->xyz,
-                      mesh->item + mesh->start[e]) == TM_POSITIVE;
+    return is_valid(mesh, e) && is_positive(mesh, e);
 }
 
 typedef struct {
@@ -447,10 +452,11 @@ static tm_status try_to_bring_back(tm_octree_mesh *m, const tm_octree *octree,
 static tm_status certify(tm_octree_mesh *m, const tm_octree *octree,
                          const tm_surface *surface, tm_error *error)
 {
-    m->report.not_positive = count_failed(m, is_certified) - m->report.invalid;
-    if (m->report.not_positive == 0 || surface->walls)
+    const size_t failed = count_failed(m, is_positive), invalid = m->report.invalid;
+    if (surface->walls)
+        m->report.not_positive = failed > invalid ? failed - invalid : 0;
+    if (surface->walls || failed == 0)
         return TM_OK;
-    m->report.not_positive = 0;
     return hold_back(m, octree, is_certified, error);
 }
 
