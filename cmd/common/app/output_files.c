@@ -208,6 +208,8 @@ static int open_file(output_files *files, output_file *file)
 {
     struct stat old;
     const bool exists = stat(file->name, &old) == 0;
+    if (!exists && (errno != ENOENT || file->name[0] == '\0'))
+        return -1;
     if (exists && !S_ISREG(old.st_mode))
         return open(file->name, O_WRONLY | O_CLOEXEC);
     file->target = follow_links(file->name);
