@@ -260,6 +260,41 @@ END
     done
 }
 
+@test "mesh-convert: TetGen's files are read together, whichever of them is named" {
+    printf '%s\n' 'termesh 1' .node '4 3 0 1' '1 0 0 0 0' '2 1 0 0 5' '3 0 1 0 5' '4 0 0 1 5' \
+        .ele '1 4 1' '1 1 2 3 4 7' .face '1 1' '1 1 3 2 11' .edge '1 1' '1 1 2 3' \
+        .group '2 0' '1 2 11 bottom' '2 3 7 steel' .end >corner.tm
+    mesh-convert corner.tm corner.node
+    mesh-convert corner.tm packed.ele
+    gzip packed.*
+    for file in corner.node corner.ele packed.node.gz packed.ele.gz; do
+        mesh-convert "$file" again.tm
+        diff corner.tm <(sed '/^#/d' again.tm)
+        mesh-convert "$file" again.vtu
+        vtu-export corner.tm | cmp - again.vtu
+    done
+}
+
+@test "mesh-convert: names that begin with -, a folder's slash, what is packed" {
+    named_cube >cube.tm
+    cp cube.tm ./-o.tm
+    mesh-convert -- -o.tm -q.stl
+    stl-export cube.tm | cmp - ./-q.stl
+    mesh-convert -- -q.stl again.tm
+    surface-import -o expected.tm ./-q.stl
+    cmp again.tm expected.tm
+    cubes >cubes.tm
+    mesh-convert cubes.tm polyMesh/
+    mesh-convert polyMesh/ again.tm
+    openfoam-import polyMesh | cmp - again.tm
+    gzip -c cube.tm >CUBE.TM.GZ
+    mesh-convert CUBE.TM.GZ cube.off
+    off-export cube.tm | cmp - cube.off
+    # what is written is never packed
+    run -2 mesh-convert cube.tm cube.stl.gz
+    [ ! -e cube.stl.gz ]
+}
+
 @test "a solid without a triangle has a name: what is written is read" {
     printf 'solid a name\nendsolid\n' >nothing.stl
     surface-import --no-history nothing.stl >nothing.tm
