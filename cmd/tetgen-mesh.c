@@ -121,6 +121,9 @@ static void add_region(tetgen_parts *parts, const char *text)
     if (!isnan(value[3]) && value[3] != floor(value[3]))
         filter_usage_error(&f, "--region: %g is not whole, as TetGen's regions are",
                            value[3]);
+    if (fabs(value[3]) > INT32_MAX)
+        filter_usage_error(&f, "--region: %.17g is too large a number for TetGen",
+                           value[3]);
     tm_region region = {.attribute = value[3], .max_volume = -1};
     memcpy(region.point, value, sizeof region.point);
     succeed(tm_polygon_surface_add_region(&parts->given, &region, &error), &error);
