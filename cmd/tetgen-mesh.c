@@ -335,7 +335,11 @@ static tm_status keep_parts(tm_stream *from, bool refined, tm_stream *mesh,
             continue; /* the surface has its names */
         }
         if (old->name[0] == '.' && !names) {
-            filter_leave_out(&f, "%zu rows of another mesh (%s)", old->count, old->name);
+            if (old->kind == TM_UNKNOWN)
+                filter_leave_out(&f, "the block %s", old->name);
+            else if (!surface_input_takes(from, old))
+                filter_leave_out(&f, "%zu rows of another mesh (%s)", old->count,
+                                 old->name);
             continue;
         }
         tm_block *moved = tm_stream_add(mesh, old->name);

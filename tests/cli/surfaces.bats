@@ -214,6 +214,34 @@ END
     [[ "$stderr" == *'holds polyhedra (.cell), but surface-import takes'* ]]
 }
 
+@test "what of a stream is no part of its surface is said by all that read surfaces" {
+    named_cube | sed "/^2 3 1 steel/d; s/^3 0$/2 0/; /^\.end/d" >named.tm
+    printf '%s\n' .edge '1 1' '0 0 1 0' >>named.tm
+    cp named.tm plain.tm
+    echo .end >>plain.tm
+    sed -i 's/^0 0 1 0$/0 0 1 9/' named.tm
+    printf '%s\n' .notes 'by hand' other.node '1 3 0 0' '0 5 5 5' other.notes x .end >>named.tm
+    # The same as the part of a mesh, with an edge of its own.
+    { sed 's/^\.\(node\|face\|group\|edge\)$/surface&/; /^\.end/d' named.tm; \
+        printf '%s\n' .node '0 3 0 0' .ele '0 4 0' .end; } >part.tm
+    for filter in surface-import surface-mend tetgen-mesh octree-mesh; do
+        command -v "$filter" >/dev/null && { [ "$filter" != tetgen-mesh ] || command -v tetgen; } || continue
+        run -0 --separate-stderr "$filter" -o mesh.tm plain.tm
+        [[ "$stderr" != *'left out'* ]]
+        for blocks in named.tm=.edge,.notes,other.node,other.notes \
+            part.tm=surface.edge,.notes,other.node,other.notes; do
+            input=${blocks%=*}
+            run -0 --separate-stderr "$filter" -o mesh.tm "$input"
+            for block in $(tr , ' ' <<<"${blocks#*=}"); do
+                grep -q "^$filter: $input: .*$block)*: left out$" <<<"$stderr" ||
+                    grep -x "$block" mesh.tm
+            done
+            run -3 "$filter" --strict -o strict.tm "$input"
+            [ ! -e strict.tm ]
+        done
+    done
+}
+
 @test "mesh-convert: by suffixes, whichever way, and the status of what failed" {
     named_cube >cube.tm
     mesh-convert cube.tm cube.stl
