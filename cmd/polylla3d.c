@@ -288,8 +288,8 @@ static void say_notes(const filter *f, const poly_settings *o, const result *r,
                       tm_content content)
 {
     if (r->lost > 0)
-        filter_note(f, "%zu marked faces are inside of a polyhedron and dropped",
-                    r->lost);
+        filter_leave_out(f, "%zu marked faces, which are inside of a polyhedron",
+                         r->lost);
     if (r->unfit > 0)
         filter_note(f, "not quite fit for finite volumes: %s", r->faults);
     if (r->skew > 0)
@@ -385,7 +385,8 @@ static void drop_unknown_slices(const filter *f, tm_slices *slices)
         tm_block *block = &slices->stream.block[b - 1];
         if (block->kind != TM_UNKNOWN || block->name[0] != '.')
             continue;
-        filter_note(f, "%s is dropped: the elements are polyhedra now", block->name);
+        filter_leave_out(f, "the block %s, as the elements are polyhedra now",
+                         block->name);
         tm_slices_remove(slices, block);
     }
 }
