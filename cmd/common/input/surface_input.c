@@ -217,7 +217,12 @@ static void note_mending(const filter *f, const tm_surface *s)
 {
     const char *name = filter_input_name(f);
     if (s->turned)
-        filter_note(f, "%s: triangles were turned, so that all look outward", name);
+        filter_note(f,
+                    s->components > 1 && !s->walls
+                        ? "%s: triangles were turned, so that shells look outward, those "
+                          "within an odd number of others inward"
+                        : "%s: triangles were turned, so that all look outward",
+                    name);
     if (s->duplicates)
         filter_note(f,
                     s->walls ? "%s: %zu triangles are walls that both regions give; the "
