@@ -162,10 +162,10 @@ static void leave_out(const tm_stream *stream, const gmsh_plan *plan)
         filter_leave_out(&f, "%zu facets of more than four nodes (.facet)",
                          plan->polygons);
     if (plan->renumbered > 0)
-        filter_note(&f,
-                    "%s: %zu markers and regions are below 0; their groups have other "
-                    "numbers",
-                    filter_input_name(&f), plan->renumbered);
+        filter_leave_out(&f,
+                         "%zu markers and regions below 0, whose groups have other "
+                         "numbers",
+                         plan->renumbered);
 }
 
 static void write_json(const gmsh_plan *plan, size_t bytes)
