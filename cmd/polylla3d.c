@@ -287,7 +287,7 @@ static void write_json(filter *f, const result *r)
 static void say_notes(const filter *f, const poly_settings *o, const result *r,
                       tm_content content)
 {
-    if (r->lost > 0)
+    if (r->lost > 0 && filter_speaks())
         filter_leave_out(f, "%zu marked faces, which are inside of a polyhedron",
                          r->lost);
     if (r->unfit > 0)
@@ -385,8 +385,9 @@ static void drop_unknown_slices(const filter *f, tm_slices *slices)
         tm_block *block = &slices->stream.block[b - 1];
         if (block->kind != TM_UNKNOWN || block->name[0] != '.')
             continue;
-        filter_leave_out(f, "the block %s, as the elements are polyhedra now",
-                         block->name);
+        if (filter_speaks()) /* for all ranks, which have the same blocks */
+            filter_leave_out(f, "the block %s, as the elements are polyhedra now",
+                             block->name);
         tm_slices_remove(slices, block);
     }
 }
