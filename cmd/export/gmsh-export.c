@@ -65,7 +65,8 @@ static void read_operands(void)
         if (strcmp(f.output, "-") == 0)
             f.output = NULL;
     }
-    filter_other_file(&f, "OUT", f.json && !f.output ? NULL : f.json);
+    if (f.json && f.output && strcmp(f.json, f.output) == 0)
+        filter_usage_error(&f, "OUT and --json are the same file, '%s'", f.json);
     if (format == GMSH_OUTPUTS && f.output)
         format = gmsh_output_of(f.output);
     if (format == GMSH_OUTPUTS)

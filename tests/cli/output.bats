@@ -284,6 +284,38 @@ write_each() {
     [ ! -e same ]
 }
 
+@test "one file for two outputs whose names are not alike: exit 4, nothing is written" {
+    mkdir folder
+    ln -s "$PWD" folder/link
+    ln -s same.svg link.svg
+    leaves_nothing
+    refuses() {
+        status=0
+        "$@" >written 2>message || status=$?
+        [ "$status" -eq 4 ]
+        grep ': cannot write: two outputs have this name$' message
+        [ ! -s written ]
+        rm written message
+        leaves_nothing
+    }
+    refuses jens-stats --plot same.svg --histo same.svg corner.tm
+    for other in ./same.svg "$PWD/same.svg" folder/../same.svg folder/link/same.svg link.svg; do
+        refuses tet-stats -o same.svg --plot "$other" corner.tm
+        refuses tet-stats -o same.svg --json "$other" corner.tm
+        refuses jens-stats --json same.svg --histo "$other" corner.tm
+    done
+    refuses vtu-export -o pieces.pvtu --json pieces_0.vtu corner.tm
+    refuses tetgen-export mesh --json mesh.ele corner.tm
+    refuses openfoam-export foam --json foam/owner corner.tm
+    jens-stats -o same.svg --histo folder/same.svg corner.tm
+    rm same.svg folder/same.svg
+    leaves_nothing
+    # what has no name is written on
+    tet-stats -o /dev/stdout --json /dev/fd/1 corner.tm >both
+    grep -q '^{' both
+    grep -q '^tetrahedra ' both
+}
+
 @test "-o /dev/stdout goes on where standard output is" {
     { echo head && off-export -o /dev/stdout corner.tm && echo tail; } >whole
     { echo head && off-export corner.tm && echo tail; } | cmp - whole
