@@ -94,8 +94,8 @@ static void improve(filter *f, tm_stream *stream, improve_settings *o, improve_r
     tm_tet_mesh_remove_set(&mesh);
     for (size_t b = 0; b < stream->blocks; b++)
         if (tm_tet_mesh_invalidates(&mesh, &stream->block[b]))
-            filter_note(f, "%s is dropped: nodes have other numbers now",
-                        stream->block[b].name);
+            filter_leave_out(f, "the block %s, as nodes have other numbers now",
+                             stream->block[b].name);
     if (tm_tet_mesh_to_stream(&mesh, stream, &error) != TM_OK)
         filter_fail(f, &error);
 }

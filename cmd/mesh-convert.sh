@@ -30,10 +30,9 @@ out: .tm; .off; .stl; .ply; .obj; .node .ele; .m3d; .mvm; .oct; .visf; .vtu; .vt
 END
 }
 
-# What follows the last dot of a file's name, in small letters, without .gz.
+# What follows the last dot of a file's name, in small letters.
 suffix_of() {
     file=${1##*/}
-    file=${file%.gz}
     case $file in
     polyMesh) echo polymesh ;;
     *.*) printf '%s\n' "${file##*.}" | tr '[:upper:]' '[:lower:]' ;;
@@ -41,7 +40,9 @@ suffix_of() {
 }
 
 importer_of() {
-    case $(suffix_of "$1") in
+    suffix=$(suffix_of "$1")
+    [ "$suffix" != gz ] || suffix=$(suffix_of "${1%.*}")
+    case $suffix in
     tm) echo stream ;;
     off | stl | ply | obj | mdl | poly | smesh) echo surface-import ;;
     node | ele) echo tetgen-import ;;
@@ -84,9 +85,17 @@ export_mesh() {
     esac
 }
 
+# What the importer is to read: all of TetGen's files that belong together.
+operand_of() {
+    case ${1%.gz} in
+    *.node | *.ele) file=${1%.gz} && printf '%s\n' "${file%.*}" ;;
+    *) printf '%s\n' "$1" ;;
+    esac
+}
+
 # The status is the exporter's, unless the importer failed first.
 convert() {
-    imported=$({ { "$importer" "$in"; echo $? >&3; } | export_mesh >&4; } 3>&1)
+    imported=$({ { "$importer" "$operand"; echo $? >&3; } | export_mesh >&4; } 3>&1)
     status=$?
     broken_pipe=141
     [ "$imported" -eq 0 ] || [ "$imported" -eq "$broken_pipe" ] || status=$imported
@@ -102,10 +111,13 @@ $usage" ;;
 esac
 [ $# -eq 2 ] || fail 2 "two files are needed
 $usage"
-in=$1
-out=$2
+in=${1%/}
+out=${2%/}
+case $in in -*) in=./$in ;; esac
+case $out in -*) out=./$out ;; esac
 importer=$(importer_of "$in")
 exporter=$(exporter_of "$out")
+operand=$(operand_of "$in")
 [ -n "$importer" ] || fail 2 "$in: no importer is known for this suffix ($name --help lists them)"
 [ -n "$exporter" ] || fail 2 "$out: no exporter is known for this suffix ($name --help lists them)"
 for filter in "$importer" "$exporter"; do
@@ -115,6 +127,6 @@ done
 case $importer,$exporter in
 stream,stream) fail 2 "both are streams" ;;
 stream,*) export_mesh "$in" ;;
-*,stream) "$importer" -o "$out" "$in" ;;
+*,stream) "$importer" -o "$out" "$operand" ;;
 *) convert ;;
 esac

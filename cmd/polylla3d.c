@@ -287,9 +287,9 @@ static void write_json(filter *f, const result *r)
 static void say_notes(const filter *f, const poly_settings *o, const result *r,
                       tm_content content)
 {
-    if (r->lost > 0)
-        filter_note(f, "%zu marked faces are inside of a polyhedron and dropped",
-                    r->lost);
+    if (r->lost > 0 && filter_speaks())
+        filter_leave_out(f, "%zu marked faces, which are inside of a polyhedron",
+                         r->lost);
     if (r->unfit > 0)
         filter_note(f, "not quite fit for finite volumes: %s", r->faults);
     if (r->skew > 0)
@@ -385,7 +385,9 @@ static void drop_unknown_slices(const filter *f, tm_slices *slices)
         tm_block *block = &slices->stream.block[b - 1];
         if (block->kind != TM_UNKNOWN || block->name[0] != '.')
             continue;
-        filter_note(f, "%s is dropped: the elements are polyhedra now", block->name);
+        if (filter_speaks()) /* for all ranks, which have the same blocks */
+            filter_leave_out(f, "the block %s, as the elements are polyhedra now",
+                             block->name);
         tm_slices_remove(slices, block);
     }
 }

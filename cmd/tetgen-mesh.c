@@ -121,6 +121,9 @@ static void add_region(tetgen_parts *parts, const char *text)
     if (!isnan(value[3]) && value[3] != floor(value[3]))
         filter_usage_error(&f, "--region: %g is not whole, as TetGen's regions are",
                            value[3]);
+    if (fabs(value[3]) > INT32_MAX)
+        filter_usage_error(&f, "--region: %.17g is too large a number for TetGen",
+                           value[3]);
     tm_region region = {.attribute = value[3], .max_volume = -1};
     memcpy(region.point, value, sizeof region.point);
     succeed(tm_polygon_surface_add_region(&parts->given, &region, &error), &error);
@@ -332,7 +335,11 @@ static tm_status keep_parts(tm_stream *from, bool refined, tm_stream *mesh,
             continue; /* the surface has its names */
         }
         if (old->name[0] == '.' && !names) {
-            filter_leave_out(&f, "%zu rows of another mesh (%s)", old->count, old->name);
+            if (old->kind == TM_UNKNOWN)
+                filter_leave_out(&f, "the block %s", old->name);
+            else if (!surface_input_takes(from, old))
+                filter_leave_out(&f, "%zu rows of another mesh (%s)", old->count,
+                                 old->name);
             continue;
         }
         tm_block *moved = tm_stream_add(mesh, old->name);

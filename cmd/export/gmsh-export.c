@@ -65,7 +65,8 @@ static void read_operands(void)
         if (strcmp(f.output, "-") == 0)
             f.output = NULL;
     }
-    filter_other_file(&f, "OUT", f.json && !f.output ? NULL : f.json);
+    if (f.json && f.output && strcmp(f.json, f.output) == 0)
+        filter_usage_error(&f, "OUT and --json are the same file, '%s'", f.json);
     if (format == GMSH_OUTPUTS && f.output)
         format = gmsh_output_of(f.output);
     if (format == GMSH_OUTPUTS)
@@ -162,10 +163,10 @@ static void leave_out(const tm_stream *stream, const gmsh_plan *plan)
         filter_leave_out(&f, "%zu facets of more than four nodes (.facet)",
                          plan->polygons);
     if (plan->renumbered > 0)
-        filter_note(&f,
-                    "%s: %zu markers and regions are below 0; their groups have other "
-                    "numbers",
-                    filter_input_name(&f), plan->renumbered);
+        filter_leave_out(&f,
+                         "%zu markers and regions below 0, whose groups have other "
+                         "numbers",
+                         plan->renumbered);
 }
 
 static void write_json(const gmsh_plan *plan, size_t bytes)

@@ -6,6 +6,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static const struct option options[] = {FILTER_OPTIONS};
 
@@ -18,12 +19,14 @@ static filter f = {
     .letters = FILTER_LETTERS,
 };
 
+static const char *const suffixes[] = {".node", ".ele", ".face", ".edge", ".group"};
+enum { SUFFIXES = sizeof suffixes / sizeof *suffixes };
+
 /* A name with the suffix of one of the files stands for all of them. */
 static void drop_suffix(char *base)
 {
-    static const char *const suffixes[] = {".node", ".ele", ".face", ".edge", ".group"};
     const size_t size = strlen(base);
-    for (size_t i = 0; i < sizeof suffixes / sizeof *suffixes; i++) {
+    for (size_t i = 0; i < SUFFIXES; i++) {
         const size_t length = strlen(suffixes[i]);
         if (size > length && base[size - length - 1] != '/' &&
             strcmp(base + size - length, suffixes[i]) == 0) {
@@ -76,6 +79,26 @@ static tm_status write_block(const tm_stream *stream, const tm_block *block,
     return status;
 }
 
+/* A file that is there, plain or packed, and would be read with those that are written,
+ * but is of another mesh. */
+static tm_status refuse_other_file(const char *base, const char *suffix, tm_error *error)
+{
+    static const char *const packed[] = {"", ".gz"};
+    tm_status status = TM_OK;
+    for (size_t i = 0; i < sizeof packed / sizeof *packed && status == TM_OK; i++) {
+        tm_text name = {0};
+        tm_text_format(&name, "%s%s%s", base, suffix, packed[i]);
+        if (name.failed)
+            status = tm_fail_memory(error);
+        else if (access(name.byte, F_OK) == 0)
+            status = tm_fail_at(error, TM_ERROR_SYSTEM, name.byte, 0, NULL,
+                                "is there, of another mesh: tetgen-import would read it "
+                                "with this one (remove it, or take another BASE)");
+        tm_text_free(&name);
+    }
+    return status;
+}
+
 /* All but their names: filter_finish() gives them. */
 static void write_files(const tm_stream *stream, const char *base)
 {
@@ -85,6 +108,9 @@ static void write_files(const tm_stream *stream, const char *base)
     for (size_t b = 0; b < stream->blocks && status == TM_OK; b++)
         if (is_written(&stream->block[b]))
             status = write_block(stream, &stream->block[b], base, &error);
+    for (size_t i = 0; i < SUFFIXES && status == TM_OK; i++)
+        if (tm_stream_find(stream, ".node") && !tm_stream_find(stream, suffixes[i]))
+            status = refuse_other_file(base, suffixes[i], &error);
     if (status != TM_OK)
         filter_fail(&f, &error);
 }

@@ -10,11 +10,8 @@ static tm_status read_m3d(const filter *f, tm_stream *stream, const tm_text *byt
     size_t materials = 0;
     const tm_status status = tm_m3d_read(stream, bytes->byte, bytes->size,
                                          filter_input_name(f), &materials, error);
-    if (status == TM_OK && materials > 0)
-        filter_note(f,
-                    "%s: the constants of the material of %zu elements are others than "
-                    "1000.0 0.45 1.0 and left out",
-                    filter_input_name(f), materials);
+    if (status == TM_OK)
+        mesh_leave_out_materials(f, materials);
     return status;
 }
 

@@ -39,6 +39,7 @@ static void read_mesh(const char *file, tm_stream *stream)
     filter_read_file(&f, file, &bytes);
     if (tm_m3d_read(stream, bytes.byte, bytes.size, file, &materials, &error) != TM_OK)
         filter_fail_file(&f, &error, &bytes, "m3d-import");
+    mesh_leave_out_materials(&f, materials);
     tm_text_free(&bytes);
 }
 

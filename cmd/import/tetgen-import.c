@@ -219,10 +219,10 @@ static void drop_middles(tm_stream *stream, const char *node, int part,
     }
     succeed(tm_tetgen_drop_middles(nodes, tm_stream_find(stream, node), other, &dropped,
                                    &error));
-    filter_note(&f,
-                "%.*s.ele: tetrahedra of 10 nodes, of second order, are taken by their "
-                "corners; %zu nodes in the middle of edges are dropped",
-                part, node, dropped);
+    filter_leave_out(&f,
+                     "%zu nodes of tetrahedra of second order (%.*s.ele), of which the "
+                     "corners are taken",
+                     dropped, part, node);
 }
 
 /* Reads a .node file and the other files of its part, which may be numbered from

@@ -14,8 +14,7 @@ static tm_status read_visf(const filter *f, tm_stream *stream, const tm_text *by
     if (status != TM_OK)
         return status;
     if (repairs.dropped > 0)
-        filter_note(f, "%s: %zu polygons are of no polyhedron and left out", name,
-                    repairs.dropped);
+        filter_leave_out(f, "%zu polygons of no polyhedron", repairs.dropped);
     if (repairs.turned > 0)
         filter_note(f, "%s: %zu polygons of the boundary were inward and are turned",
                     name, repairs.turned);

@@ -3,7 +3,7 @@
 #include "../text/report.h"
 #include "surface_examine.h"
 
-enum { LABEL_WIDTH = 24, LISTED = 5 };
+enum { LABEL_WIDTH = 29, LISTED = 5 };
 
 #define ROW(key, label, member)                                                          \
     TM_REPORT_ROW(key, label, NULL, tm_surface_examination, member)

@@ -237,7 +237,7 @@ END
     run -0 --separate-stderr gmsh-export a.msh t.tm
     [ "${stderr_lines[0]}" = 'gmsh-export: t.tm: 1 regions of cells below 0 (.ele), 1 markers of faces below 0 (.face): left out' ]
     [ "${stderr_lines[1]}" = 'gmsh-export: t.tm: 1 nodes that nothing has which is written (.node): left out' ]
-    [ "${stderr_lines[2]}" = 'gmsh-export: t.tm: 2 markers and regions are below 0; their groups have other numbers' ]
+    [ "${stderr_lines[2]}" = 'gmsh-export: t.tm: 2 markers and regions below 0, whose groups have other numbers: left out' ]
     gmsh-import --no-history a.msh >a.tm
     diff a.tm - <<'END'
 termesh 1

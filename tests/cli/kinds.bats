@@ -41,7 +41,7 @@ filters() {
 
 # The exit status of a filter for a kind; its messages go to stderr.txt.
 status_of() {
-    rm -rf folder
+    rm -rf folder folder.*
     case $1 in
     gmsh-export) set -- "$1" --format msh4 - "$2" ;;
     openfoam-export | tetgen-export) set -- "$1" folder "$2" ;;

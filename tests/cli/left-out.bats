@@ -20,6 +20,7 @@ print('termesh 1\n.node\n5 3', 1 if thing == 'node attribute' else 0, 1)
 for v, x in enumerate(('0 0 0', '1 0 0', '0 1 0', '0 0 1', '1 1 1')):
     print(v, x, *([0.5] if thing == 'node attribute' else []),
           7 if v == 4 and thing == 'node marker' else
+          -7 if v == 4 and thing == 'negative node marker' else
           0 if v == 4 and thing == 'nodes of a set' else 1)
 extra = thing == 'other attribute'
 print('.ele\n2 4', 2 if extra else 1)
@@ -31,7 +32,7 @@ if thing == 'some faces':
 print('.face\n%d 1' % len(face))
 for f, v in enumerate(face):
     print(f, v, {'face marker': 5, 'negative face marker': -5}.get(thing, 1) if f == 1 else 1)
-print('.edge\n2 1\n0 0 1', {'edge marker': 3, 'some edges': 0}.get(thing, 1), '\n1 1 4 1')
+print('.edge\n2 1\n0 0 1', {'edge marker': 3, 'negative edge marker': -3, 'some edges': 0}.get(thing, 1), '\n1 1 4 1')
 names = {'node name': 0, 'edge name': 1, 'face name': 2, 'region name': 3}
 if thing in names:
     print('.group\n1 0\n0', names[thing], 1, 'a name')
@@ -151,9 +152,11 @@ END
 nothing
 node attribute
 node marker
+negative node marker
 face marker
 negative face marker
 edge marker
+negative edge marker
 region
 odd region
 other attribute
@@ -169,9 +172,11 @@ END
 nothing               . . . . . . .
 node attribute        x x x x x x x
 node marker           . . . x x x x
+negative node marker  x x x x x x x
 face marker           . . . . . . .
 negative face marker  x x x x x x x
 edge marker           . . . . . . x
+negative edge marker  x x x x x x x
 region                . . . . . . x
 odd region            x x x x x x x
 other attribute       x x x x x x x

@@ -549,9 +549,11 @@ END
     [[ ${lines[1]} == "# lepp-improve "*" -t33 $out/in.tm: "*"% bad; "* ]]
     [[ $output == *surface.node* ]]
     [[ $output != *.neighbours* ]]
-    [[ $stderr == *".neighbours is dropped"* ]]
+    [[ $stderr == *"the block .neighbours, as the tetrahedra have other numbers now: left out"* ]]
+    run -3 lepp-improve --strict -t 33 -o "$out/strict.tm" "$out/in.tm"
+    [ ! -e "$out/strict.tm" ]
     # Where nothing changes, nothing goes.
-    run --separate-stderr lepp-improve -t 0 "$out/in.tm"
+    run --separate-stderr lepp-improve --strict -t 0 "$out/in.tm"
     [[ $output == *.neighbours* ]]
 }
 

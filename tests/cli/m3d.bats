@@ -100,9 +100,11 @@ END
 @test "other materials are left out, with a note" {
     sed '/^P/s/0.45/0.3/' mixed.m3d >soft.m3d
     run -0 --separate-stderr m3d-import --no-history -o out.tm soft.m3d
-    [ "$stderr" = 'm3d-import: soft.m3d: the constants of the material of 1 elements are '\
-'others than 1000.0 0.45 1.0 and left out' ]
+    [ "$stderr" = 'm3d-import: soft.m3d: the constants of the material of 1 elements, '\
+'which are others than 1000.0 0.45 1.0: left out' ]
     cmp out.tm mixed.tm
+    run -3 m3d-import --strict -o strict.tm soft.m3d
+    [ ! -e strict.tm ]
 }
 
 @test "JSON: what the mesh holds" {

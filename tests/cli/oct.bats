@@ -173,6 +173,17 @@ assert b[3] == []"
     done
 }
 
+@test "materials of the elements are left out, as m3d-import says it" {
+    make_octree 1
+    sed '0,/^\([TPRH] .*\) 0\.45 /s//\1 0.3 /' a.m3d >soft.m3d
+    run -1 cmp -s a.m3d soft.m3d
+    run -0 --separate-stderr oct-import --no-history -m soft.m3d -o soft.tm a.oct
+    [ "$stderr" = 'oct-import: a.oct: the constants of the material of 1 elements, which are others than 1000.0 0.45 1.0: left out' ]
+    oct-import --no-history -m a.m3d a.oct | cmp - soft.tm
+    run -3 oct-import --strict -m soft.m3d -o strict.tm a.oct
+    [ ! -e strict.tm ]
+}
+
 @test "ids: kept as the attribute of .octant, in a file with --ids" {
     make_octree 9
     python3 -c "from octree import *

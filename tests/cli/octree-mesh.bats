@@ -714,6 +714,22 @@ END
     diff <(rows .octant mesh.tm) <(rows .octant expected.tm)
     judge mesh.tm
     mesh-check -q mesh.tm
+    # what a shell within another one becomes
+    python3 - sphere.off >nested.off <<'END'
+import sys
+lines = open(sys.argv[1]).read().split('\n')
+v, f, _ = map(int, lines[1].split())
+points = [[float(x) for x in line.split()] for line in lines[2:2 + v]]
+print('OFF\n%d %d 0' % (2 * v, 2 * f))
+for size in 1, 0.5:
+    for p in points:
+        print(*(size * x for x in p))
+for first in 0, v:
+    for line in lines[2 + v:2 + v + f]:
+        print(3, *(int(n) + first for n in line.split()[1:]))
+END
+    run -0 --separate-stderr octree-mesh --no-history -s 3 -o mesh.tm nested.off
+    [ "$stderr" = 'octree-mesh: nested.off: triangles were turned, so that shells look outward, those within an odd number of others inward' ]
     # one side of the cube alone
     awk 'NR == 11 { print 4, $5, $4, $3, $2; next } { print }' box.off >side.off
     octree-mesh --no-history -s 3 box.off >expected.tm

@@ -16,15 +16,16 @@ leaves_nothing() {
 
 @test "--json where it cannot be written: exit 4, and nothing else is written" {
     leaves_nothing
+    too_long=$(printf '%0256d' 0)
     refuses() {
-        for place in nowhere/report /dev/full .; do
+        for place in nowhere/report /dev/full . "" "$too_long"; do
             # shellcheck disable=SC2046 # words
             set -- "$1" $(operands "$1" "$(input "$1")")
             status=0
             "$1" --json "$place" "${@:2}" >written 2>message || status=$?
             [ "$status" -eq 4 ]
             [ ! -s written ]
-            grep "^$1: $place: cannot write: " message
+            grep "^$1: ${place:0:99}.*cannot write: " message
             rm written message
             leaves_nothing
             ! writes_files "$1" || continue
@@ -281,6 +282,38 @@ write_each() {
     done
     run -2 jens-stats --histo same -o same corner.tm
     [ ! -e same ]
+}
+
+@test "one file for two outputs whose names are not alike: exit 4, nothing is written" {
+    mkdir folder
+    ln -s "$PWD" folder/link
+    ln -s same.svg link.svg
+    leaves_nothing
+    refuses() {
+        status=0
+        "$@" >written 2>message || status=$?
+        [ "$status" -eq 4 ]
+        grep ': cannot write: two outputs have this name$' message
+        [ ! -s written ]
+        rm written message
+        leaves_nothing
+    }
+    refuses jens-stats --plot same.svg --histo same.svg corner.tm
+    for other in ./same.svg "$PWD/same.svg" folder/../same.svg folder/link/same.svg link.svg; do
+        refuses tet-stats -o same.svg --plot "$other" corner.tm
+        refuses tet-stats -o same.svg --json "$other" corner.tm
+        refuses jens-stats --json same.svg --histo "$other" corner.tm
+    done
+    refuses vtu-export -o pieces.pvtu --json pieces_0.vtu corner.tm
+    refuses tetgen-export mesh --json mesh.ele corner.tm
+    refuses openfoam-export foam --json foam/owner corner.tm
+    jens-stats -o same.svg --histo folder/same.svg corner.tm
+    rm same.svg folder/same.svg
+    leaves_nothing
+    # what has no name is written on
+    tet-stats -o /dev/stdout --json /dev/fd/1 corner.tm >both
+    grep -q '^{' both
+    grep -q '^tetrahedra ' both
 }
 
 @test "-o /dev/stdout goes on where standard output is" {

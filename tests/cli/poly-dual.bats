@@ -161,12 +161,16 @@ END
 @test "names stay; blocks that are not known go; a part stays" {
     awk '/^\.end/ { print ".group\n1 0\n1 2 11 bottom side\n.mine\n1 0\n1 2\nsurface.node\n1 3 0 0\n1 0 0 0" }
         { print }' boxes.tm >"$out/named.tm"
-    run -0 --separate-stderr poly-dual --no-history "$out/named.tm"
-    [[ $stderr == *'.mine is dropped'* ]]
-    [[ $output == *'2 11 bottom side'* ]]
-    [[ $output == *'surface.node'* ]]
-    [[ $output != *'.mine'* ]]
-    mesh-check -q <<<"$output"
+    for filter in poly-dual polylla3d; do
+        run -0 --separate-stderr "$filter" --no-history "$out/named.tm"
+        [[ $stderr == *'the block .mine, as the elements are polyhedra now: left out'* ]]
+        [[ $output == *'2 11 bottom side'* ]]
+        [[ $output == *'surface.node'* ]]
+        [[ $output != *'.mine'* ]]
+        mesh-check -q <<<"$output"
+        run -3 "$filter" --strict -o "$out/strict.tm" "$out/named.tm"
+        [ ! -e "$out/strict.tm" ]
+    done
 }
 
 @test "the same bytes whatever the number of threads and the order of tetrahedra" {

@@ -63,5 +63,9 @@ setup() {
     # shellcheck disable=SC2154 # run sets stderr
     [ "$(grep -c '^polylla3d: range.tm:[0-9]*: .ele: ' <<<"$stderr")" -eq 1 ]
     [ ! -e none.out ]
+    sed 's/^\.end/.notes\nsome\n.end/' points.tm >notes.tm
+    run -3 --separate-stderr on_ranks 3 polylla3d --strict -o none.out notes.tm
+    [ "$(grep -c '^polylla3d: notes.tm: the block .notes, ' <<<"$stderr")" -eq 1 ]
+    [ ! -e none.out ]
     run -2 on_ranks 2 polylla3d --no-such-option points.tm
 }

@@ -79,12 +79,14 @@ vtu-export'
 # is unknown and is known of MESH. (TetGen may abort; that is told.) sane COMMANDS FILE…
 sane() {
     python3 - "$@" <<'END'
-import os, re, subprocess, sys
+import glob, os, re, subprocess, sys
 no_number = re.compile(rb'\b(nan|inf|infinity)\b', re.I)
 
 def run(command, file):
     if os.path.exists('report'):
         os.remove('report')
+    for old in glob.glob('made.*'):
+        os.remove(old)
     made = subprocess.run(command.split() + ['--json', 'report', file],
                           capture_output=True, timeout=60)
     report = open('report', 'rb').read() if os.path.exists('report') else b''

@@ -214,6 +214,34 @@ END
     [[ "$stderr" == *'holds polyhedra (.cell), but surface-import takes'* ]]
 }
 
+@test "what of a stream is no part of its surface is said by all that read surfaces" {
+    named_cube | sed "/^2 3 1 steel/d; s/^3 0$/2 0/; /^\.end/d" >named.tm
+    printf '%s\n' .edge '1 1' '0 0 1 0' >>named.tm
+    cp named.tm plain.tm
+    echo .end >>plain.tm
+    sed -i 's/^0 0 1 0$/0 0 1 9/' named.tm
+    printf '%s\n' .notes 'by hand' other.node '1 3 0 0' '0 5 5 5' other.notes x .end >>named.tm
+    # The same as the part of a mesh, with an edge of its own.
+    { sed 's/^\.\(node\|face\|group\|edge\)$/surface&/; /^\.end/d' named.tm; \
+        printf '%s\n' .node '0 3 0 0' .ele '0 4 0' .end; } >part.tm
+    for filter in surface-import surface-mend tetgen-mesh octree-mesh; do
+        command -v "$filter" >/dev/null && { [ "$filter" != tetgen-mesh ] || command -v tetgen; } || continue
+        run -0 --separate-stderr "$filter" -o mesh.tm plain.tm
+        [[ "$stderr" != *'left out'* ]]
+        for blocks in named.tm=.edge,.notes,other.node,other.notes \
+            part.tm=surface.edge,.notes,other.node,other.notes; do
+            input=${blocks%=*}
+            run -0 --separate-stderr "$filter" -o mesh.tm "$input"
+            for block in $(tr , ' ' <<<"${blocks#*=}"); do
+                grep -q "^$filter: $input: .*$block)*: left out$" <<<"$stderr" ||
+                    grep -x "$block" mesh.tm
+            done
+            run -3 "$filter" --strict -o strict.tm "$input"
+            [ ! -e strict.tm ]
+        done
+    done
+}
+
 @test "mesh-convert: by suffixes, whichever way, and the status of what failed" {
     named_cube >cube.tm
     mesh-convert cube.tm cube.stl
@@ -258,6 +286,41 @@ END
         run mesh-convert "none$suffix" "none/none.tm"
         [[ "$output" != *'no importer is known'* ]]
     done
+}
+
+@test "mesh-convert: TetGen's files are read together, whichever of them is named" {
+    printf '%s\n' 'termesh 1' .node '4 3 0 1' '1 0 0 0 0' '2 1 0 0 5' '3 0 1 0 5' '4 0 0 1 5' \
+        .ele '1 4 1' '1 1 2 3 4 7' .face '1 1' '1 1 3 2 11' .edge '1 1' '1 1 2 3' \
+        .group '2 0' '1 2 11 bottom' '2 3 7 steel' .end >corner.tm
+    mesh-convert corner.tm corner.node
+    mesh-convert corner.tm packed.ele
+    gzip packed.*
+    for file in corner.node corner.ele packed.node.gz packed.ele.gz; do
+        mesh-convert "$file" again.tm
+        diff corner.tm <(sed '/^#/d' again.tm)
+        mesh-convert "$file" again.vtu
+        vtu-export corner.tm | cmp - again.vtu
+    done
+}
+
+@test "mesh-convert: names that begin with -, a folder's slash, what is packed" {
+    named_cube >cube.tm
+    cp cube.tm ./-o.tm
+    mesh-convert -- -o.tm -q.stl
+    stl-export cube.tm | cmp - ./-q.stl
+    mesh-convert -- -q.stl again.tm
+    surface-import -o expected.tm ./-q.stl
+    cmp again.tm expected.tm
+    cubes >cubes.tm
+    mesh-convert cubes.tm polyMesh/
+    mesh-convert polyMesh/ again.tm
+    openfoam-import polyMesh | cmp - again.tm
+    gzip -c cube.tm >CUBE.TM.GZ
+    mesh-convert CUBE.TM.GZ cube.off
+    off-export cube.tm | cmp - cube.off
+    # what is written is never packed
+    run -2 mesh-convert cube.tm cube.stl.gz
+    [ ! -e cube.stl.gz ]
 }
 
 @test "a solid without a triangle has a name: what is written is read" {

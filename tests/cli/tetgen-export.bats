@@ -141,6 +141,32 @@ END
     grep -x '1 1 0 0 1e-300 0 7' out.node
 }
 
+@test "files of another mesh that would be read with these: exit 4, nothing is written" {
+    printf '%s\n' 'termesh 1' .node '1 3 0 0' '1 0 0 0' .end >point.tm
+    for suffix in .ele .face .edge .group; do
+        tetgen-export mesh two.tm
+        printf '1 0\n1 2 9 rim\n' >mesh.group
+        find . -name 'mesh.*' ! -name mesh.node ! -name "mesh$suffix" -delete
+        for packed in '' .gz; do
+            [ -z "$packed" ] || gzip "mesh$suffix"
+            cp mesh.node before
+            run -4 --separate-stderr tetgen-export mesh point.tm
+            [[ "$stderr" == "tetgen-export: mesh$suffix$packed: is there, of another mesh: "* ]]
+            cmp mesh.node before
+        done
+        rm mesh.*
+    done
+    tetgen-export mesh two.tm
+    echo '1 0 1 2 9 rim' >mesh.group
+    run -4 tetgen-export mesh two.tm
+    rm mesh.group
+    tetgen-export mesh two.tm
+    # those of parts alone are of no mesh beside them
+    sed '/^\.node/,/^0 0 1$/d' two.tm >part.tm
+    tetgen-export mesh part.tm
+    tetgen-export -q mesh.surface part.tm
+}
+
 @test "the name of one of the files stands for all" {
     tetgen-export plain two.tm
     for suffix in node ele face edge group; do

@@ -133,8 +133,10 @@ END
     for switches in -o2 -o2nn; do
         tetgen -pQ $switches cube.smesh
         run -0 --separate-stderr tetgen-import --no-history cube.1 -o second.tm
-        [[ $stderr == 'tetgen-import: .ele: tetrahedra of 10 nodes, of second order, are taken by their corners; 19 nodes in the middle of edges are dropped' ]]
+        [[ $stderr == 'tetgen-import: '*': 19 nodes of tetrahedra of second order (.ele), of which the corners are taken: left out' ]]
         cmp second.tm plain.tm
+        run -3 tetgen-import --strict -o strict.tm cube.1
+        [ ! -e strict.tm ]
     done
     # without .face and .edge, too
     rm cube.1.face cube.1.edge

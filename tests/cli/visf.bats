@@ -227,7 +227,9 @@ END
     sed -e '15s/11/12/; 26a 3 0 1 2' cubes.visf >more.visf
     run -0 --separate-stderr visf-import --no-history -o more.tm more.visf
     cmp more.tm plain.tm
-    [ "$stderr" = 'visf-import: more.visf: 1 polygons are of no polyhedron and left out' ]
+    [ "$stderr" = 'visf-import: more.visf: 1 polygons of no polyhedron: left out' ]
+    run -3 visf-import --strict -o strict.tm more.visf
+    [ ! -e strict.tm ]
 }
 
 @test "import: a cell in a hollow of another one" {

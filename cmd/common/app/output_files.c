@@ -198,6 +198,35 @@ static bool give_name(output_file *file, bool may_come_back)
     return !file->temporary || exchange_names(file, may_come_back);
 }
 
+static const char *last_part(const char *name)
+{
+    const char *slash = strrchr(name, '/');
+    return slash ? slash + 1 : name;
+}
+
+/* Whether both are to get one name, whatever way leads there. */
+static bool is_same(const output_file *a, const output_file *b)
+{
+    struct stat x, y;
+    if (strcmp(last_part(a->target), last_part(b->target)) != 0)
+        return false;
+    char *p = beside_target(a, "."), *q = beside_target(b, ".");
+    const bool same = p && q && stat(p, &x) == 0 && stat(q, &y) == 0 &&
+                      x.st_dev == y.st_dev && x.st_ino == y.st_ino;
+    free(p);
+    free(q);
+    return same;
+}
+
+static bool is_taken(const output_files *files, const output_file *file)
+{
+    bool taken = false;
+    for (size_t i = 0; i < files->count && !taken; i++)
+        taken = (files->file[i].unnamed || files->file[i].temporary) &&
+                is_same(&files->file[i], file);
+    return taken;
+}
+
 /* Whether errno says that no file can be made in the folder, by this user or at all. */
 static bool folder_is_closed(void)
 {
@@ -208,6 +237,8 @@ static int open_file(output_files *files, output_file *file)
 {
     struct stat old;
     const bool exists = stat(file->name, &old) == 0;
+    if (!exists && (errno != ENOENT || file->name[0] == '\0'))
+        return -1;
     if (exists && !S_ISREG(old.st_mode))
         return open(file->name, O_WRONLY | O_CLOEXEC);
     file->target = follow_links(file->name);
@@ -216,6 +247,10 @@ static int open_file(output_files *files, output_file *file)
     const int there = descriptor_of(file->target);
     if (there >= 0)
         return fcntl(there, F_DUPFD_CLOEXEC, 0); /* it goes on where it is */
+    if (is_taken(files, file)) {
+        errno = EEXIST;
+        return -1;
+    }
     const int fd = make_temporary(files, file, exists ? &old : NULL);
     if (fd < 0 && exists && folder_is_closed())
         return open(file->target, O_WRONLY | O_TRUNC | O_CLOEXEC);
@@ -286,7 +321,10 @@ tm_status output_files_open(output_files *files, const char *name, int *fd,
         return tm_fail_memory(error);
     file.fd = open_file(files, &file);
     if (file.fd < 0) {
-        tm_status status = fail_file(name, error);
+        tm_status status = errno != EEXIST
+                               ? fail_file(name, error)
+                               : tm_fail_at(error, TM_ERROR_SYSTEM, name, 0, NULL,
+                                            "cannot write: two outputs have this name");
         free_file(&file);
         if (files->count == 0 && !files->folder)
             release_signals(files);

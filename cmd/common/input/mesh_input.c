@@ -150,6 +150,15 @@ void mesh_note_count(const filter *f, size_t count, const char *what)
         filter_note(f, "%s: %zu %s", filter_input_name(f), count, what);
 }
 
+void mesh_leave_out_materials(const filter *f, size_t count)
+{
+    if (count > 0)
+        filter_leave_out(f,
+                         "the constants of the material of %zu elements, which are "
+                         "others than 1000.0 0.45 1.0",
+                         count);
+}
+
 void mesh_leave_out_count(const filter *f, size_t count, const char *what)
 {
     if (count > 0)

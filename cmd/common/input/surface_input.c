@@ -217,7 +217,12 @@ static void note_mending(const filter *f, const tm_surface *s)
 {
     const char *name = filter_input_name(f);
     if (s->turned)
-        filter_note(f, "%s: triangles were turned, so that all look outward", name);
+        filter_note(f,
+                    s->components > 1 && !s->walls
+                        ? "%s: triangles were turned, so that shells look outward, those "
+                          "within an odd number of others inward"
+                        : "%s: triangles were turned, so that all look outward",
+                    name);
     if (s->duplicates)
         filter_note(f,
                     s->walls ? "%s: %zu triangles are walls that both regions give; the "
@@ -282,11 +287,32 @@ static void check_regions(const filter *f, const tm_polygon_surface *polygons,
         filter_leave_out(f, "%zu regions", polygons->regions);
 }
 
+bool surface_input_takes(const tm_stream *stream, const tm_block *block)
+{
+    static const char *const names[] = {"surface.node", "surface.face", "surface.group"};
+    bool is_found =
+        strcmp(block->name, ".group") == 0 && !tm_stream_find(stream, "surface.group");
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        is_found = is_found || strcmp(block->name, names[i]) == 0;
+    if (is_found || block->kind != TM_EDGE)
+        return is_found;
+    size_t marked = 0;
+    for (size_t r = 0; r < block->count && block->marker; r++)
+        marked += block->marker[r] != 0;
+    return marked == 0;
+}
+
+void surface_input_leave_out_blocks(const filter *f, const tm_stream *stream)
+{
+    for (size_t b = 0; b < stream->blocks; b++)
+        if (!surface_input_takes(stream, &stream->block[b]))
+            filter_leave_out(f, "the block %s", stream->block[b].name);
+}
+
 /* What of the surface and its stream an octree's mesh has no place for. */
 static void leave_out(const filter *f, const tm_polygon_surface *polygons,
                       const tm_stream *stream)
 {
-    const tm_block *other = tm_stream_find(stream, ".group");
     size_t markers = 0, names = 0;
     for (size_t v = 0; v < polygons->nodes && polygons->node_marker; v++)
         markers += polygons->node_marker[v] != 0;
@@ -299,8 +325,7 @@ static void leave_out(const filter *f, const tm_polygon_surface *polygons,
         filter_leave_out(f, "%zu markers of the surface's nodes", markers);
     if (names > 0)
         filter_leave_out(f, "%zu names of other than faces (.group)", names);
-    if (other && tm_stream_find(stream, "surface.group"))
-        filter_leave_out(f, "%zu names of another mesh (.group)", other->count);
+    surface_input_leave_out_blocks(f, stream);
 }
 
 void surface_input_add_help(tm_error *error, const tm_polygon_surface *polygons,

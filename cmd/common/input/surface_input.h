@@ -20,6 +20,13 @@ tm_format surface_input_read(const filter *f, tm_polygon_surface *surface,
 tm_format surface_input_read_any(const filter *f, tm_polygon_surface *surface,
                                  tm_stream *stream);
 
+/* Whether a block of the stream is of the surface, or edges without a marker, which
+ * nobody misses. */
+bool surface_input_takes(const tm_stream *stream, const tm_block *block);
+
+/* Says by filter_leave_out() which blocks are neither. */
+void surface_input_leave_out_blocks(const filter *f, const tm_stream *stream);
+
 /* Reads it and makes a closed surface of it, with a note about what had to be mended;
  * exits on failure. Of a stream, *history gets its history; history may be NULL. */
 void surface_input_build(const filter *f, const tm_surface_options *options,

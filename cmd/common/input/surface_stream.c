@@ -4,8 +4,6 @@
 #include "mesh_input.h"
 #include "surface_input.h"
 
-#include <string.h>
-
 /* A facet that is not one polygon would become another one. */
 static void check_facets(const filter *f, const tm_polygon_surface *surface)
 {
@@ -49,15 +47,6 @@ static void note_triangles(const filter *f, const tm_polygon_surface *surface,
                     filter_input_name(f), due - triangles);
 }
 
-/* Blocks of a stream that are no part of its surface. */
-static void say_other_blocks(const filter *f, const tm_stream *input)
-{
-    static const char part[] = "surface.";
-    for (size_t b = 0; b < input->blocks; b++)
-        if (strncmp(input->block[b].name, part, sizeof part - 1) != 0)
-            filter_leave_out(f, "the block %s", input->block[b].name);
-}
-
 void surface_stream_read(const filter *f, tm_stream *stream)
 {
     tm_polygon_surface surface;
@@ -72,7 +61,7 @@ void surface_stream_read(const filter *f, tm_stream *stream)
     stream->history = input.history;
     input.history = (tm_text){0};
     say_left_out(f, &surface);
-    say_other_blocks(f, &input);
+    surface_input_leave_out_blocks(f, &input);
     note_triangles(f, &surface, mesh_rows(stream, ".face"));
     tm_polygon_surface_free(&surface);
     tm_stream_free(&input);

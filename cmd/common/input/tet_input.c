@@ -39,6 +39,6 @@ void drop_unknown_blocks(const filter *f, tm_stream *stream, const char *why)
 {
     for (size_t b = stream->blocks; b > 0; b--)
         if (is_unknown(&stream->block[b - 1], NULL))
-            filter_note(f, "%s is dropped: %s", stream->block[b - 1].name, why);
+            filter_leave_out(f, "the block %s, as %s", stream->block[b - 1].name, why);
     tm_stream_remove_if(stream, is_unknown, NULL);
 }

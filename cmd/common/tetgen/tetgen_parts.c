@@ -5,6 +5,7 @@
 #include "../../../lib/surface/surface_seeds.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -55,6 +56,52 @@ static void check_given(const filter *f, const tetgen_parts *parts,
     for (size_t i = 0; i < parts->given.regions; i++)
         if (!tm_surface_has_mesh(built, parts->given.region[i].point))
             fail_at_point(f, "the region", parts->given.region[i].point);
+}
+
+/* TetGen would give the number of a second region in a part to one tetrahedron. Of the
+ * surface, that *faces is without holes, each part keeps the first one. */
+static void drop_repeated(const filter *f, const tm_polygon_surface *faces,
+                          const tm_surface_options *options, tm_polygon_surface *surface)
+{
+    tm_error error;
+    tm_surface built;
+    tm_polygon_surface numbered = *faces;
+    size_t kept = 0;
+    bool *is_first = tm_new(surface->regions, sizeof *is_first);
+    numbered.region = tm_new(surface->regions, sizeof *numbered.region);
+    if (!is_first || !numbered.region)
+        filter_fail_memory(f);
+    for (size_t i = 0; i < surface->regions; i++) {
+        is_first[i] = false;
+        numbered.region[i] = surface->region[i];
+        numbered.region[i].attribute = (double)i;
+    }
+    succeed(f, tm_surface_build(&built, &numbered, options, &error), &error);
+    for (size_t p = 0; p < tm_surface_seeds(&built); p++)
+        if (built.region[p] < (double)surface->regions)
+            is_first[(size_t)built.region[p]] = true;
+    for (size_t i = 0; i < surface->regions; i++)
+        if (is_first[i])
+            surface->region[kept++] = surface->region[i];
+    filter_leave_out(f, "%zu regions that are in one with another before",
+                     surface->regions - kept);
+    surface->regions = kept;
+    tm_surface_free(&built);
+    free(numbered.region);
+    free(is_first);
+}
+
+static void check_numbers(const filter *f, const tm_polygon_surface *surface)
+{
+    tm_error error;
+    for (size_t i = 0; i < surface->regions; i++)
+        if (fabs(surface->region[i].attribute) > INT32_MAX) {
+            tm_fail_at(&error, TM_ERROR_INPUT, filter_input_name(f), 0, NULL,
+                       "a region has the number %.17g, which TetGen has no place for "
+                       "(%d..%d)",
+                       surface->region[i].attribute, -INT32_MAX, INT32_MAX);
+            filter_fail(f, &error);
+        }
 }
 
 /* The parts ----------------------------------------------------------------------------
@@ -132,16 +179,19 @@ void tetgen_find_parts(const filter *f, const tetgen_parts *parts,
         .feature_angle = TM_FEATURE_ANGLE, .regions = true, .walls = true};
     const bool knows = surface->holes + surface->regions > 0;
     add_given(f, parts, surface);
+    const bool numbered = parts->regions || parts->given.regions > 0;
     tm_surface built;
     tm_polygon_surface faces = *surface;
     faces.holes = faces.regions = 0;
     tm_status status = tm_surface_build(&built, &faces, &options, why);
-    if (status == TM_OK && parts->regions && surface->regions > 0) {
+    if (status == TM_OK && numbered && surface->regions > 0) {
         check_given(f, parts, &built);
         tm_surface_free(&built);
         faces.regions = surface->regions;
         status = tm_surface_build(&built, &faces, &options, why);
     }
+    if (status == TM_OK && built.repeated_regions > 0)
+        drop_repeated(f, &faces, &options, surface);
     if (status == TM_ERROR_INPUT && !parts->cavities) {
         if (parts->regions)
             filter_note(f, "%s: TetGen numbers the regions, as %s", filter_input_name(f),
@@ -163,4 +213,6 @@ void tetgen_find_parts(const filter *f, const tetgen_parts *parts,
         free(seed);
     }
     tm_surface_free(&built);
+    if (numbered)
+        check_numbers(f, surface);
 }

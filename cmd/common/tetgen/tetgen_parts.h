@@ -15,9 +15,11 @@ typedef struct tetgen_parts {
 } tetgen_parts;
 
 /* Adds to the holes and regions of the surface what *parts asks for. Says on stderr what
- * shells within others become. Exits where a given point is outside, and where cavities
- * cannot be told as the surface is not closed or crosses itself; *why becomes what is
- * wrong with it, as octree-mesh would say it, with status TM_OK where nothing is. */
+ * shells within others become. Leaves out regions that are in one with another before.
+ * Exits where a given point is outside, where a region has a number that TetGen has no
+ * place for, and where cavities cannot be told as the surface is not closed or crosses
+ * itself; *why becomes what is wrong with it, as octree-mesh would say it, with status
+ * TM_OK where nothing is. */
 void tetgen_find_parts(const filter *f, const tetgen_parts *parts,
                        tm_polygon_surface *surface, tm_error *why);
 
