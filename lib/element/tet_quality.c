@@ -19,7 +19,7 @@ static bool make_unit(double unit[CORNERS][DIMENSIONS], const double a[3],
     memcpy(unit[1], b, sizeof unit[1]);
     memcpy(unit[2], c, sizeof unit[2]);
     memcpy(unit[3], d, sizeof unit[3]);
-    return tm_bring_into_range(unit, CORNERS);
+    return tm_bring_into_range(unit, CORNERS) > 0;
 }
 
 double tm_tet_sine2_scaled(const double a[3], const double b[3], const double c[3],

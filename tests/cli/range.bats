@@ -139,7 +139,8 @@ without_coordinates() {
         for mesh in tets mixed polyhedra; do
             scaled "$power" <"$mesh.tm" >"$mesh@.tm"
         done
-        for command in 'lepp-improve -q -a selective --with both -t 60' 'polylla3d -q'; do
+        for command in 'lepp-improve -q -a selective --with both -t 60' 'polylla3d -q' \
+            'lepp-improve -q -t 60' 'lepp-improve -q -t 60 --surface-tolerance .01'; do
             $command --no-history tets.tm >expected.tm
             $command --no-history tets@.tm >found.tm
             without_coordinates found.tm | cmp - <(without_coordinates expected.tm)
