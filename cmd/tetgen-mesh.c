@@ -4,6 +4,7 @@
 #include "common/input/surface_input.h"
 #include "common/tetgen/tetgen.h"
 #include "common/tetgen/tetgen_attributes.h"
+#include "common/tetgen/tetgen_markers.h"
 #include "common/tetgen/tetgen_parts.h"
 #include "common/tetgen/tetgen_switches.h"
 
@@ -457,8 +458,11 @@ static void refine_tets(settings *s, tm_stream *input, tm_stream *mesh)
         find_sizes(s, node->count, node->attributes, node->attribute, input->base);
     s->request.size = size;
     mesh->base = input->base;
+    tetgen_aliases aliases;
+    tetgen_hide_markers(&f, input, &aliases);
     if (tetgen_refine(&f, &s->request, input, mesh, &error) != TM_OK)
         filter_fail(&f, &error);
+    tetgen_restore_markers(mesh, &aliases);
     tetgen_interpolate_refined(&f, input, mesh);
     free(size);
 }

@@ -110,7 +110,7 @@ double tm_aspect_ratio(size_t nodes, const double (*xyz)[3], const uint32_t *ite
     double p[TM_ELEMENT_NODES][3];
     for (size_t v = 0; v < nodes; v++)
         memcpy(p[v], xyz[item[v]], sizeof p[v]);
-    if (!tm_bring_into_range(p, nodes))
+    if (tm_bring_into_range(p, nodes) == 0)
         return 0;
     switch (nodes) {
     case TM_HEX_NODES:

@@ -12,8 +12,9 @@ enum { DIMENSIONS = 3, CORNERS = 4 };
 static const double half_turn = 180; /* degrees */
 static const double pi = 3.14159265358979323846;
 
-static bool make_unit(double unit[CORNERS][DIMENSIONS], const double a[3],
-                      const double b[3], const double c[3], const double d[3])
+/* As tm_bring_into_range(). */
+static double make_unit(double unit[CORNERS][DIMENSIONS], const double a[3],
+                        const double b[3], const double c[3], const double d[3])
 {
     memcpy(unit[0], a, sizeof unit[0]);
     memcpy(unit[1], b, sizeof unit[1]);
@@ -26,8 +27,11 @@ double tm_tet_sine2_scaled(const double a[3], const double b[3], const double c[
                            const double d[3])
 {
     double unit[CORNERS][DIMENSIONS];
-    if (!make_unit(unit, a, b, c, d))
-        return 0;
+    const double *corner[CORNERS] = {a, b, c, d}, factor = make_unit(unit, a, b, c, d);
+    /* Not moved to the origin, edges are rounded as they are at other sizes. */
+    for (size_t v = 0; v < CORNERS; v++)
+        for (size_t i = 0; i < DIMENSIONS; i++)
+            unit[v][i] = factor * corner[v][i];
     bool measured;
     return tm_tet_sine2_measure(unit[0], unit[1], unit[2], unit[3], &measured);
 }
@@ -57,7 +61,7 @@ void tm_tet_dihedrals(const double a[3], const double b[3], const double c[3],
                       const double d[3], double degrees[TM_TET_EDGES])
 {
     double p[CORNERS][DIMENSIONS];
-    if (!make_unit(p, a, b, c, d)) {
+    if (make_unit(p, a, b, c, d) == 0) {
         for (size_t e = 0; e < TM_TET_EDGES; e++)
             degrees[e] = 0;
         return;
@@ -82,7 +86,7 @@ double tm_tet_volume_quality(const double a[3], const double b[3], const double 
                              const double d[3])
 {
     double p[CORNERS][DIMENSIONS];
-    if (!make_unit(p, a, b, c, d))
+    if (make_unit(p, a, b, c, d) == 0)
         return 0;
     double longest2 = 0;
     for (size_t e = 0; e < TM_TET_EDGES; e++)

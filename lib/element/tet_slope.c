@@ -3,6 +3,8 @@
 
 #include "../geom/vector.h"
 
+#include <string.h>
+
 /* With A, B, C the vectors from p to the corners, n_a = B × C … are the normals of the
  * faces opposite a, b, c, each twice as long as its face is large; that of abc is their
  * sum n_p. D = 6 V = -A · n_a, and sin α = D l / (|n_i| |n_j|) at an edge of length l
@@ -17,16 +19,18 @@ typedef struct {
     double length2[3];   /* |A|², … */
     double base2[3];     /* |C - B|², … */
     double determinant;
+    double factor; /* of all lengths, so that products of them are in range */
 } shape;
 
 static bool measure_shape(shape *s, const double a[3], const double b[3],
                           const double c[3], const double p[3])
 {
     const double low = 1e-100, high = 1e100;
-    bool is_measured = true;
-    tm_subtract(s->to[0], a, p);
-    tm_subtract(s->to[1], b, p);
-    tm_subtract(s->to[2], c, p);
+    double corner[4][3] = {
+        {p[0], p[1], p[2]}, {a[0], a[1], a[2]}, {b[0], b[1], b[2]}, {c[0], c[1], c[2]}};
+    s->factor = tm_bring_into_range(corner, 4);
+    bool is_measured = s->factor > 0 && isfinite(s->factor);
+    memcpy(s->to, corner + 1, sizeof s->to);
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
         tm_cross(s->normal[i], s->to[j], s->to[k]);
@@ -129,6 +133,10 @@ size_t tm_tet_slopes(tm_tet_measure measure, const double a[3], const double b[3
     shape s;
     if (!measure_shape(&s, a, b, c, p))
         return 0;
-    return measure == TM_MEASURE_DIHEDRAL ? slopes_of_sines(&s, limit, slope)
-                                          : slope_of_volume(&s, limit, slope);
+    size_t count = measure == TM_MEASURE_DIHEDRAL ? slopes_of_sines(&s, limit, slope)
+                                                  : slope_of_volume(&s, limit, slope);
+    for (size_t k = 0; k < count; k++)
+        for (int x = 0; x < 3; x++)
+            slope[k].gradient[x] *= s.factor;
+    return count;
 }

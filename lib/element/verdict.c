@@ -156,7 +156,7 @@ double tm_verdict_shape(size_t nodes, const double (*xyz)[3], const uint32_t *it
     double p[TM_ELEMENT_NODES][3], low = 1;
     for (size_t v = 0; v < nodes; v++)
         memcpy(p[v], xyz[item[v]], sizeof p[v]);
-    if (!tm_bring_into_range(p, nodes))
+    if (tm_bring_into_range(p, nodes) == 0)
         return 0;
     if (nodes == TM_PYRAMID_NODES)
         return pyramid_shape(p);

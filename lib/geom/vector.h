@@ -123,8 +123,9 @@ static inline double tm_tet_volume(const double a[3], const double b[3],
 
 /* Moves the points so that the first is the origin; where products of coordinates could
  * leave the range of double, multiplies by a power of two that brings the largest one
- * into [1/2, 1). False where all points are one or a difference overflows. */
-static inline bool tm_bring_into_range(double (*p)[3], size_t count)
+ * into [1/2, 1). Returns this factor, 1 in range; 0 where all points are one or a
+ * difference overflows. */
+static inline double tm_bring_into_range(double (*p)[3], size_t count)
 {
     const double small = 1e-20, large = 1e20;
     double largest = 0;
@@ -136,15 +137,15 @@ static inline bool tm_bring_into_range(double (*p)[3], size_t count)
         }
     }
     if (small < largest && largest < large)
-        return true;
+        return 1;
     if (!(largest > 0 && isfinite(largest)))
-        return false;
+        return 0;
     int exponent;
     frexp(largest, &exponent);
     for (size_t v = 0; v < count; v++)
         for (size_t i = 0; i < 3; i++)
             p[v][i] = ldexp(p[v][i], -exponent);
-    return true;
+    return ldexp(1, -exponent);
 }
 
 TM_EXTERN_C_END

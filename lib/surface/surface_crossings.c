@@ -100,7 +100,7 @@ static bool is_between(const double d[3], const double *const *p, const double *
         least = b < least ? b : least;
         size = fmax(size, fmax(tm_norm2(p[i]), tm_norm2(q[i])));
     }
-    return least - most > margin * sqrt(tm_norm2(d) * size);
+    return least - most > margin * tm_norm(d) * sqrt(size);
 }
 
 static bool strangers_are_apart(const double *const p[3], const double *const q[3])

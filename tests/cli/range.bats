@@ -33,6 +33,7 @@ setup_file() {
     {
         surface cube off >cube.off
         tetgen-mesh -q1.4 --no-history cube.off >tets.tm
+        tetgen-mesh -q1.4 -a .02 --no-history cube.off >fine.tm
         { sed '/^\.ele/,$d' tets.tm; echo .end; } >points.tm
         { sed '/^\.ele/,/^\.face/{/^\.face/!d}' tets.tm; } >surface.tm
         octree-mesh --no-history -a 1 cube.off >mixed.tm
@@ -138,12 +139,13 @@ without_coordinates() {
 @test "a mesh scaled by a power of two within the limits: the same, and the same numbers" {
     cd "$BATS_FILE_TMPDIR"
     for power in 0x1p-140 0x1p140; do
-        for mesh in tets mixed polyhedra; do
+        for mesh in fine mixed polyhedra; do
             scaled "$power" <"$mesh.tm" >"$mesh@.tm"
         done
-        for command in 'lepp-improve -q -a selective --with both -t 60' 'polylla3d -q'; do
-            $command --no-history tets.tm >expected.tm
-            $command --no-history tets@.tm >found.tm
+        for command in 'lepp-improve -q -a selective --with both -t 60' 'polylla3d -q' \
+            'lepp-improve -q -t 45' 'lepp-improve -q -t 45 --surface-tolerance .01'; do
+            $command --no-history fine.tm >expected.tm
+            $command --no-history fine@.tm >found.tm
             without_coordinates found.tm | cmp - <(without_coordinates expected.tm)
         done
         for command in 'jens-stats mixed' 'jens-stats --certify mixed'; do

@@ -288,10 +288,17 @@ END
 import sys
 nodes, faces = 8, 6
 lines = sys.stdin.read().split("\n")
-print("8 3 0 0", *(f"{i} {p}" for i, p in enumerate(lines[2:10])), "6 1",
+print("8 3 0 1", *(f"{i} {p} 5" for i, p in enumerate(lines[2:10])), "6 1",
       *(f"{p} {k + 11}" for k, p in enumerate(lines[10:16])), "0", "0", sep="\n")' >box.smesh
     tetgen-mesh box.smesh | tetgen-mesh -q -a 0.01 -o fine.tm
     rows .face fine.tm | awk '{ n[$5]++ } END { for (m = 11; m <= 16; m++) if (n[m] < 3) exit 1; exit length(n) != 6 }'
+    # and so with markers below 0, on faces and on the nodes that are put on them
+    negative() { awk '/^[.]/ { block = $1 } block == ".face" && NF == 5 { $5 = -$5 } 1'; }
+    tetgen-mesh box.smesh >coarse.tm
+    negative <coarse.tm | tetgen-mesh -q -a 0.01 >negative.tm
+    [ "$(rows .face fine.tm)" = "$(negative <negative.tm | rows .face /dev/stdin)" ]
+    [ "$(rows .node fine.tm)" = "$(rows .node negative.tm | sed 's/ -\(1[1-6]\)$/ \1/')" ]
+    rows .node negative.tm | grep -q ' -1[1-6]$'
     # of a stream with both, -r takes the tetrahedra
     surface cube stream | tetgen-mesh -a 0.1 -o both.tm
     tetgen-mesh -a 0.01 -r both.tm -o refined.tm

@@ -417,11 +417,13 @@ static void test_shrinking(void **state)
     (void)state;
     const double heights[] = {1, 0.1, 0.01}, growths[] = {0, 0.9, 0.6, 0.4};
     for (size_t h = 0; h < sizeof heights / sizeof *heights; h++) {
+        const uint64_t same = random_state;
         double share = 0;
         size_t tets = 0;
         for (size_t k = 0; k < sizeof growths / sizeof *growths; k++) {
             tm_stream stream;
             tm_tet_mesh mesh;
+            random_state = same;
             make_box(&mesh, &stream, 5, 0.9, heights[h]);
             tm_improve_options options = {.angle = 30,
                                           .measure = TM_MEASURE_DIHEDRAL,

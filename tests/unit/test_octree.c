@@ -296,6 +296,32 @@ static void assert_brick(const double low[3], const double high[3], double size,
     tm_brick_free(&brick);
 }
 
+/* A box of whole octants has its faces between octants, not in planes of centres. */
+static void test_brick_of_octants(void **state)
+{
+    (void)state;
+    const double close = 1e-5;
+    for (int k = 0; k < 1000; k++) {
+        const double size = 0.01 + random_unit();
+        double low[3], high[3];
+        for (int i = 0; i < 3; i++) {
+            low[i] = 10 * random_unit();
+            high[i] = low[i] + size * (1 + random_below(20));
+        }
+        tm_error error = {0};
+        tm_brick brick;
+        assert_ok(tm_brick_over(&brick, low, high, size, &error), &error);
+        for (int i = 0; i < 3; i++) {
+            const double below = (low[i] - brick.low[i]) / size;
+            const double above =
+                (brick.low[i] + brick.roots[i] * brick.side - high[i]) / size;
+            assert_true(fabs(below - round(below)) < close && below > close);
+            assert_true(fabs(above - round(above)) < close && above > close);
+        }
+        tm_brick_free(&brick);
+    }
+}
+
 static void test_brick(void **state)
 {
     (void)state;
@@ -774,6 +800,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_places),
         cmocka_unit_test(test_brick),
+        cmocka_unit_test(test_brick_of_octants),
         cmocka_unit_test(test_root_only),
         cmocka_unit_test(test_random_rules),
         cmocka_unit_test(test_random_refinement),

@@ -20,7 +20,7 @@
 static void random_tet(double x[4][3], double *size)
 {
     const double flat = 0.02;
-    *size = ldexp(1, (int)random_below(40) - 20);
+    *size = ldexp(1, (int)random_below(290) - 145);
     do
         for (int v = 0; v < 4; v++)
             for (int k = 0; k < 3; k++)

@@ -59,6 +59,23 @@ static tm_status fill(tm_brick *brick, tm_error *error)
     return status;
 }
 
+/* How far below the middle of the roots the box is, where octants are of a size. A thin
+ * box is to be in the middle of them. Faces of others may be in one plane with centres,
+ * of which rounding would say whether they are inside: then half an octant, and one more
+ * root where the roots would end with the box. */
+static double beside_middle(tm_brick *brick, int i, double extent, double size)
+{
+    const double tie = 1e-6;
+    if (brick->side > size && (1 + beyond) * extent < size)
+        return size / 2;
+    const double margin = (brick->roots[i] * brick->side - extent) / (2 * size);
+    if (fabs(margin - floor(margin) - 0.5) > tie)
+        return 0;
+    const bool ends = margin < 1;
+    brick->roots[i] += ends;
+    return size / 2 - (ends ? brick->side / 2 : 0);
+}
+
 tm_status tm_brick_over(tm_brick *brick, const double low[3], const double high[3],
                         double size, tm_error *error)
 {
@@ -72,10 +89,9 @@ tm_status tm_brick_over(tm_brick *brick, const double low[3], const double high[
     for (int i = 0; i < 3; i++) {
         const double count = ceil((1 + beyond) * extent[i] / brick->side);
         brick->roots[i] = count < 1 ? 1 : (uint32_t)count;
+        const double beside = size > 0 ? beside_middle(brick, i, extent[i], size) : 0;
         const double across = brick->roots[i] * brick->side;
-        brick->low[i] = low[i] + extent[i] / 2 - across / 2;
-        if (brick->side > size && (1 + beyond) * extent[i] < size)
-            brick->low[i] -= size / 2;
+        brick->low[i] = low[i] + extent[i] / 2 - across / 2 - beside;
         if (!(brick->low[i] < low[i]) || !(brick->low[i] + across > high[i]))
             return tm_fail(error, TM_ERROR_INPUT,
                            "the surface is too far from the origin for its size");

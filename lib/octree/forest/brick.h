@@ -28,7 +28,8 @@ double tm_brick_side(const double low[3], const double high[3], double size);
  * along each axis as few as reach across, the box in the middle. Where that were more
  * than TM_BRICK_LONGEST along the longest side the cubes are larger. Where size is above
  * 0 they are `size`, doubled until they are so large or larger, and where the box is
- * thinner than that it is in the middle of cubes of this side.
+ * thinner than that it is in the middle of cubes of this side; where its faces would go
+ * through their centres it is half of one out of the middle, and they are between cubes.
  * The box is strictly inside the brick. TM_ERROR_INPUT: a box without extent, or so far
  * from the origin that its size is lost in rounding. */
 tm_status tm_brick_over(tm_brick *brick, const double low[3], const double high[3],

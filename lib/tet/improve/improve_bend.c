@@ -13,7 +13,8 @@ static double cosine(const tm_improver *m, uint32_t a, uint32_t b, uint32_t c, u
     double of_c[3], of_d[3];
     tm_triangle_normal(of_c, x[a], x[b], x[c]);
     tm_triangle_normal(of_d, x[b], x[a], x[d]);
-    double size = sqrt(tm_norm2(of_c) * tm_norm2(of_d));
+    /* The product of the two squares may be too large for a double. */
+    double of_c2 = tm_norm2(of_c), size = of_c2 * sqrt(tm_norm2(of_d) / of_c2);
     return size > 0 ? tm_dot(of_c, of_d) / size : 1;
 }
 
