@@ -2,7 +2,7 @@
 /* gmsh-export: a stream as a mesh in a format that Gmsh writes. */
 #include "../common/gmsh/gmsh_names.h"
 #include "../common/input/left_out.h"
-#include "../common/input/rounded.h"
+#include "../common/export/rounded.h"
 #include "../common/input/mesh_input.h"
 
 #include "../../lib/element/shape.h"

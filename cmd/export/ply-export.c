@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* ply-export: the boundary of a mesh, or all its faces, as a PLY file. */
-#include "../common/input/polygon_export.h"
+#include "../common/export/polygon_export.h"
 
 int main(int argc, char **argv)
 {

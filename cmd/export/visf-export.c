@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* visf-export: a stream as a ViSF file. */
 #include "../common/input/mesh_input.h"
-#include "../common/input/rounded.h"
+#include "../common/export/rounded.h"
 
 #include "../../lib/format/visf.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* vtk-export: a stream as an unstructured grid in a legacy text file of VTK. */
-#include "../common/input/vtk_export.h"
+#include "../common/export/vtk_export.h"
 
 int main(int argc, char **argv)
 {

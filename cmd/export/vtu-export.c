@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* vtu-export: a stream as an unstructured grid of VTK. */
-#include "../common/input/vtk_export.h"
+#include "../common/export/vtk_export.h"
 
 int main(int argc, char **argv)
 {

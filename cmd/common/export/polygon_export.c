@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "polygon_export.h"
 
-#include "left_out.h"
-#include "mesh_input.h"
+#include "../input/left_out.h"
+#include "../input/mesh_input.h"
 
 #include "../../../lib/stream/group.h"
 

@@ -4,8 +4,8 @@
 #include "../../../lib/format/tetgen.h"
 #include "../../../lib/format/vtk/vtk_piece.h"
 #include "../../../lib/ranks/ranks.h"
-#include "left_out.h"
-#include "mesh_input.h"
+#include "../input/left_out.h"
+#include "../input/mesh_input.h"
 
 #include <stdlib.h>
 #include <string.h>
