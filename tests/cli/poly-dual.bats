@@ -238,9 +238,9 @@ on_sphere() {
         mesh-check -q "$out/dual.tm"
         poly-stats "$out/dual.tm" | grep -q '^ *pyramids without volume *0$'
         tets=$(header .ele $mesh.tm | cut -d ' ' -f 1)
-        grep -oE '"(rounds|work)": [0-9]+' "$out/json" | awk -v tets="$tets" '
-            /rounds/ { rounds = $2 }
-            /work/ { work = $2 }
-            END { exit !(rounds > 0 && rounds <= 40 && work <= 50000 * tets) }'
+        rounds=$(json "$out/json" rounds)
+        [ "$rounds" -gt 0 ]
+        [ "$rounds" -le 40 ]
+        [ "$(json "$out/json" work)" -le $((50000 * tets)) ]
     done
 }

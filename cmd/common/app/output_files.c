@@ -67,12 +67,17 @@ static char *follow_links(const char *name)
     return NULL;
 }
 
+static const char *last_part(const char *name)
+{
+    const char *slash = strrchr(name, '/');
+    return slash ? slash + 1 : name;
+}
+
 /* The folder of file->target, with its slash, and `name`; NULL where memory is out. */
 static char *beside_target(const output_file *file, const char *name)
 {
     tm_text text = {0};
-    const char *slash = strrchr(file->target, '/');
-    tm_text_append(&text, file->target, slash ? (size_t)(slash + 1 - file->target) : 0);
+    tm_text_append(&text, file->target, (size_t)(last_part(file->target) - file->target));
     tm_text_string(&text, name);
     if (!text.failed)
         return text.byte;
@@ -196,12 +201,6 @@ static bool give_name(output_file *file, bool may_come_back)
             return false;
     }
     return !file->temporary || exchange_names(file, may_come_back);
-}
-
-static const char *last_part(const char *name)
-{
-    const char *slash = strrchr(name, '/');
-    return slash ? slash + 1 : name;
 }
 
 /* Whether both are to get one name, whatever way leads there. */

@@ -33,14 +33,15 @@ static bool has_one_corner_less(const tm_block *rows, size_t r, const double *xy
     const bool is_polygon = rows->kind == TM_FACET;
     size_t k;
     const uint32_t *node = tm_row_nodes(rows, r, &k);
-    for (size_t i = 1; i < k; i++)
-        for (size_t j = is_polygon ? i - 1 : 0; j < i; j++)
+    for (size_t i = 0; i < k; i++) {
+        const size_t before = (i + k - 1) % k;
+        const size_t first = is_polygon ? before : 0, past = is_polygon ? before + 1 : i;
+        for (size_t j = first; j < past; j++)
             if (falls_together(xyz + 3 * (size_t)node[i], xyz + 3 * (size_t)node[j],
                                digits))
                 return true;
-    return is_polygon && k > 2 &&
-           falls_together(xyz + 3 * (size_t)node[0], xyz + 3 * (size_t)node[k - 1],
-                          digits);
+    }
+    return false;
 }
 
 void rounded_note(const filter *f, const tm_stream *stream, int digits)

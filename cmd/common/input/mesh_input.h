@@ -52,12 +52,12 @@ typedef tm_status mesh_reader(const filter *f, tm_stream *stream, const tm_text 
 /* Notes of a reader: so many of something, nothing where there are none; and elements of
  * second order that are taken by their corners. */
 void mesh_note_count(const filter *f, size_t count, const char *what);
+void mesh_leave_out_count(const filter *f, size_t count, const char *what);
+void mesh_leave_out_middles(const filter *f, size_t nodes, size_t elements);
 
 /* Says by filter_leave_out() of how many elements of an .m3d file the constants of the
  * material are others than the usual ones. */
 void mesh_leave_out_materials(const filter *f, size_t count);
-void mesh_leave_out_count(const filter *f, size_t count, const char *what);
-void mesh_leave_out_middles(const filter *f, size_t nodes, size_t elements);
 
 /* What an importer does after its options: reads, reports, writes. */
 int mesh_read(filter *f, mesh_reader *read);

@@ -290,16 +290,16 @@ static void check_regions(const filter *f, const tm_polygon_surface *polygons,
 bool surface_input_takes(const tm_stream *stream, const tm_block *block)
 {
     static const char *const names[] = {"surface.node", "surface.face", "surface.group"};
-    bool is_found =
-        strcmp(block->name, ".group") == 0 && !tm_stream_find(stream, "surface.group");
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-        is_found = is_found || strcmp(block->name, names[i]) == 0;
-    if (is_found || block->kind != TM_EDGE)
-        return is_found;
-    size_t marked = 0;
+        if (strcmp(block->name, names[i]) == 0)
+            return true;
+    if (block->kind != TM_EDGE)
+        return strcmp(block->name, ".group") == 0 &&
+               !tm_stream_find(stream, "surface.group");
     for (size_t r = 0; r < block->count && block->marker; r++)
-        marked += block->marker[r] != 0;
-    return marked == 0;
+        if (block->marker[r] != 0)
+            return false;
+    return true;
 }
 
 void surface_input_leave_out_blocks(const filter *f, const tm_stream *stream)
