@@ -13,7 +13,8 @@ static inline void make_soup(tm_polygon_surface *p)
     const unsigned nodes = 1 + random_below(SOUP_NODES), grid = 1 + random_below(8);
     for (unsigned v = 0; v < nodes; v++) {
         const unsigned x = random_below(grid), y = random_below(grid);
-        add_node(p, x, y, random_below(grid) + (random_below(8) == 0 ? 1e-9 : 0));
+        const unsigned z = random_below(grid);
+        add_node(p, x, y, z + (random_below(8) == 0 ? 1e-9 : 0));
     }
     for (unsigned t = random_below(SOUP_TRIANGLES); t > 0; t--) {
         const uint32_t a = random_below(nodes), b = random_below(nodes);
@@ -80,11 +81,14 @@ static inline bool take_triangles(tm_stream *stream, tm_polygon_surface *p)
 
 static inline tm_mend_options random_mend_options(void)
 {
-    return (tm_mend_options){.weld = random_below(2) ? -1 : random_unit() / 4,
-                             .weld_auto = random_below(4) == 0,
-                             .fill = random_below(2) * 8 * random_unit(),
-                             .islands = random_below(2) * 2 * random_unit(),
-                             .all_doubles = random_below(2)};
+    tm_mend_options options = {.weld = random_below(2) ? -1 : random_unit() / 4};
+    options.weld_auto = random_below(4) == 0;
+    options.fill = random_below(2) * 8;
+    options.fill *= random_unit();
+    options.islands = random_below(2) * 2;
+    options.islands *= random_unit();
+    options.all_doubles = random_below(2);
+    return options;
 }
 
 #endif

@@ -73,18 +73,20 @@ static inline void add_random_star(tm_polygon_surface *p)
     double outline[MOST][2];
     const uint32_t k = 2 * (3 + random_below(MOST / 2 - 2));
     make_star(outline, k, 1, random_between(0.4, 1));
-    if (random_below(2))
+    if (random_below(2)) {
         add_prism(p, (const double(*)[2])outline, k, random_between(0.3, 2));
-    else
-        add_bipyramid(p, (const double(*)[2])outline, k, random_between(0.4, 2),
-                      -random_between(0.4, 2));
+    } else {
+        const double top = random_between(0.4, 2);
+        add_bipyramid(p, (const double(*)[2])outline, k, top, -random_between(0.4, 2));
+    }
 }
 
 /* A box with a hollow in it, and a ball beside it. */
 static inline void add_random_bodies(tm_polygon_surface *p)
 {
     const double low[3] = {0, 0, 0};
-    const double high[3] = {1, random_between(1, 2), random_between(1, 2)};
+    const double width = random_between(1, 2), height = random_between(1, 2);
+    const double high[3] = {1, width, height};
     const double hollow[3] = {0.5, 0.5, 0.5}, beside[3] = {1.7, 0.5, 0.5};
     add_box(p, low, high, false);
     if (random_below(2))
@@ -100,7 +102,9 @@ static inline void make_random_surface(tm_surface *surface)
     tm_error error;
     tm_polygon_surface p;
     tm_polygon_surface_init(&p);
-    const double centre[3] = {random_unit(), random_unit(), random_unit()};
+    double centre[3];
+    for (int i = 0; i < 3; i++)
+        centre[i] = random_unit();
     switch (random_below(KINDS)) {
     case 0:
         add_random_cubes(&p);
@@ -131,9 +135,11 @@ static inline void make_random_octree(tm_octree *octree, const tm_surface *surfa
 {
     enum { RULES = 3, SPLIT_EVERY = 30 };
     tm_error error;
-    tm_octree_rule rule[RULES] = {{.kind = TM_RULE_SURFACE, .level = 2 + random_below(3)},
-                                  {.kind = TM_RULE_EVERYTHING, .level = random_below(4)},
-                                  {.kind = TM_RULE_BOX, .level = random_below(6)}};
+    tm_octree_rule rule[RULES] = {
+        {.kind = TM_RULE_SURFACE}, {.kind = TM_RULE_EVERYTHING}, {.kind = TM_RULE_BOX}};
+    rule[0].level = 2 + random_below(3);
+    rule[1].level = random_below(4);
+    rule[2].level = random_below(6);
     for (int i = 0; i < 3; i++) {
         const double a = random_between(surface->low[i], surface->high[i]);
         rule[2].low[i] = a;

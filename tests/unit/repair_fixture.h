@@ -105,6 +105,7 @@ static inline void add_random_solid(tm_polygon_surface *p)
 {
     enum { KINDS = 6 };
     const double low[3] = {0, 0, 0}, high[3] = {1, random_between(0.5, 2), 1};
+    double width;
     switch (random_below(KINDS)) {
     case 0:
         add_pyramid(p, random_between(0.5, 2));
@@ -113,7 +114,8 @@ static inline void add_random_solid(tm_polygon_surface *p)
         add_cube_corner(p);
         break;
     case 2:
-        add_wedge(p, random_between(1, 3), random_between(0.5, 1));
+        width = random_between(1, 3);
+        add_wedge(p, width, random_between(0.5, 1));
         break;
     case 3:
         add_random_star(p);

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* In the place of ../../unit/random.h, to be included before it: numbers are what a
  * fuzzer says, byte by byte, and 0 where it says no more. So the meshes and surfaces that
- * the tests make at random are made of its bytes. */
+ * the tests make at random are made of its bytes. What a target draws it draws one by
+ * one, not twice in a list or in a call: C leaves the order there open, and an input
+ * would be another case with another compiler. */
 #ifndef TESTS_FUZZ_BYTES_H
 #define TESTS_FUZZ_BYTES_H
 #define TESTS_UNIT_RANDOM_H

@@ -11,16 +11,16 @@ static tm_status along_paths(tm_tet_mesh *mesh, tm_error *error)
 {
     static const double growth = 4;
     tm_lepp_report report;
-    tm_lepp_options options = {.algorithm = (tm_lepp_algorithm)random_below(6),
-                               .factor = 1 + random_unit(),
-                               .angle = 10 + 40 * random_unit(),
-                               .measure = (tm_tet_measure)random_below(2),
-                               .stop = (tm_lepp_stop)random_below(3),
-                               .passes = random_below(3),
-                               .max_star = random_below(8),
-                               .max_growth = growth,
-                               .path = (tm_lepp_path)random_below(3),
-                               .count_invalid_swaps = random_below(2)};
+    tm_lepp_options options = {.max_growth = growth};
+    options.algorithm = (tm_lepp_algorithm)random_below(6);
+    options.factor = 1 + random_unit();
+    options.angle = 10 + 40 * random_unit();
+    options.measure = (tm_tet_measure)random_below(2);
+    options.stop = (tm_lepp_stop)random_below(3);
+    options.passes = random_below(3);
+    options.max_star = random_below(8);
+    options.path = (tm_lepp_path)random_below(3);
+    options.count_invalid_swaps = random_below(2);
     if (options.algorithm == TM_LEPP_SWAP_CENTROID && options.stop == TM_LEPP_CONVERGED)
         options.stop = TM_LEPP_ORIGINAL; /* it has no end of its own */
     if (options.algorithm == TM_LEPP_SELECTIVE)
@@ -37,12 +37,12 @@ static tm_status along_paths(tm_tet_mesh *mesh, tm_error *error)
 static tm_status with_all(tm_tet_mesh *mesh, bool *surface_moves, tm_error *error)
 {
     tm_improve_report report;
-    tm_improve_options options = {.angle = 10 + 40 * random_unit(),
-                                  .measure = (tm_tet_measure)random_below(2),
-                                  .max_growth = random_below(5) / 2.0,
-                                  .ops = 1 + random_below(TM_IMPROVE_ALL_OPS),
-                                  .passes = 1 + random_below(4),
-                                  .threads = 1 + random_below(2)};
+    tm_improve_options options = {.angle = 10 + 40 * random_unit()};
+    options.measure = (tm_tet_measure)random_below(2);
+    options.max_growth = random_below(5) / 2.0;
+    options.ops = 1 + random_below(TM_IMPROVE_ALL_OPS);
+    options.passes = 1 + random_below(4);
+    options.threads = 1 + random_below(2);
     *surface_moves = random_below(2);
     if (*surface_moves)
         options.surface.tolerance = 0.1 * random_unit();
@@ -58,7 +58,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
     bytes_start(bytes, size);
     const int n = 1 + (int)random_below(3);
     const bool paths = random_below(2);
-    make_mesh(&mesh, &stream, n, random_unit(), random_below(2));
+    const double by = random_unit();
+    make_mesh(&mesh, &stream, n, by, random_below(2));
     const invariants before = measure_invariants(&mesh);
     const tm_status status =
         paths ? along_paths(&mesh, &error) : with_all(&mesh, &surface_moves, &error);

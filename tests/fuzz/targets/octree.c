@@ -11,8 +11,9 @@
 static void make_octree(tm_octree *octree, const tm_surface *surface)
 {
     tm_error error;
-    tm_octree_rule rule[2] = {{.kind = TM_RULE_SURFACE, .level = random_below(8) > 6},
-                              {.kind = TM_RULE_BOX, .level = random_below(2)}};
+    tm_octree_rule rule[2] = {{.kind = TM_RULE_SURFACE}, {.kind = TM_RULE_BOX}};
+    rule[0].level = random_below(8) > 6;
+    rule[1].level = random_below(2);
     for (int i = 0; i < 3; i++) {
         const double a = random_between(surface->low[i], surface->high[i]);
         rule[1].low[i] = a;
@@ -33,9 +34,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
     assert_ok(tm_surface_check(&surface, &error), &error);
     make_octree(&octree, &surface);
     assert_ok(tm_octree_check(&octree, &surface, &error), &error);
+    const unsigned levels = random_below(2);
+    const bool lay_out = random_below(2);
     const tm_status status =
         tm_octree_mesh_refine_lost(&mesh, &octree, &surface, tm_octree_deepest(&octree),
-                                   random_below(2), random_below(2), NULL, &error);
+                                   levels, lay_out, NULL, &error);
     require(status == TM_OK || (status == TM_ERROR_INPUT && error.what[0]),
             "no mesh, but no reason");
     if (status == TM_OK) {

@@ -38,16 +38,16 @@ static void check_polyhedra_of(const tm_tet_mesh *mesh, const tm_block *facet,
 
 static void cut(const tm_tet_mesh *mesh)
 {
-    const tm_poly_options options = {.mode = (tm_poly_mode)random_below(TM_POLY_MODES),
-                                     .face_metric = (tm_face_metric)random_below(2),
-                                     .cells = 1 + random_below(8),
-                                     .repair = random_below(4) > 0,
-                                     .star = (tm_poly_star)random_below(4),
-                                     .radius = random_below(2) ? 0.03 : 0.1,
-                                     .absorb = random_below(2),
-                                     .no_swallow = random_below(2),
-                                     .max_tets = random_below(20),
-                                     .threads = 1};
+    tm_poly_options options = {.threads = 1};
+    options.mode = (tm_poly_mode)random_below(TM_POLY_MODES);
+    options.face_metric = (tm_face_metric)random_below(2);
+    options.cells = 1 + random_below(8);
+    options.repair = random_below(4) > 0;
+    options.star = (tm_poly_star)random_below(4);
+    options.radius = random_below(2) ? 0.03 : 0.1;
+    options.absorb = random_below(2);
+    options.no_swallow = random_below(2);
+    options.max_tets = random_below(20);
     const tm_coplanar plane = {.degrees = random_below(2) ? 20 * random_unit() : 0,
                                .flatness = 1e-9};
     tm_partition partition;
@@ -73,9 +73,8 @@ static void cut(const tm_tet_mesh *mesh)
 
 static void make_dual(const tm_tet_mesh *mesh)
 {
-    const tm_dual_options options = {.feature_angle =
-                                         random_below(2) ? 60 * random_unit() : 0,
-                                     .convex = random_below(2)};
+    tm_dual_options options = {.feature_angle = random_below(2) ? 60 * random_unit() : 0};
+    options.convex = random_below(2);
     tm_dual_blocks made;
     tm_dual_report report;
     tm_error error;
@@ -94,7 +93,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
     bytes_start(bytes, size);
     const int n = 1 + (int)random_below(3);
     const bool dual = random_below(2);
-    make_mesh(&mesh, &stream, n, random_unit(), random_below(2));
+    const double by = random_unit();
+    make_mesh(&mesh, &stream, n, by, random_below(2));
     if (dual)
         make_dual(&mesh);
     else

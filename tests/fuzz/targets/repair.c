@@ -18,12 +18,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
     tm_polygon_surface_init(&p);
     add_random_solid(&p);
     start_case(&c, &p, 1);
-    damage(&c, random_below(5), random_below(3));
-    const tm_repair_options options = {.method = random_below(4) ? TM_REPAIR_FULL
-                                                                 : TM_REPAIR_REFINE,
-                                       .threshold = random_between(0, 0.2),
-                                       .iterations = random_below(2),
-                                       .growth = random_between(1, 3)};
+    const size_t inside = random_below(5);
+    damage(&c, inside, random_below(3));
+    tm_repair_options options = {.method =
+                                     random_below(4) ? TM_REPAIR_FULL : TM_REPAIR_REFINE};
+    options.threshold = random_between(0, 0.2);
+    options.iterations = random_below(2);
+    options.growth = random_between(1, 3);
     const tm_examination first = examine_state(&c.state);
     assert_ok(tm_repair(&c.state, &c.surface, &options, &report, &error), &error);
     check_score(&c.state, &report.after, options.threshold);
