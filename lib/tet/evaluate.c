@@ -2,9 +2,10 @@
 #include "evaluate.h"
 
 #include "../base/array.h"
-#include "../geom/vector.h"
+#include "../geom/barycentric.h"
 #include "../surface/point_table.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -57,23 +58,14 @@ static void list_tets(evaluation *e)
 /* In which tetrahedron -----------------------------------------------------------------
  */
 
-/* The barycentric coordinates of a point; returns the least. A flat tetrahedron has
- * none. */
+/* The barycentric coordinates of a point; returns how deep it is. */
 static double coordinates(const tm_tet_mesh *from, uint32_t t, const double p[3],
                           double b[CORNERS])
 {
-    const double *x[CORNERS], *y[CORNERS];
-    double least = HUGE_VAL;
+    const double *x[CORNERS];
     for (int i = 0; i < CORNERS; i++)
         x[i] = from->xyz[from->tet[t][i]];
-    const double volume = tm_tet_volume(x[0], x[1], x[2], x[3]);
-    for (int i = 0; i < CORNERS; i++) {
-        memcpy(y, x, sizeof y);
-        y[i] = p;
-        b[i] = volume > 0 ? tm_tet_volume(y[0], y[1], y[2], y[3]) / volume : -HUGE_VAL;
-        least = fmin(least, b[i]);
-    }
-    return least;
+    return tm_barycentric(x, p, b);
 }
 
 /* Pushes what is across the faces of t that were not met, that which the point is the
@@ -110,9 +102,9 @@ static uint32_t find_tet(evaluation *e, const double p[3], uint32_t t)
     e->stack[height++] = t;
     while (height > 0 && most < rounding) {
         t = e->stack[--height];
-        const double least = coordinates(e->from, t, p, b);
-        if (least > most) {
-            most = least;
+        const double depth = coordinates(e->from, t, p, b);
+        if (depth > most) {
+            most = depth;
             best = t;
         }
         height = push_across(e, t, b, height);

@@ -7,6 +7,7 @@
 #include "dual_steps.h"
 
 #include "../../base/array.h"
+#include "../../geom/barycentric.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -73,18 +74,6 @@ static void gather(const tm_dual *d, planes *at)
     }
 }
 
-/* The barycentric coordinates of a point in a tetrahedron. */
-static void find_coordinates(const double *const corner[4], const double p[3],
-                             double coordinate[4])
-{
-    const double volume = tm_tet_volume(corner[0], corner[1], corner[2], corner[3]);
-    for (int i = 0; i < 4; i++) {
-        const double *with[4] = {corner[0], corner[1], corner[2], corner[3]};
-        with[i] = p;
-        coordinate[i] = tm_tet_volume(with[0], with[1], with[2], with[3]) / volume;
-    }
-}
-
 /* Moves the point of a tetrahedron near to its planes. */
 static void move_point(tm_dual *d, size_t t, const planes *at)
 {
@@ -99,7 +88,7 @@ static void move_point(tm_dual *d, size_t t, const planes *at)
             centroid[x] += corner[i][x] / 4;
     }
     solve(at, weight_of_centroid, centroid, to);
-    find_coordinates(corner, to, coordinate);
+    tm_barycentric(corner, to, coordinate);
     for (int i = 0; i < 4; i++)
         if (!(coordinate[i] >= least_coordinate))
             share = fmin(share, (0.25 - least_coordinate) / (0.25 - coordinate[i]));
