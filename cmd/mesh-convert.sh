@@ -24,8 +24,9 @@ suffix tells, by an importer and an exporter of termesh.
   -V, --version  print the version
 
 in:  .tm; .off .stl .ply .obj .mdl .poly .smesh; .node .ele; .m3d .mvm; .oct; .visf;
-     .vtu; .vtk; .inp; .mesh .meshb; .msh .bdf .nas .unv .med .cgns .ply2; a folder polyMesh
-out: .tm; .off; .stl; .ply; .obj; .node .ele; .m3d; .mvm; .oct; .visf; .vtu; .vtk;
+     .vtu .pvtu; .vtk; .inp; .mesh .meshb; .msh .bdf .nas .unv .med .cgns .ply2; a folder
+     polyMesh
+out: .tm; .off; .stl; .ply; .obj; .node .ele; .m3d; .mvm; .oct; .visf; .vtu .pvtu; .vtk;
      .html; .inp; .mesh .meshb; .msh .bdf .nas .unv .su2 .key .med .cgns; a folder polyMesh
 END
 }
@@ -49,7 +50,7 @@ importer_of() {
     m3d | mvm) echo m3d-import ;;
     oct) echo oct-import ;;
     visf) echo visf-import ;;
-    vtu) echo vtu-import ;;
+    vtu | pvtu) echo vtu-import ;;
     vtk) echo vtk-import ;;
     inp) echo abaqus-import ;;
     mesh | meshb) echo medit-import ;;
@@ -65,6 +66,7 @@ exporter_of() {
     inp) echo abaqus-export ;;
     mesh | meshb) echo medit-export ;;
     node | ele) echo tetgen-export ;;
+    pvtu) echo vtu-export ;;
     html) echo mesh-view ;;
     polymesh) echo openfoam-export ;;
     msh | bdf | nas | unv | su2 | key | med | cgns) echo gmsh-export ;;

@@ -6,7 +6,7 @@ int main(int argc, char **argv)
 {
     return vtk_import(
         argc, argv, "vtu-import",
-        "Reads an unstructured grid of VTK (.vtu): points, a surface, elements "
-        "or\npolyhedra.",
+        "Reads an unstructured grid of VTK (.vtu, .pvtu): points, a surface,\nelements "
+        "or polyhedra.",
         tm_vtu_read);
 }

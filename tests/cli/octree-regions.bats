@@ -182,11 +182,15 @@ shells() {
     [ "$(header .mix two.tm | cut -d ' ' -f 2)" -eq 0 ]
 }
 
-@test "a region that is not in the mesh is named" {
+@test "regions that are not in the mesh are counted" {
     shells box -1 1 ball 0.02 0 0 0
     run -0 --separate-stderr octree-mesh -s 4 --resolve 0 --json report.json -o lost.tm shells.smesh
     [[ "$stderr" == *"1 of 2 regions, one within another, are not in the mesh"* ]]
     grep -q '"lost_regions": 1' report.json
+    # and one within that: two of three
+    shells box -1 1 box -0.05 0.05 ball 0.02 0 0 0
+    run -0 --separate-stderr octree-mesh -s 3 --resolve 0 -o lost.tm shells.smesh
+    [[ "$stderr" == *"2 of 3 regions, one within another, are not in the mesh"* ]]
 }
 
 @test "octree-repair keeps regions: interface nodes stay on the surface" {

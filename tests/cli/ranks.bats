@@ -157,10 +157,13 @@ END
     tetgen-mesh -q -a 0.0001 -o faces.tm <<<"$(surface cube off)"
     for mesh in marked faces; do
         vtu-export -o one.vtu $mesh.tm
+        vtu-import -q one.vtu | vtu-export -o back.vtu
         for n in 1 3 7; do
             rm -f x*
             on_ranks $n vtu-export -o x.pvtu $mesh.tm
             same_cells one.vtu x.pvtu
+            vtu-import -q x.pvtu | vtu-export -o pieces.vtu
+            same_cells back.vtu pieces.vtu
         done
     done
     sed '/^\.ele/,/^\.face/{/^\.face/!d}' faces.tm >surface.tm

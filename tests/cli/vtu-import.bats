@@ -243,6 +243,64 @@ meshio.vtu.write("lzma.vtu", meshio.read("gmsh-True-zlib.vtu"), compression="lzm
 2 1 0 4 2" ]
 }
 
+# Prints a .pvtu file of these pieces.
+list() {
+    echo '<VTKFile type="PUnstructuredGrid" version="0.1"><PUnstructuredGrid GhostLevel="0">'
+    echo '<PPoints><PDataArray type="Float64" NumberOfComponents="3"/></PPoints>'
+    [ $# -eq 0 ] || printf '<Piece Source="%s"/>\n' "$@"
+    echo '</PUnstructuredGrid></VTKFile>'
+}
+
+@test "the files of a list of pieces are one mesh, as the pieces of a file are" {
+    local first second
+    first=$(data CellData region 3) second=$(data CellData region 4)
+    { grid "$corner" '10: 0 1 2 3' "$first" | sed '$d' &&
+        piece "$cube" '12: 0 1 2 3 4 5 6 7' "$second" && grid '' '' | sed -n '$p'; } >whole.vtu
+    mkdir -p 'run & 1/deep'
+    grid "$corner" '10: 0 1 2 3' "$first" >'run & 1/a_0.vtu'
+    grid "$cube" '12: 0 1 2 3 4 5 6 7' "$second" | gzip >'run & 1/deep/a_1.vtu'
+    grid '' '' >'run & 1/none.vtu'
+    list none.vtu a_0.vtu deep/a_1.vtu >'run & 1/a.pvtu'
+    vtu-import --no-history -q whole.vtu >whole.tm
+    run -0 --separate-stderr vtu-import --no-history -o list.tm 'run & 1/a.pvtu'
+    cmp list.tm whole.tm
+    [[ "$stderr" == *"4 points of several pieces are the same and joined"* ]]
+    mesh-convert 'run & 1/a.pvtu' converted.tm
+    cmp <(sed '/^# /d' converted.tm) whole.tm
+    # a name from the root; of standard input, from where we are
+    list "$PWD/run &amp; 1/a_0.vtu" "run &amp; 1/deep/a_1.vtu" >a.pvtu
+    vtu-import --no-history -q <a.pvtu | cmp - whole.tm
+    # ours
+    vtu-export -o ours.pvtu whole.tm
+    vtu-import --no-history -q ours.pvtu | cmp - whole.tm
+    mesh-convert whole.tm again.pvtu
+    [ -s again_0.vtu ]
+}
+
+@test "a piece that is not there, or is none" {
+    fails() {
+        run "-$1" --separate-stderr vtu-import -o out.tm list.pvtu
+        [[ "$stderr" == "vtu-import: "$2 ]] || { echo "$stderr" && false; }
+        [ ! -e out.tm ]
+    }
+    grid "$corner" '10: 0 1 2 3' >a_0.vtu
+    list a_0.vtu gone.vtu >list.pvtu
+    fails 4 'gone.vtu: cannot open: No such file or directory'
+    list a_0.vtu list.pvtu >list.pvtu
+    fails 3 'list.pvtu: is a list of pieces, and so no piece'
+    list >list.pvtu
+    fails 3 'list.pvtu: has no element Piece'
+    list '' >list.pvtu
+    fails 3 'list.pvtu:3: a piece has no Source'
+    list a_0.vtu a_1.vtu >list.pvtu
+    grid "$corner" '10: 0 1 2 9' >a_1.vtu
+    fails 3 'a_1.vtu: cell 0: the number of a point is 9 (there are 4)'
+    list </dev/null >a_1.vtu
+    fails 3 'a_1.vtu: is a list*'
+    : >a_1.vtu
+    fails 3 'a_1.vtu:1: is no XML*'
+}
+
 @test "polyhedra in the layout of VTK 9.4, beside elements" {
     grid "$cube, .5 .5 2" '42: 0 1 2 3 4 5 6 7, 14: 4 5 6 7 8, 9: 0 3 2 1' \
         "$(data CellData marker '0 0 4')" >new.vtu
@@ -292,7 +350,7 @@ meshio.vtu.write("lzma.vtu", meshio.read("gmsh-True-zlib.vtu"), compression="lzm
     sed 's/"UnstructuredGrid"/"PolyData"/' good.vtu >a.vtu
     refuses "1: is a file of VTK of type 'PolyData' (UnstructuredGrid would be right)" a.vtu
     sed 's/"UnstructuredGrid"/"PUnstructuredGrid"/' good.vtu >b.vtu
-    refuses 'the files of its pieces can be read' b.vtu
+    refuses '3: a piece has no Source' b.vtu
     sed 's/byte_order/compressor="vtkLZ4DataCompressor" byte_order/' good.vtu >c.vtu
     refuses 'compressed by vtkLZ4DataCompressor (vtkZLibDataCompressor can be read)' c.vtu
     echo '<html><body/></html>' >d.vtu

@@ -88,7 +88,7 @@ static void check_stream(const tm_stream *stream)
 /* The bytes are read where reading one more is an error that a sanitizer sees. */
 static tm_status read_grid(grid_reader *read, const char *bytes, size_t size)
 {
-    static const tm_vtk_read_options options = {NULL, NULL, 1};
+    static const tm_vtk_read_options options = {.threads = 1};
     char *copy = malloc(size + !size);
     assert_non_null(copy);
     memcpy(copy, bytes, size);

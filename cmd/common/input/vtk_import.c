@@ -58,11 +58,29 @@ static void say(const filter *f, const tm_vtk_read_report *r)
                        filter_input_name(f), r->polygons_joined);
 }
 
+/* The name of a piece is from the folder on that its list is in. */
+static tm_status load_piece(void *context, const char *source, tm_text *name,
+                            tm_text *bytes, tm_error *error)
+{
+    const filter *f = context;
+    const char *slash = f->input ? strrchr(f->input, '/') : NULL;
+    if (slash && *source != '/')
+        tm_text_append(name, f->input, (size_t)(slash + 1 - f->input));
+    tm_text_string(name, source);
+    tm_text_append(name, "", 1);
+    if (name->failed)
+        return tm_fail_memory(error);
+    filter_read_file(f, name->byte, bytes);
+    return TM_OK;
+}
+
 static tm_status read_grid(const filter *f, tm_stream *stream, const tm_text *bytes,
                            tm_error *error)
 {
     tm_vtk_read_report report;
     options.threads = f->threads;
+    options.load = load_piece;
+    options.context = (void *)(uintptr_t)f;
     const tm_status status = reader(stream, bytes->byte, bytes->size,
                                     filter_input_name(f), &options, &report, error);
     if (status == TM_OK)

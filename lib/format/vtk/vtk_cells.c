@@ -76,7 +76,7 @@ tm_status tm_vtk_add_points(tm_vtk_mesh *cells, const tm_numbers *xyz, tm_error 
         if (!isfinite(to[i]))
             return tm_fail_at(error, TM_ERROR_INPUT, cells->name, 0, NULL,
                               "point %zu: a coordinate is no finite number",
-                              cells->points + i / COORDINATES);
+                              cells->points - cells->first_point + i / COORDINATES);
     }
     cells->points = past;
     return TM_OK;
@@ -91,7 +91,8 @@ static tm_status take_point(const tm_vtk_mesh *cells, const tm_numbers *numbers,
     if (!tm_numbers_whole(numbers, i, 0, points - 1, &value))
         return tm_fail_at(error, TM_ERROR_INPUT, cells->name, 0, NULL,
                           "cell %zu: the number of a point is %.17g (there are %zu)",
-                          cells->cells, tm_numbers_real(numbers, i), (size_t)points);
+                          cells->cells - cells->first_cell, tm_numbers_real(numbers, i),
+                          (size_t)points);
     *point = (uint32_t)(first + (size_t)value);
     return TM_OK;
 }
@@ -130,7 +131,7 @@ tm_status tm_vtk_add_face(tm_vtk_mesh *cells, const tm_numbers *numbers, size_t 
         return tm_fail_at(
             error, TM_ERROR_INPUT, cells->name, 0, NULL,
             "cell %zu: a face has %zu nodes (3 or more, as many as there are)",
-            cells->cells, nodes);
+            cells->cells - cells->first_cell, nodes);
     uint32_t *face = tm_lists_room(&cells->faces, cells->open_faces + 1 + nodes);
     if (!face)
         return tm_fail_memory(error);

@@ -39,7 +39,8 @@ typedef struct tm_vtk_data_list {
 /* The lists of cell c are its nodes and, of a polyhedron, its faces: how many nodes, and
  * the nodes, of one after the other; those of other cells are empty. */
 typedef struct tm_vtk_mesh {
-    const char *name; /* of the file, for messages */
+    const char *name;               /* of the file, for messages, */
+    size_t first_point, first_cell; /* and the first ones of it */
     size_t points;
     double (*xyz)[3];
     size_t pieces;

@@ -32,10 +32,17 @@
 
 TM_EXTERN_C_BEGIN
 
+/* For a list of pieces (.pvtu): appends the bytes of the file that `source`, which stands
+ * in it, is to *bytes, and what messages are to call it to *name. */
+typedef tm_status tm_vtu_load(void *context, const char *source, tm_text *name,
+                              tm_text *bytes, tm_error *error);
+
 typedef struct tm_vtk_read_options {
     const char *region; /* the name of the cell data that are regions; NULL: see above */
     const char *marker; /* the same of markers, of points, too */
     unsigned threads;   /* unpack */
+    tm_vtu_load *load;  /* NULL: lists of pieces are refused */
+    void *context;      /* for it */
 } tm_vtk_read_options;
 
 /* What was done to be a stream, and what is not in it. Texts are to be freed with
@@ -62,9 +69,10 @@ typedef struct tm_vtk_read_report {
 void tm_vtk_read_report_free(tm_vtk_read_report *report);
 
 /* Reads a .vtu file: text, base64 or raw, appended or not, compressed by zlib or not, of
- * either byte order. *stream must be empty; after an error it is again: TM_ERROR_INPUT,
- * with the line of the element, where the file is damaged or has what a stream cannot
- * hold. Memory grows with what is there, not with what counts claim. Expected O(size). */
+ * either byte order; or a list of such, .pvtu, one after the other. *stream must be
+ * empty; after an error it is again: TM_ERROR_INPUT, with the line of the element, where
+ * the file is damaged or has what a stream cannot hold. Memory grows with what is there,
+ * not with what counts claim. Expected O(size). */
 tm_status tm_vtu_read(tm_stream *stream, const char *bytes, size_t size, const char *name,
                       const tm_vtk_read_options *options, tm_vtk_read_report *report,
                       tm_error *error);

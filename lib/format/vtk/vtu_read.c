@@ -106,7 +106,7 @@ static tm_status read_cell_arrays(reader *r, cell_arrays *a)
 static tm_status fail_cell(reader *r, const char *what)
 {
     return tm_fail_at(r->error, TM_ERROR_INPUT, r->file.name, 0, NULL, "cell %zu: %s",
-                      r->cells.cells, what);
+                      r->cells.cells - r->cells.first_cell, what);
 }
 
 /* The end of list i, not before where the one before it ends. */
@@ -333,8 +333,8 @@ static tm_status read_groups(reader *r)
 static tm_status read_piece(reader *r)
 {
     tm_vtk_mesh *cells = &r->cells;
-    r->points = r->file.count[r->piece][0];
-    r->cells_of_piece = r->file.count[r->piece][1];
+    r->points = r->file.piece[r->piece].points;
+    r->cells_of_piece = r->file.piece[r->piece].cells;
     r->first_point = cells->points;
     r->first_cell = cells->cells;
     tm_status status = tm_vtk_begin_piece(cells, r->error);
@@ -351,17 +351,57 @@ static tm_status read_piece(reader *r)
     return status;
 }
 
-static tm_status read_all(reader *r)
+/* The file's elements, which are known. */
+static tm_status read_pieces(reader *r)
 {
     if (r->file.pieces == 0)
         return tm_fail_at(r->error, TM_ERROR_INPUT, r->file.name, 0, NULL,
                           "has no element Piece");
+    r->cells.name = r->file.name;
+    r->cells.first_point = r->cells.points;
+    r->cells.first_cell = r->cells.cells;
     tm_status status = read_groups(r);
     for (r->piece = 0; r->piece < r->file.pieces && status == TM_OK; r->piece++)
         status = read_piece(r);
-    if (status == TM_OK && r->cells.points == 0)
-        status =
-            tm_fail_at(r->error, TM_ERROR_INPUT, r->file.name, 0, NULL, "has no points");
+    return status;
+}
+
+/* The file of a piece in a list. */
+static tm_status read_source(reader *r, const char *source)
+{
+    tm_text name = {0}, bytes = {0};
+    tm_status status =
+        r->options->load(r->options->context, source, &name, &bytes, r->error);
+    tm_text_append(&name, "", 1);
+    if (status == TM_OK && name.failed)
+        status = tm_fail_memory(r->error);
+    if (status == TM_OK)
+        status = tm_vtu_file_read(&r->file, bytes.byte, bytes.size, name.byte, r->error);
+    if (status == TM_OK && r->file.is_list)
+        status = tm_fail_at(r->error, TM_ERROR_INPUT, name.byte, 0, NULL,
+                            "is a list of pieces, and so no piece");
+    if (status == TM_OK)
+        status = read_pieces(r);
+    tm_vtu_file_free(&r->file);
+    tm_text_free(&name);
+    tm_text_free(&bytes);
+    return status;
+}
+
+/* The files of a list, one after the other. */
+static tm_status read_list(reader *r)
+{
+    tm_vtu_file list = r->file;
+    tm_status status = TM_OK;
+    r->file = (tm_vtu_file){0};
+    if (!r->options->load || list.pieces == 0)
+        status = tm_fail_at(r->error, TM_ERROR_INPUT, list.name, 0, NULL,
+                            list.pieces == 0 ? "has no element Piece"
+                                             : "is a list of other files");
+    for (size_t i = 0; i < list.pieces && status == TM_OK; i++)
+        status = read_source(r, list.names.byte + list.piece[i].source);
+    r->cells.name = list.name;
+    tm_vtu_file_free(&list);
     return status;
 }
 
@@ -375,8 +415,10 @@ tm_status tm_vtu_read(tm_stream *stream, const char *bytes, size_t size, const c
     if (status == TM_OK)
         status = tm_vtu_file_read(&r.file, bytes, size, name, error);
     if (status == TM_OK)
-        status = read_all(&r);
+        status = r.file.is_list ? read_list(&r) : read_pieces(&r);
     tm_vtu_file_free(&r.file);
+    if (status == TM_OK && r.cells.points == 0)
+        status = tm_fail_at(error, TM_ERROR_INPUT, name, 0, NULL, "has no points");
     if (status == TM_OK)
         status = tm_vtk_mesh_to_stream(&r.cells, stream, options, report, error);
     tm_vtk_mesh_free(&r.cells);

@@ -132,12 +132,10 @@ static void begin_file(parser *p, const XML_Char **list)
     const char *type = attribute(list, "type"), *order = attribute(list, "byte_order");
     const char *header = attribute(list, "header_type");
     const char *compressor = attribute(list, "compressor");
-    if (!type || strcmp(type, "UnstructuredGrid") != 0)
-        fail(p, "is a file of VTK of type '%.40s' (UnstructuredGrid would be right%s)",
-             type ? type : "",
-             type && *type == 'P' && strcmp(type, "PolyData") != 0
-                 ? "; the files of its pieces can be read"
-                 : "");
+    p->file->is_list = type && strcmp(type, "PUnstructuredGrid") == 0;
+    if (!type || (strcmp(type, "UnstructuredGrid") != 0 && !p->file->is_list))
+        fail(p, "is a file of VTK of type '%.40s' (UnstructuredGrid would be right)",
+             type ? type : "");
     else if (order && strcmp(order, "LittleEndian") != 0 &&
              strcmp(order, "BigEndian") != 0)
         fail(p, "byte_order=\"%.40s\" (LittleEndian or BigEndian)", order);
@@ -154,20 +152,39 @@ static void begin_file(parser *p, const XML_Char **list)
     p->file->packed = compressor && *compressor;
 }
 
+/* Appends a name, with 0 behind it. */
+static size_t add_name(parser *p, const char *name)
+{
+    tm_text *names = &p->file->names;
+    const size_t at = names->size;
+    tm_text_string(names, name ? name : "");
+    tm_text_append(names, "", 1);
+    if (names->failed)
+        fail_memory(p);
+    return at;
+}
+
 static void begin_piece(parser *p, const XML_Char **list)
 {
     tm_vtu_file *file = p->file;
-    const size_t points = count_of(p, list, "NumberOfPoints", SIZE_MAX);
-    const size_t cells = count_of(p, list, "NumberOfCells", SIZE_MAX);
-    void *count =
-        tm_grow(file->count, &file->piece_room, file->pieces + 1, sizeof *file->count);
-    if (!count) {
+    const char *source = attribute(list, "Source");
+    tm_vtu_piece piece = {0};
+    void *room =
+        tm_grow(file->piece, &file->piece_room, file->pieces + 1, sizeof *file->piece);
+    if (!room) {
         fail_memory(p);
         return;
     }
-    file->count = count;
-    file->count[file->pieces][0] = points;
-    file->count[file->pieces++][1] = cells;
+    file->piece = room;
+    if (!file->is_list) {
+        piece.points = count_of(p, list, "NumberOfPoints", SIZE_MAX);
+        piece.cells = count_of(p, list, "NumberOfCells", SIZE_MAX);
+    } else if (source && *source) {
+        piece.source = add_name(p, source);
+    } else {
+        fail(p, "a piece has no Source");
+    }
+    file->piece[file->pieces++] = piece;
     p->in_piece = true;
 }
 
@@ -185,17 +202,13 @@ static void begin_array(parser *p, const XML_Char **list)
     tm_vtu_entry *entry = &file->entry[file->entries++];
     *entry = (tm_vtu_entry){.section = p->section,
                             .piece = file->pieces - p->in_piece,
-                            .name = file->names.size,
+                            .name = add_name(p, name),
                             .line = XML_GetCurrentLineNumber(p->expat)};
-    tm_text_string(&file->names, name ? name : "");
-    tm_text_append(&file->names, "", 1);
     take_type(p, attribute(list, "type"), entry);
     take_form(p, attribute(list, "format"), entry);
     entry->components = count_of(p, list, "NumberOfComponents", 1);
     if (entry->form == TM_VTU_APPENDED)
         entry->offset = count_of(p, list, "offset", SIZE_MAX);
-    if (file->names.failed)
-        fail_memory(p);
     p->open = entry;
     p->depth = 0;
     entry->begin = end_of_event(p);
@@ -362,7 +375,7 @@ tm_status tm_vtu_file_read(tm_vtu_file *file, const char *bytes, size_t size,
 
 void tm_vtu_file_free(tm_vtu_file *file)
 {
-    free(file->count);
+    free(file->piece);
     free(file->entry);
     tm_text_free(&file->names);
     *file = (tm_vtu_file){0};

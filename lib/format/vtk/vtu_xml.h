@@ -36,6 +36,13 @@ typedef struct tm_vtu_entry {
     size_t offset;           /* in the appended data */
 } tm_vtu_entry;
 
+/* A Piece: what it says that it has, or in a list of pieces (.pvtu) its file, a name as
+ * that of an array. */
+typedef struct tm_vtu_piece {
+    size_t points, cells;
+    size_t source;
+} tm_vtu_piece;
+
 /* Bytes are those that were given. */
 typedef struct tm_vtu_file {
     const char *bytes, *end;
@@ -43,8 +50,9 @@ typedef struct tm_vtu_file {
     bool big;
     size_t header; /* bytes of a number before data */
     bool packed;   /* by zlib */
+    bool is_list;  /* of pieces, each a file of its own */
     size_t pieces;
-    size_t (*count)[2]; /* [pieces]: points, cells */
+    tm_vtu_piece *piece;
     size_t entries;
     tm_vtu_entry *entry;
     tm_text names;                       /* with 0 behind each */

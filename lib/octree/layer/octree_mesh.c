@@ -404,10 +404,10 @@ static tm_status count_regions(tm_octree_mesh *m, const tm_octree *octree,
     tm_status status = TM_OK;
     if (m->parts > 1 || surface->region)
         status = find_regions(m, octree, surface, volume, error);
-    if (m->parts > 1)
-        within = surface->components - m->report.regions;
-    if (within > surface->holes && !surface->by_winding)
-        m->report.regions_lost = within - surface->holes;
+    const size_t found = m->parts > 1 ? m->report.regions : 1;
+    if ((m->parts > 1 || within > surface->holes) && !surface->by_winding &&
+        surface->components > found + surface->holes)
+        m->report.regions_lost = surface->components - found - surface->holes;
     free(volume);
     return status;
 }
