@@ -206,10 +206,10 @@ static uint64_t topology_missing(const maker *m)
 /* As try_split() there: with a copy of the share. */
 static tm_status try_split(maker *m, const uint8_t *split, bool *better, tm_error *error)
 {
-    const size_t off_surface = m->mesh->report.off_surface;
+    tm_octree_mesh old = *m->mesh;
     const uint64_t missing = topology_missing(m);
     tm_octree_share before = {0};
-    tm_octree_mesh_free(m->mesh);
+    *m->mesh = (tm_octree_mesh){0};
     tm_status status =
         tm_ranks_agree(tm_octree_share_copy(&before, m->share, error), error);
     if (status == TM_OK)
@@ -217,21 +217,17 @@ static tm_status try_split(maker *m, const uint8_t *split, bool *better, tm_erro
     if (status == TM_OK)
         status = make_without_loss(m, error);
     *better = status == TM_OK && !*m->alone &&
-              m->mesh->report.off_surface < off_surface && topology_missing(m) <= missing;
+              m->mesh->report.off_surface < old.report.off_surface &&
+              topology_missing(m) <= missing;
     if (status == TM_OK && !*m->alone && !*better) {
-        tm_interior interior = {0};
         const tm_octree_share finer = *m->share;
+        const tm_octree_mesh worse = *m->mesh;
         *m->share = before;
+        *m->mesh = old;
         before = finer;
-        tm_octree_mesh_free(m->mesh);
-        tm_progress_stage(m->plan->progress, "choosing octants");
-        status = tm_interior_choose_on_ranks(&interior, m->share, m->surface, error);
-        if (status == TM_OK)
-            status =
-                tm_octree_mesh_make_on_ranks(m->mesh, m->share, &interior, m->surface,
-                                             m->plan->progress, m->alone, error);
-        tm_interior_free(&interior);
+        old = worse;
     }
+    tm_octree_mesh_free(&old);
     tm_octree_share_free(&before);
     return status;
 }

@@ -201,51 +201,33 @@ uint64_t tm_topology_missing(const tm_octree_mesh_report *r, const tm_surface *s
            (uint64_t)(euler < 0 ? -euler : euler);
 }
 
-/* The mesh of an octree that is as it should be. */
-static tm_status make_again(tm_octree_mesh *mesh, const tm_octree *octree,
-                            tm_surface *surface, const depth *to,
-                            const tm_progress *progress, tm_error *error)
-{
-    tm_interior interior;
-    tm_progress_stage(progress, "choosing octants");
-    tm_status status =
-        tm_interior_choose_how(&interior, octree, surface, to->lay_out, error);
-    if (status == TM_OK)
-        status =
-            tm_octree_mesh_make_of(mesh, octree, &interior, surface, progress, error);
-    tm_interior_free(&interior);
-    return status;
-}
-
-/* The mesh of a copy of the octree with leaves split; *octree becomes the copy if fewer
- * nodes are off the surface and its topology is as good, else the mesh is made of it
- * again. Meshes are large: there is only one at a time. */
+/* The mesh of a copy of the octree with leaves split; both become these if fewer nodes
+ * are off the surface and its topology is as good. */
 static tm_status try_split(tm_octree_mesh *mesh, tm_octree *octree, tm_surface *surface,
                            const depth *to, const uint8_t *split, bool *better,
                            const tm_progress *progress, tm_error *error)
 {
-    const size_t off_surface = mesh->report.off_surface;
-    const uint64_t missing = tm_topology_missing(&mesh->report, surface);
     tm_octree finer;
-    tm_octree_mesh_free(mesh);
+    tm_octree_mesh made = {0};
     tm_progress_stage(progress, splitting);
     tm_status status = tm_octree_copy(&finer, octree, error);
     if (status == TM_OK)
         status = tm_octree_refine(&finer, surface, split, error);
     if (status == TM_OK)
-        status = make_without_loss(mesh, &finer, surface, to, progress, error);
-    *better = status == TM_OK && mesh->report.off_surface < off_surface &&
-              tm_topology_missing(&mesh->report, surface) <= missing;
+        status = make_without_loss(&made, &finer, surface, to, progress, error);
+    *better = status == TM_OK && made.report.off_surface < mesh->report.off_surface &&
+              tm_topology_missing(&made.report, surface) <=
+                  tm_topology_missing(&mesh->report, surface);
     if (*better) {
-        tm_octree_free(octree);
+        const tm_octree_mesh worse = *mesh;
+        const tm_octree before = *octree;
+        *mesh = made;
         *octree = finer;
-        return TM_OK;
+        made = worse;
+        finer = before;
     }
+    tm_octree_mesh_free(&made);
     tm_octree_free(&finer);
-    if (status == TM_OK) {
-        tm_octree_mesh_free(mesh);
-        status = make_again(mesh, octree, surface, to, progress, error);
-    }
     return status;
 }
 
