@@ -33,20 +33,22 @@ unsigned tm_mesh_plan_level(const tm_mesh_plan *plan, unsigned deepest, double s
     return plan->deeper && plan->levels > 0 && asked < deepest ? asked : deepest;
 }
 
+/* Makes a mesh by the plan; *is_deeper: no plan of no levels would make it. */
 static tm_status make(tm_octree_mesh *mesh, tm_octree *octree, tm_surface *surface,
-                      const tm_mesh_plan *plan, tm_error *error)
+                      const tm_mesh_plan *plan, bool *is_deeper, tm_error *error)
 {
     *mesh = (tm_octree_mesh){0};
     *octree = (tm_octree){.leaves = 0};
     tm_progress_stage(plan->progress, "splitting octants");
-    const tm_status status =
-        tm_octree_build(octree, surface, plan->rule, plan->rules, error);
+    tm_status status = tm_octree_build(octree, surface, plan->rule, plan->rules, error);
     if (status != TM_OK)
         return status;
     const unsigned level =
         tm_mesh_plan_level(plan, tm_octree_deepest(octree), octree->side, surface);
-    return tm_octree_mesh_refine_lost(mesh, octree, surface, level, plan->levels,
-                                      plan->laid_out, plan->progress, error);
+    status = tm_octree_mesh_refine_lost(mesh, octree, surface, level, plan->levels,
+                                        plan->laid_out, plan->progress, error);
+    *is_deeper = status != TM_OK || tm_octree_deepest(octree) > level;
+    return status;
 }
 
 /* In how many places a mesh is not where the surface is. */
@@ -73,11 +75,12 @@ static bool is_better(const tm_octree_mesh_report *a, const tm_octree_mesh_repor
 /* Makes another mesh and keeps the better one; a plan by which there is none is not
  * better. */
 static tm_status try_plan(tm_octree_mesh *mesh, tm_octree *octree, tm_surface *surface,
-                          const tm_mesh_plan *plan, tm_mesh_plan *best, tm_error *error)
+                          const tm_mesh_plan *plan, tm_mesh_plan *best, bool *is_deeper,
+                          tm_error *error)
 {
     tm_octree_mesh made;
     tm_octree other;
-    const tm_status status = make(&made, &other, surface, plan, error);
+    const tm_status status = make(&made, &other, surface, plan, is_deeper, error);
     if (status == TM_OK && is_better(&made.report, &mesh->report, surface)) {
         const tm_octree_mesh worse = *mesh;
         const tm_octree before = *octree;
@@ -95,10 +98,10 @@ static tm_status try_plan(tm_octree_mesh *mesh, tm_octree *octree, tm_surface *s
 tm_status tm_octree_mesh_choose(tm_octree_mesh *mesh, tm_octree *octree,
                                 tm_surface *surface, tm_mesh_plan *plan, tm_error *error)
 {
-    bool sharp = false;
+    bool sharp = false, is_deeper[2] = {true, true}; /* of what was made each way */
     plan->laid_out = true;
     tm_mesh_plan best = *plan;
-    tm_status status = make(mesh, octree, surface, plan, error);
+    tm_status status = make(mesh, octree, surface, plan, &is_deeper[0], error);
     if (status == TM_OK && surface->walls && mesh->report.off_surface > 0)
         status = tm_walls_are_sharp(surface, &sharp, error);
     for (unsigned n = plan->levels + 1; surface->walls && n-- > 0;)
@@ -106,11 +109,12 @@ tm_status tm_octree_mesh_choose(tm_octree_mesh *mesh, tm_octree *octree,
             const bool laid_out = way == 0;
             if (status != TM_OK || mesh->report.off_surface == 0)
                 break;
-            if (laid_out && n == best.levels && best.laid_out)
-                continue; /* that is there */
+            if ((laid_out && n == best.levels && best.laid_out) ||
+                (n == 0 && !is_deeper[way]))
+                continue; /* that was there */
             tm_mesh_plan_set_levels(plan, n);
             plan->laid_out = laid_out;
-            status = try_plan(mesh, octree, surface, plan, &best, error);
+            status = try_plan(mesh, octree, surface, plan, &best, &is_deeper[way], error);
         }
     *plan = best;
     tm_mesh_plan_set_levels(plan, best.levels);
