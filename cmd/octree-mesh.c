@@ -3,6 +3,7 @@
 #include "common/app/filter.h"
 #include "common/input/octree_rules.h"
 #include "common/input/surface_input.h"
+#include "common/octree/octree_notes.h"
 #include "common/process/mpi_environment.h"
 
 #include "../lib/octree/forest/octree_estimate.h"
@@ -15,7 +16,6 @@
 #include "../lib/surface/measure/surface_curvature.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 enum {
@@ -229,94 +229,6 @@ static void refuse_many(const filter *f, const settings *o, const tm_surface *s)
     filter_fail(f, &error);
 }
 
-/* Boxes and regions that ask for nothing. */
-static void note_outside(const filter *f, const octree_rules *rules, const tm_surface *s)
-{
-    for (size_t r = 0; r < rules->rules.count; r++) {
-        const tm_octree_rule *rule = &rules->rules.rule[r];
-        if (tm_octree_rule_reaches(rule, s))
-            continue;
-        const bool box = rule->kind == TM_RULE_BOX;
-        const double *low = box ? rule->low : rule->region->low;
-        const double *high = box ? rule->high : rule->region->high;
-        filter_note(f,
-                    "the %s from (%g, %g, %g) to (%g, %g, %g) is wholly outside of the "
-                    "surface: no octant is split for it",
-                    box ? "box" : "region", low[0], low[1], low[2], high[0], high[1],
-                    high[2]);
-    }
-}
-
-/* The boundary is not what the surface is: a handle or a piece is lost, or one too much.
- */
-static void note_topology(const filter *f, const tm_surface *s,
-                          const tm_octree_mesh_report *r, double leaf_side)
-{
-    double at[3];
-    char place[128] = "";
-    if (tm_surface_find_thin(s, 2 * leaf_side, at))
-        snprintf(place, sizeof place, ", as near (%g, %g, %g)", at[0], at[1], at[2]);
-    filter_note(f,
-                "the boundary has %zu components and Euler number %lld, the surface %zu "
-                "and %lld: %sa part or a gap of it is too thin for this level%s",
-                r->components, (long long)r->euler, s->components, (long long)s->euler,
-                s->touching ? "parts that touch are joined, or " : "", place);
-}
-
-/* What of the surface could not be made, and where; leaf_side is that of the smallest
- * octants. */
-static void note_losses(const filter *f, const tm_surface *s,
-                        const tm_octree_mesh_report *r, double leaf_side)
-{
-    if (r->lost)
-        filter_note(f,
-                    "%zu octants with surface are too large for it: a thin part or a gap "
-                    "is lost near (%g, %g, %g); a finer level there, or --resolve, may "
-                    "keep it",
-                    r->lost, r->lost_at[0], r->lost_at[1], r->lost_at[2]);
-    if (r->rounded)
-        filter_note(
-            f,
-            "%zu tips or thin parts of the surface are rounded off, or missed, by up "
-            "to %.3g, near (%g, %g, %g)",
-            r->rounded, r->rounded_by, r->rounded_at[0], r->rounded_at[1],
-            r->rounded_at[2]);
-    if (r->dropped)
-        filter_note(
-            f,
-            "%zu pieces of the surface bound nothing and have no part in the mesh, "
-            "as near (%g, %g, %g)",
-            r->dropped, r->dropped_at[0], r->dropped_at[1], r->dropped_at[2]);
-    if (r->regions_lost)
-        filter_note(f,
-                    "%zu of %zu regions%s are not in the mesh: they, or "
-                    "a wall around them, are too thin for this level",
-                    r->regions_lost, s->walls ? s->cells : s->components,
-                    s->walls ? "" : ", one within another,");
-    if (!s->by_winding && (r->components != s->components || r->euler != s->euler))
-        note_topology(f, s, r, leaf_side);
-    if (r->corners_lost + r->curves_lost)
-        filter_note(f,
-                    "%zu corners and %zu sharp edges of the surface are too close "
-                    "together for this level%s, as near (%g, %g, %g)",
-                    r->corners_lost, r->curves_lost,
-                    s->walls ? ", or more regions meet there than octants can follow"
-                             : "",
-                    r->feature_lost_at[0], r->feature_lost_at[1], r->feature_lost_at[2]);
-    if (r->off_surface)
-        filter_note(f,
-                    "%zu boundary nodes are not on the surface yet: there they would "
-                    "invert an element (octree-repair takes %s there)",
-                    r->off_surface, s->walls ? "some of them" : "them");
-    if (r->invalid)
-        filter_note(f, "%zu elements are inverted", r->invalid);
-    if (r->not_positive)
-        filter_note(f,
-                    "%zu elements are inverted inside, though not at a corner, where "
-                    "walls meet (octree-repair mends them)",
-                    r->not_positive);
-}
-
 /* Whether several ranks can make the mesh: not where regions are within others, or meet
  * in walls. */
 static bool can_share(const settings *o, const tm_surface *s)
@@ -426,8 +338,8 @@ static report make_alone(filter *f, settings *o, tm_surface *surface, tm_stream 
     tm_octree_mesh mesh;
     tm_error error;
     make_mesh(f, o, surface, &octree, &mesh);
-    note_losses(f, surface, &mesh.report,
-                ldexp(octree.side, -(int)tm_octree_deepest(&octree)));
+    octree_note_losses(f, surface, &mesh.report,
+                       ldexp(octree.side, -(int)tm_octree_deepest(&octree)));
     report r = report_of(&octree, &mesh);
     const size_t elements = mesh.assembly.mesh.elements;
     filter_stage(f, "numbering");
@@ -464,7 +376,8 @@ static report write_together(filter *f, const settings *o, tm_surface *surface,
 {
     tm_error error;
     const unsigned finest = tm_octree_share_deepest(share);
-    note_losses(f, surface, &mesh->report, ldexp(share->octree.side, -(int)finest));
+    octree_note_losses(f, surface, &mesh->report,
+                       ldexp(share->octree.side, -(int)finest));
     const report r = report_of(&share->octree, mesh);
     say_ghosts(f, share);
     filter_stage(f, "numbering");
@@ -531,7 +444,7 @@ int main(int argc, char **argv)
     const bool together = filter_together(&f, can_share(&o, &surface));
     double *largest = follow_curvature(&f, &o, &surface);
     refuse_many(&f, &o, &surface);
-    note_outside(&f, &o.rules, &surface);
+    octree_note_outside(&f, &o.rules, &surface);
     mpi_environment_set(&f);
     if (!together || !make_together(&f, &o, &surface, &slices, &r))
         r = make_alone(&f, &o, &surface, &slices.stream);
