@@ -24,6 +24,7 @@ make_inputs() {
         cells { $0 = $0 " " 1 + ($1 > 20) } 1' tets.tm >regions.tm
     is_left_out octree-mesh || octree-mesh --quiet -s 2 cube.off >elements.tm
     vtu-export --quiet tets.tm >tets.vtu
+    vtu-export --quiet -o pieces.pvtu tets.tm
     vtk-export --quiet cells.tm >cells.vtk
     visf-export --quiet --binary little cells.tm >binary.visf
 }
@@ -47,10 +48,11 @@ more() {
     tetgen-mesh) printf '%s\n' '-q1.4 -a 0.1 in/cube.off.gz' 'in/cube.poly' 'in/corner.node' ;;
     surface-import) printf '%s\n' in/cube.obj in/binary.ply in/binary.stl ;;
     surface-mend) echo '--weld auto --union in/cube.stl' ;;
-    vtu-import) echo 'in/tets.vtu' ;;
+    vtu-import) printf '%s\n' in/tets.vtu in/pieces.pvtu ;;
     vtk-import) echo 'in/cells.vtk' ;;
     visf-import) echo 'in/binary.visf' ;;
-    vtu-export | vtk-export | visf-export) printf '%s\n' in/elements.tm in/cells.tm ;;
+    vtu-export) printf '%s\n' in/elements.tm in/cells.tm '-o new.pvtu in/tets.tm' ;;
+    vtk-export | visf-export) printf '%s\n' in/elements.tm in/cells.tm ;;
     m3d-export) echo in/elements.tm ;;
     off-export) echo '--all in/elements.tm' ;;
     medit-export) echo in/regions.tm ;;
