@@ -322,9 +322,10 @@ static bool is_done(const mesh_state *m)
     return m->score.bad == 0 && m->score.off_surface == 0;
 }
 
-/* Finds the surface, what nodes may do, and the octree. */
-static void prepare(program *p, const tm_stream *stream, tm_repair_state *state,
-                    tm_repair_notes *notes)
+/* Finds the surface, what nodes may do, and the octree, of which nothing is said where
+ * nothing is to be done. */
+static void prepare(program *p, const tm_stream *stream, bool needed,
+                    tm_repair_state *state, tm_repair_notes *notes)
 {
     tm_error error;
     filter_stage(&p->f, "preparing");
@@ -336,7 +337,7 @@ static void prepare(program *p, const tm_stream *stream, tm_repair_state *state,
     if (tm_repair_prepare(state, stream, p->has_surface ? &p->boundary : NULL, notes,
                           &error) != TM_OK)
         fail(p, &error);
-    if (!notes->no_octree.what[0])
+    if (!needed || !notes->no_octree.what[0])
         return;
     if (p->repair.method == TM_REPAIR_REFINE || p->repair.octants > 0)
         fail(p, &notes->no_octree);
@@ -384,10 +385,11 @@ static bool run(program *p, tm_stream *stream)
     if (tm_repair_from_stream(&state, stream, &error) != TM_OK)
         fail(p, &error);
     state.mesh.threads = p->f.threads;
+    const bool needed =
+        p->octants || tm_repair_is_needed(&state, stream, p->repair.threshold);
     const bool measured = p->f.json && tm_stream_find(stream, "surface.node");
-    if (tm_repair_is_needed(&state, stream, p->repair.threshold) || p->trace ||
-        p->octants || measured)
-        prepare(p, stream, &state, &notes);
+    if (needed || p->trace || measured)
+        prepare(p, stream, needed, &state, &notes);
     p->has_regions = notes.regions;
     repair(p, stream, &state, &report, &before, &after);
     remainder_list left = {0};

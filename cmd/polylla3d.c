@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* polylla3d: tetrahedra in, or the elements of octants, polyhedra out. */
 #include "common/app/filter.h"
+#include "common/input/mesh_input.h"
 #include "common/input/poly_settings.h"
 #include "common/input/tet_input.h"
 
@@ -169,6 +170,7 @@ static void join_polyhedra(filter *f, tm_stream *stream, const poly_settings *o,
     tm_block made[2] = {{.name = ".facet", .kind = TM_FACET},
                         {.name = ".cell", .kind = TM_CELL}};
     r->poly = (tm_poly_report){.tets = old->count, .cells = old->count};
+    r->facets = mesh_rows(stream, ".facet");
     if (o->for_tets) {
         tm_fail_at(
             &error, TM_ERROR_INPUT, filter_input_name(f), 0, NULL,

@@ -6,6 +6,7 @@
 #include "common/tetgen/tetgen_attributes.h"
 #include "common/tetgen/tetgen_markers.h"
 #include "common/tetgen/tetgen_parts.h"
+#include "common/tetgen/tetgen_regions.h"
 #include "common/tetgen/tetgen_switches.h"
 
 #include "../lib/base/array.h"
@@ -460,9 +461,12 @@ static void refine_tets(settings *s, tm_stream *input, tm_stream *mesh)
     mesh->base = input->base;
     tetgen_aliases aliases;
     tetgen_hide_markers(&f, input, &aliases);
+    tetgen_regions regions;
+    tetgen_hide_regions(&f, input, &regions);
     if (tetgen_refine(&f, &s->request, input, mesh, &error) != TM_OK)
         filter_fail(&f, &error);
     tetgen_restore_markers(mesh, &aliases);
+    tetgen_restore_regions(mesh, &regions);
     tetgen_interpolate_refined(&f, input, mesh);
     free(size);
 }

@@ -208,6 +208,20 @@ shells() {
     [[ "$stderr" == *"octants of several regions cannot be split"* ]]
 }
 
+@test "octree-repair with a report refuses and says no more than without: regions that are good" {
+    shells ball 1 0 0 0 box -0.4 0.4
+    octree-mesh -q -s 3 -o nested.tm shells.smesh
+    for method in refine full; do
+        for more in '' '--json report.json' '--trace state'; do
+            # shellcheck disable=SC2086 # words
+            run -0 --separate-stderr octree-repair --no-history --method $method $more \
+                -o same.tm nested.tm
+            [[ "$stderr" != *split* ]]
+            cmp same.tm nested.tm
+        done
+    done
+}
+
 @test "regions that touch: volumes to the surface's, faces in common, as good as one box" {
     # a box and a slanted plane through it; 3 by 3 by 3 blocks but one
     for case in 'halved 4 0.7125 0.7875' 'halved 5 0.7125 0.7875' \

@@ -691,6 +691,19 @@ END
     polylla3d -q --no-history --star <boxes.tm | cat | cmp "$out/1.tm" -
 }
 
+@test "the report counts what is written: tetrahedra, polyhedra, levels of both" {
+    local from more
+    for from in points.tm "$out/poly.tm"; do
+        for more in '' '--levels 1' '--cells 20' '--cells 20 --levels 1'; do
+            # shellcheck disable=SC2086 # words
+            polylla3d -q $more --json "$out/json" -o "$out/made.tm" "$from"
+            [ "$(json "$out/json" polyhedra)" -eq "$(header .cell "$out/made.tm" | cut -d ' ' -f 1)" ]
+            [ "$(json "$out/json" facets)" -eq "$(header .facet "$out/made.tm" | cut -d ' ' -f 1)" ]
+        done
+        polylla3d -q -o "$out/poly.tm" points.tm
+    done
+}
+
 @test "degenerate: nothing, one tetrahedron, a flat one, counted from 0" {
     run -0 --separate-stderr polylla3d --no-history <<<$'termesh 1\n.node\n0 3 0 0\n.ele\n0 4 0\n.end'
     [ "$(grep -c '^0' <<<"$output")" -eq 3 ]

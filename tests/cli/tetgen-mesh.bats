@@ -605,3 +605,45 @@ os.execvp(sys.argv[1], sys.argv[1:])' tetgen-mesh --tetgen ./slow cube.off -o ou
     run tetgen-mesh --version
     [[ $output == 'tetgen-mesh (termesh) '* ]]
 }
+
+# grid ATTRIBUTES SEED: 3³ cubes of six tetrahedra each, with so many attributes: one that
+# cubes have, one that tetrahedra have, and one that all have.
+grid() {
+    python3 - "$@" <<'END'
+import itertools, random, sys
+attributes, n = int(sys.argv[1]), 3
+random.seed(sys.argv[2])
+number = lambda p: 1 + p[0] + (n + 1) * (p[1] + (n + 1) * p[2])
+print('termesh 1\n.node\n%d 3 0 0' % (n + 1) ** 3)
+for z, y, x in itertools.product(range(n + 1), repeat=3):
+    print(number((x, y, z)), x, y, z)
+print('.ele\n%d 4 %d' % (6 * n ** 3, attributes))
+row = 0
+for cube in itertools.product(range(n), repeat=3):
+    region = random.randrange(2)
+    for order in itertools.permutations(range(3)):
+        p, nodes = list(cube), [number(cube)]
+        for axis in order:
+            p[axis] += 1
+            nodes.append(number(p))
+        row += 1
+        print(row, *nodes, *[region, random.randrange(4) // 3, 5][:attributes])
+print('.end')
+END
+}
+
+# Prints the volume of each region of a stream.
+regions() {
+    paste <(rows .ele "$1" | cut -d' ' -f6-) <(volumes "$1") | awk -F '\t' '
+        { volume[$1] += $2 < 0 ? -$2 : $2 }
+        END { for (region in volume) printf "%s: %.6f\n", region, volume[region] }' | sort
+}
+
+@test "refined tetrahedra keep their regions, whichever of their attributes says so" {
+    for attributes in 1 2 3; do
+        grid "$attributes" "$attributes" >coarse.tm
+        tetgen-mesh --size 0.7 coarse.tm >fine.tm
+        [ "$(rows .ele fine.tm | wc -l)" -gt 162 ]
+        diff <(regions coarse.tm) <(regions fine.tm)
+    done
+}

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The dual of small meshes of many kinds: always polyhedra in which nothing is wrong, of
  * the same volume in each region and the same area under each marker, which their
- * centroids see. */
+ * centroids see; and attributes of nodes stay linear. */
 #include "../../lib/examine/poly/poly_examine.h"
 #include "../../lib/examine/poly/poly_finite_volume.h"
 #include "../../lib/examine/poly/poly_statistics.h"
@@ -79,6 +79,19 @@ static void assert_sound(const tm_poly_arrays *mesh, size_t wrong_pyramids)
     assert_int_equal(statistics.fv.wrong_pyramids, wrong_pyramids);
 }
 
+/* The field of make_grid(), which is linear, is that of the new nodes, too. */
+static void assert_linear(const tm_block *node)
+{
+    double largest = 0;
+    for (size_t i = 0; i < 3 * node->count; i++)
+        largest = fmax(largest, fabs(node->real[i]));
+    for (size_t v = 0; v < node->count && node->attributes > 0; v++) {
+        const double *p = node->real + 3 * v;
+        assert_true(fabs(node->attribute[v] - (p[0] + 2 * p[1] - p[2])) <=
+                    1e-12 * largest);
+    }
+}
+
 /* Makes the dual and asserts all that it promises. */
 static tm_dual_report check(const tm_tet_mesh *mesh, double feature_angle, bool convex)
 {
@@ -90,6 +103,7 @@ static tm_dual_report check(const tm_tet_mesh *mesh, double feature_angle, bool 
         fail_msg("%s", error.what);
     const tm_poly_arrays arrays = arrays_of(&made);
     assert_sound(&arrays, report.wrong_pyramids);
+    assert_linear(&made.node);
     const invariants before = measure_invariants(mesh);
     const invariants after = measure_dual(&made, mesh->regions);
     for (int r = 0; r <= FIXTURE_REGIONS && feature_angle == 0; r++)
@@ -140,6 +154,8 @@ static void scale_nodes(tm_stream *stream, double x, double y, double z)
         node->real[3 * v] *= x;
         node->real[3 * v + 1] *= y;
         node->real[3 * v + 2] *= z;
+        const double *p = node->real + 3 * v;
+        node->attribute[v] = p[0] + 2 * p[1] - p[2];
     }
 }
 

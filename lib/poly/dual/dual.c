@@ -68,40 +68,47 @@ static int32_t marker_of(const tm_dual *d, const tm_dual_point *point)
     return point->place == TM_DUAL_AT_NODE ? d->mesh->node_marker[point->of] : 0;
 }
 
-static void interpolate(const tm_dual *d, size_t p, double *value)
+/* The attributes of a point, by the tetrahedra that it may have moved in; false where
+ * memory is out. O(the tetrahedra at an edge). */
+static bool interpolate(const tm_dual *d, size_t p, tm_star *star, double *value)
 {
     const tm_tet_mesh *mesh = d->mesh;
     const size_t width = mesh->node_attributes;
     const uint32_t of = d->point[p].of;
-    switch ((tm_dual_place)d->point[p].place) {
-    case TM_DUAL_AT_NODE:
+    const double *x = d->xyz[p];
+    if (d->point[p].place == TM_DUAL_AT_NODE) {
         memcpy(value, mesh->node_attribute + width * of, width * sizeof *value);
-        return;
-    case TM_DUAL_ON_EDGE:
-        for (size_t i = 0; i < width; i++)
-            value[i] = mesh->node_attribute[width * d->edge[of].node[0] + i] / 2 +
-                       mesh->node_attribute[width * d->edge[of].node[1] + i] / 2;
-        return;
-    case TM_DUAL_IN_FACE:
-    case TM_DUAL_IN_TET:
-        break;
+    } else if (d->point[p].place == TM_DUAL_IN_TET) {
+        tm_tet_interpolate(mesh, &of, 1, x, value);
+    } else if (d->point[p].place == TM_DUAL_IN_FACE) {
+        const uint32_t half = d->wall[of].half;
+        const uint32_t across = tm_tet_across(mesh, half / 4, half % 4);
+        const uint32_t side[2] = {half / 4, across / 4};
+        tm_tet_interpolate(mesh, side, across == TM_NONE ? 1 : 2, x, value);
+    } else {
+        const tm_dual_edge *edge = &d->edge[of];
+        if (!tm_star_between(mesh, edge->half / 4, edge->node[0], edge->node[1], star))
+            return false;
+        tm_tet_interpolate(mesh, star->tet, star->size, x, value);
     }
-    const uint32_t t = d->point[p].place == TM_DUAL_IN_TET ? of : d->wall[of].half / 4;
-    tm_tet_interpolate(mesh, &t, 1, d->xyz[p], value);
+    return true;
 }
 
 static tm_status write_nodes(const tm_dual *d, tm_block *node, tm_error *error)
 {
     node->attributes = d->mesh->node_attributes;
     node->markers = d->mesh->node_marker != NULL;
+    tm_star star = {0};
     tm_status status = tm_block_allocate(node, d->points, 0, error);
     for (size_t p = 0; p < d->points && status == TM_OK; p++) {
         memcpy(node->real + 3 * p, d->xyz[p], sizeof d->xyz[p]);
         if (node->markers)
             node->marker[p] = marker_of(d, &d->point[p]);
-        if (node->attributes > 0)
-            interpolate(d, p, node->attribute + node->attributes * p);
+        if (node->attributes > 0 &&
+            !interpolate(d, p, &star, node->attribute + node->attributes * p))
+            status = tm_fail_memory(error);
     }
+    tm_star_free(&star);
     return status;
 }
 

@@ -27,7 +27,8 @@ typedef enum tm_dual_level {
 /* An edge with walls. */
 typedef struct tm_dual_edge {
     uint32_t node[2];
-    uint32_t faces; /* walls with a quad at it */
+    uint32_t half;  /* of a wall with a quad at it */
+    uint32_t faces; /* how many walls have one */
     bool real[2];   /* the spoke at node[i] is an edge of facets */
     bool constrained;
     int32_t marker; /* of .edge, or of a face at it */

@@ -124,6 +124,7 @@ static bool find_edges(tm_dual *d)
             if (e == TM_NONE)
                 return false;
             wall->edge[j] = e;
+            d->edge[e].half = wall->half;
             d->edge[e].faces++;
             d->edge[e].constrained |= wall->constrained;
             if (wall->constrained && !d->edge[e].listed)
