@@ -101,6 +101,47 @@ corner='0 0 0, 1 0 0, 0 1 0, 0 0 1'
     done
 }
 
+@test "arrays of bits, in all forms, are attributes of 0 and 1" {
+    need_vtk
+    "$vtk_python" - <<'END'
+import vtk
+grid, points = vtk.vtkUnstructuredGrid(), vtk.vtkPoints()
+for i in range(11):
+    points.InsertNextPoint(i, i * i, i ** 3)
+grid.SetPoints(points)
+for i in range(8):
+    grid.InsertNextCell(vtk.VTK_TETRA, 4, [i, i + 1, i + 2, i + 3])
+def bits(data, name, components, count):
+    a = vtk.vtkBitArray()
+    a.SetName(name)
+    a.SetNumberOfComponents(components)
+    a.SetNumberOfTuples(count)
+    for i in range(components * count):
+        a.SetValue(i, i * i // 3 % 2)
+    data.AddArray(a)
+bits(grid.GetPointData(), 'one', 1, 11)
+bits(grid.GetPointData(), 'three', 3, 11)
+bits(grid.GetCellData(), 'cells', 1, 8)
+w = vtk.vtkXMLUnstructuredGridWriter()
+w.SetInputData(grid)
+w.SetFileName('bits.vtu')
+assert w.Write()
+END
+    mkdir forms
+    vtk_forms bits.vtu forms
+    for file in forms/*.vtu; do
+        echo "$file"
+        vtu-import -q --no-history -o back.tm "$file"
+        awk '/^\./ { block = $1; rows = -1; next }
+            { rows++ }
+            rows < 1 { next }
+            block == ".node" { n = rows - 1; for (c = 0; c < 4; c++) {
+                i = c ? 3 * n + c - 1 : n; if ($(5 + c) != int(i * i / 3) % 2) exit 1 } }
+            block == ".ele" { n = rows - 1; if ($7 != int(n * n / 3) % 2) exit 1; seen++ }
+            END { if (seen != 8) exit 1 }' back.tm
+    done
+}
+
 @test "meshio's files: text and binary, packed or not, with regions of Gmsh and Medit" {
     need_meshio
     "$vtk_python" - <<'END'
