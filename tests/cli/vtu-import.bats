@@ -369,6 +369,14 @@ list() {
     [ "$(header .node rest.tm) $(header .ele rest.tm)" = "5 3 0 0 1 4 0" ]
     run -3 --separate-stderr vtu-import --strict rest.vtu
     [ "$output" = "" ]
+    grid "$corner" '10: 0 1 2 3' "$(data CellData heat 1)$(data PointData words '97 0 98 0 99 0 0')" |
+        sed 's/Float64\(" Name="words"\)/String\1/' >words.vtu
+    run -0 --separate-stderr vtu-import -o words.tm words.vtu
+    [[ "$stderr" == *"data: words (strings): left out"* ]]
+    run -3 --separate-stderr vtu-import --strict words.vtu
+    [ "$output" = "" ]
+    run -3 --separate-stderr vtu-import --region words words.vtu
+    [[ "$stderr" == *"words"* ]]
 }
 
 @test "the same bytes for any number of threads; packed by gzip, too" {
