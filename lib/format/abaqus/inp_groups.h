@@ -44,6 +44,7 @@ typedef struct tm_inp_groups {
     tm_inp_group *group;
     int32_t next[TM_GROUP_DIMENSIONS]; /* the value above all there are */
     tm_block named;                    /* .group */
+    tm_block joined; /* what abaqus-export says that stands for several: "1 + 3" */
 } tm_inp_groups;
 
 /* Lists the sets that count. */
@@ -54,8 +55,8 @@ void tm_inp_groups_free(tm_inp_groups *groups);
  * And names. */
 tm_status tm_inp_groups_name(tm_inp_groups *groups);
 
-/* Gives classes that are used theirs: that of the one group, or one more, named "a + b";
- * *several counts those. */
+/* Gives classes that are used theirs: that of the one group, or that abaqus-export says,
+ * or one more, named "a + b"; *several counts those. */
 tm_status tm_inp_classes_name(tm_inp_classes *classes, tm_inp_groups *groups,
                               size_t *several);
 
