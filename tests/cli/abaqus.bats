@@ -232,6 +232,13 @@ END
     { cat sets.inp && printf '%s\n' '*SOLID SECTION, ELSET=hidden, MATERIAL=x' '1.,'; } |
         abaqus-import -q >section.tm
     names section.tm | grep -qF 'left + hidden'
+    { cat sets.inp && printf '%s\n' '*SOLID SECTION, ELSET=all, MATERIAL=x' '1.,'; } |
+        abaqus-import -q >section.tm
+    names section.tm | grep -qF 'all + left'
+    abaqus-export section.tm | grep -A1 'ELSET=all' | grep '^1, 2$'
+    # but Eall
+    { sed 's/=all/=EALL/' sets.inp && printf '%s\n' '*SOLID SECTION, ELSET=EALL, MATERIAL=x' '1.,'; } |
+        abaqus-import -q --no-history | diff - <(abaqus-import -q --no-history sets.inp)
     # everything, and nothing else, is a region
     corner '*ELEMENT, TYPE=C3D4, ELSET=only' '1, 1, 2, 3, 4' | abaqus-import -q >only.tm
     [ "$(names only.tm)" = "3 1 only" ]

@@ -56,8 +56,7 @@ tm_status tm_inp_classes_put(tm_inp_classes *classes, uint32_t item, uint32_t gr
 
 /* Groups ---------------------------------------------------------------------------- */
 
-/* Nall and Eall are what CalculiX's cgx calls all nodes and elements. */
-static bool says_nothing(const tm_inp_set *set)
+bool tm_inp_says_nothing(const tm_inp_set *set)
 {
     return tm_word_is_like(set->name, "Nall") || tm_word_is_like(set->name, "Eall");
 }
@@ -71,7 +70,7 @@ static bool counts(const tm_inp_model *model, const tm_inp_set *set)
     if (set->kind == TM_INP_NODES &&
         tm_inp_find_set(model, TM_INP_ELEMENTS, set->scope, set->name))
         return false;
-    return !set->is_internal && !says_nothing(set) && !set->is_of_surface;
+    return !set->is_internal && !tm_inp_says_nothing(set) && !set->is_of_surface;
 }
 
 /* The group of a set in an instance, or TM_INP_NONE. They are in the order of sets. */

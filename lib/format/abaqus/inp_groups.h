@@ -47,6 +47,10 @@ typedef struct tm_inp_groups {
     tm_block joined; /* what abaqus-export says that stands for several: "1 + 3" */
 } tm_inp_groups;
 
+/* Whether a set is called Nall or Eall, as CalculiX's cgx calls all nodes and elements.
+ */
+bool tm_inp_says_nothing(const tm_inp_set *set);
+
 /* Lists the sets that count. */
 tm_status tm_inp_groups_find(tm_inp_groups *groups, tm_inp_model *model);
 void tm_inp_groups_free(tm_inp_groups *groups);
