@@ -397,7 +397,7 @@ list() {
     grid "$corner" '10: 0 1 2 3' >good.vtu
     vtu-import -q good.vtu >good.tm
     sed 's/"UnstructuredGrid"/"PolyData"/' good.vtu >a.vtu
-    refuses "1: is a file of VTK of type 'PolyData' (UnstructuredGrid would be right)" a.vtu
+    refuses "1: is a file of VTK of type 'PolyData' (UnstructuredGrid would be right; vtk-import reads polygons of a legacy .vtk)" a.vtu
     sed 's/"UnstructuredGrid"/"PUnstructuredGrid"/' good.vtu >b.vtu
     refuses '3: a piece has no Source' b.vtu
     sed 's/byte_order/compressor="vtkLZ4DataCompressor" byte_order/' good.vtu >c.vtu

@@ -109,7 +109,8 @@ static void take_type(parser *p, const char *type, tm_vtu_entry *entry)
     if (type && t < TM_NUMBER_TYPES)
         entry->type = (tm_number_type)t;
     else if (p->section != TM_VTU_FIELD_DATA)
-        fail(p, "the type of an array is '%.40s' (Bit, Int8 … UInt64, Float32 or Float64)",
+        fail(p,
+             "the type of an array is '%.40s' (Bit, Int8 … UInt64, Float32 or Float64)",
              type ? type : "");
 }
 
@@ -135,8 +136,11 @@ static void begin_file(parser *p, const XML_Char **list)
     const char *compressor = attribute(list, "compressor");
     p->file->is_list = type && strcmp(type, "PUnstructuredGrid") == 0;
     if (!type || (strcmp(type, "UnstructuredGrid") != 0 && !p->file->is_list))
-        fail(p, "is a file of VTK of type '%.40s' (UnstructuredGrid would be right)",
-             type ? type : "");
+        fail(p, "is a file of VTK of type '%.40s' (UnstructuredGrid would be right%s)",
+             type ? type : "",
+             type && strcmp(type, "PolyData") == 0
+                 ? "; vtk-import reads polygons of a legacy .vtk"
+                 : "");
     else if (order && strcmp(order, "LittleEndian") != 0 &&
              strcmp(order, "BigEndian") != 0)
         fail(p, "byte_order=\"%.40s\" (LittleEndian or BigEndian)", order);
