@@ -87,6 +87,19 @@ bool tm_numbers_whole(const tm_numbers *n, size_t i, int64_t lo, int64_t hi,
 
 /* Text ----------------------------------------------------------------------------- */
 
+tm_status tm_numbers_of_bits(tm_numbers *numbers, const char *bits, size_t count,
+                             tm_error *error)
+{
+    tm_text own = {0};
+    if (!tm_text_room(&own, count + 1))
+        return tm_fail_memory(error);
+    for (size_t i = 0; i < count; i++)
+        own.byte[i] = bits[i / BITS] >> (BITS - 1 - i % BITS) & 1;
+    tm_text_free(&numbers->own);
+    *numbers = (tm_numbers){own.byte, count, TM_UINT8, false, own};
+    return TM_OK;
+}
+
 tm_status tm_numbers_room(tm_numbers *numbers, tm_number_type type, size_t count,
                           tm_error *error)
 {

@@ -49,6 +49,12 @@ double tm_numbers_real(const tm_numbers *numbers, size_t i);
 bool tm_numbers_whole(const tm_numbers *numbers, size_t i, int64_t lo, int64_t hi,
                       int64_t *value);
 
+/* Makes *numbers of bits, of which a byte has eight, the first one the highest: each is a
+ * byte of `own` then. Whatever `own` had is gone behind it. TM_ERROR_SYSTEM where memory
+ * is out. O(count). */
+tm_status tm_numbers_of_bits(tm_numbers *numbers, const char *bits, size_t count,
+                             tm_error *error);
+
 /* Makes room for `count` numbers in `own`, each int64_t where the type is whole, else
  * double: whoever calls this writes them there. TM_ERROR_SYSTEM where memory is out. */
 enum { TM_TAKEN_SIZE = 8 };

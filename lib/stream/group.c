@@ -3,6 +3,8 @@
  * text the name begins, which ends with a NUL; marker is the value. */
 #include "group.h"
 
+#include "../base/array.h"
+#include "../number/number.h"
 #include "../text/utf8.h"
 #include "block.h"
 #include "group_names.h"
@@ -47,6 +49,65 @@ const int32_t *tm_group_named(const tm_block *group, tm_group_dimension dimensio
             return &group->marker[g];
     }
     return NULL;
+}
+
+/* Part of a joined name: a name, or the number of a value that has none. */
+static bool find_part(const tm_block *group, tm_group_dimension dimension,
+                      const char *name, size_t size, int32_t *value)
+{
+    int64_t number;
+    const int32_t *named = tm_group_named(group, dimension, name, size);
+    *value = named ? *named : 0;
+    if (named)
+        return true;
+    if (tm_read_int64(name, name + size, &number) != name + size || number < 1 ||
+        number > INT32_MAX || tm_group_find(group, dimension, (int32_t)number))
+        return false;
+    *value = (int32_t)number;
+    return true;
+}
+
+static size_t sort_parts(int32_t *part, size_t parts)
+{
+    size_t count = 0;
+    if (parts > 0)
+        qsort(part, parts, sizeof *part, tm_compare_numbers);
+    for (size_t i = 0; i < parts; i++)
+        if (count == 0 || part[count - 1] != part[i])
+            part[count++] = part[i];
+    return count;
+}
+
+tm_status tm_group_parts(const tm_block *group, tm_group_dimension dimension,
+                         const char *name, int32_t **part, size_t *parts, tm_error *error)
+{
+    const size_t length = sizeof TM_GROUP_AND - 1;
+    bool is_known = strstr(name, TM_GROUP_AND) != NULL;
+    size_t room = 0;
+    tm_status status = TM_OK;
+    *part = NULL;
+    *parts = 0;
+    for (const char *end; is_known && name && status == TM_OK;
+         name = *end ? end + length : NULL) {
+        end = strstr(name, TM_GROUP_AND);
+        if (!end)
+            end = name + strlen(name);
+        int32_t *moved = tm_grow(*part, &room, *parts + 1, sizeof *moved);
+        if (moved) {
+            *part = moved;
+            is_known = find_part(group, dimension, name, (size_t)(end - name),
+                                 &moved[(*parts)++]);
+        } else {
+            status = tm_fail_memory(error);
+        }
+    }
+    *parts = sort_parts(*part, *parts);
+    if (status == TM_OK && is_known && *parts > 1)
+        return TM_OK;
+    free(*part);
+    *part = NULL;
+    *parts = 0;
+    return status;
 }
 
 size_t tm_group_region_attribute(const tm_block *cells)

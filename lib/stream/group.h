@@ -32,6 +32,18 @@ const char *tm_group_find(const tm_block *group, tm_group_dimension dimension,
 const int32_t *tm_group_named(const tm_block *group, tm_group_dimension dimension,
                               const char *name, size_t size);
 
+/* Between the names of several groups, in the name of the value for what is in all of
+ * them. */
+#define TM_GROUP_AND " + "
+
+/* The values of the groups that a name joins, in tm_compare_numbers()'s order and each
+ * once: a name in that dimension of `group`, which may be NULL, or the number of a value
+ * without one. *parts is 0, and *part NULL, where they are not at least two such. *part
+ * is to be freed. TM_ERROR_SYSTEM where memory is out. O(groups) for each. */
+tm_status tm_group_parts(const tm_block *group, tm_group_dimension dimension,
+                         const char *name, int32_t **part, size_t *parts,
+                         tm_error *error);
+
 /* Which attribute of .ele, .mix or .cell is the region: the first, of polyhedra the
  * second (the first is how many tetrahedra they were). There may be fewer. */
 size_t tm_group_region_attribute(const tm_block *cells);

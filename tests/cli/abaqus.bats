@@ -232,6 +232,13 @@ END
     { cat sets.inp && printf '%s\n' '*SOLID SECTION, ELSET=hidden, MATERIAL=x' '1.,'; } |
         abaqus-import -q >section.tm
     names section.tm | grep -qF 'left + hidden'
+    { cat sets.inp && printf '%s\n' '*SOLID SECTION, ELSET=all, MATERIAL=x' '1.,'; } |
+        abaqus-import -q >section.tm
+    names section.tm | grep -qF 'all + left'
+    abaqus-export section.tm | grep -A1 'ELSET=all' | grep '^1, 2$'
+    # but Eall
+    { sed 's/=all/=EALL/' sets.inp && printf '%s\n' '*SOLID SECTION, ELSET=EALL, MATERIAL=x' '1.,'; } |
+        abaqus-import -q --no-history | diff - <(abaqus-import -q --no-history sets.inp)
     # everything, and nothing else, is a region
     corner '*ELEMENT, TYPE=C3D4, ELSET=only' '1, 1, 2, 3, 4' | abaqus-import -q >only.tm
     [ "$(names only.tm)" = "3 1 only" ]
@@ -426,6 +433,71 @@ END
         for kind in '*NSET, NSET=' '*ELSET, ELSET=' '*SURFACE, TYPE=ELEMENT, NAME='; do
             [ "$(sed -n "s/^$kind//p" names.inp | tr '[:lower:]' '[:upper:]' | sort | uniq -d)" = "" ]
         done
+    done
+}
+
+@test "what is in several sets is in each of them, and its value comes back" {
+    for seed in $(seq 12); do
+        python3 - "$seed" >several.tm <<'END'
+import json, random, sys
+random.seed(int(sys.argv[1]))
+names, values, sets = {}, {}, {}
+for d in (0, 2, 3):
+    pool = random.sample(range(1, 40), 9)
+    single = {v: random.choice(['s%d', 'S %d', 'a+b%d', None]) for v in pool[:4]}
+    single = {v: n and n % v for v, n in single.items()}
+    joined = {v: random.sample(pool[:4], random.randint(2, 4)) for v in pool[4:]}
+    names[d] = {v: n for v, n in single.items() if n}
+    seen = set()
+    for v, of in joined.items():
+        if frozenset(of) not in seen:
+            names[d][v] = ' + '.join(single[g] or str(g) for g in of)
+            seen.add(frozenset(of))
+    # at times all are in one of the sets
+    all = [v for v in joined if v in names[d] and pool[0] in joined[v]] + pool[:1]
+    any = list(names[d]) + pool[:4] + [0]
+    values[d] = random.choices(all if random.random() < .3 else any, k=12)
+    for i, v in enumerate(values[d]):
+        for g in joined[v] if v in joined and v in names[d] else [v] if v else []:
+            sets.setdefault('%d %d' % (d, g), []).append(i + 1)
+n = 12
+print('termesh 1\n.node\n%d 3 0 1' % n)
+for i in range(n):
+    print(i + 1, i, i * i, i ** 3, values[0][i])
+print('.ele\n%d 4 1' % (n - 3))
+for i in range(n - 3):
+    print(i + 1, i + 1, i + 2, i + 3, i + 4, values[3][i])
+print('.face\n%d 1' % (n - 3))
+for i in range(n - 3): # the one without its third node: no other tetrahedron has it
+    print(i + 1, i + 1, i + 2, i + 4, values[2][i])
+rows = ['%d %d %s' % (d, v, name) for d in names for v, name in names[d].items()]
+print('.group\n%d 0' % len(rows))
+for i, row in enumerate(rows):
+    print(i + 1, row)
+print('.end')
+limit = {'0': n, '2': n - 3, '3': n - 3}
+sets = {k: [i for i in v if i <= limit[k[0]]] for k, v in sets.items()}
+json.dump({k: v for k, v in sets.items() if v}, open('sets.json', 'w'))
+END
+        abaqus-export --strict -o several.inp several.tm
+        python3 - <<'END'
+import json
+right, found, key = json.load(open('sets.json')), {}, None
+for line in open('several.inp'):
+    if line.startswith('** termesh ') and len(line.split()) == 4:
+        key = ' '.join(line.split()[2:])
+        assert key not in found, key
+        found[key] = []
+    elif not line.startswith('*') and key:
+        found[key] += line.split(',')[:1] if key[0] == '2' else line.split(',')
+found = {k: sorted(int(i) for i in v if i.strip()) for k, v in found.items()}
+assert found == right, (found, right)
+END
+        run -0 --separate-stderr abaqus-import -o read.tm several.inp
+        [ "$stderr" = "" ]
+        in_order read.tm >back.tm
+        in_order several.tm >right.tm
+        same_mesh right.tm back.tm
     done
 }
 

@@ -216,6 +216,16 @@ END
         run -0 --separate-stderr export_it "$exporter" --strict
         [ "$stderr" = "" ]
     done
+    surface sphere off >sphere.off
+    octree-mesh -q -s 3 --polyhedra sphere.off >polyhedra.tm
+    for octree in polyhedra.tm <(polylla3d -q octree.tm) <(octree-repair -q octree.tm | polylla3d -q); do
+        cat "$octree" >with.tm
+        grep -q '^surface.face' with.tm
+        for exporter in openfoam visf vtk vtu; do
+            run -0 --separate-stderr export_it "$exporter" --strict
+            [ "$stderr" = "" ]
+        done
+    done
     surface sphere stream | awk '/^surface.face/ { print; getline; print $1, 1; faces = 1; next }
         faces && NF == 4 { print $0, 1 + NR % 2; next } { print }' | sed '$d' >marked.tm
     printf 'surface.group\n1 0\n1 2 2 even\n.end\n' >>marked.tm

@@ -101,6 +101,47 @@ corner='0 0 0, 1 0 0, 0 1 0, 0 0 1'
     done
 }
 
+@test "arrays of bits, in all forms, are attributes of 0 and 1" {
+    need_vtk
+    "$vtk_python" - <<'END'
+import vtk
+grid, points = vtk.vtkUnstructuredGrid(), vtk.vtkPoints()
+for i in range(11):
+    points.InsertNextPoint(i, i * i, i ** 3)
+grid.SetPoints(points)
+for i in range(8):
+    grid.InsertNextCell(vtk.VTK_TETRA, 4, [i, i + 1, i + 2, i + 3])
+def bits(data, name, components, count):
+    a = vtk.vtkBitArray()
+    a.SetName(name)
+    a.SetNumberOfComponents(components)
+    a.SetNumberOfTuples(count)
+    for i in range(components * count):
+        a.SetValue(i, i * i // 3 % 2)
+    data.AddArray(a)
+bits(grid.GetPointData(), 'one', 1, 11)
+bits(grid.GetPointData(), 'three', 3, 11)
+bits(grid.GetCellData(), 'cells', 1, 8)
+w = vtk.vtkXMLUnstructuredGridWriter()
+w.SetInputData(grid)
+w.SetFileName('bits.vtu')
+assert w.Write()
+END
+    mkdir forms
+    vtk_forms bits.vtu forms
+    for file in forms/*.vtu; do
+        echo "$file"
+        vtu-import -q --no-history -o back.tm "$file"
+        awk '/^\./ { block = $1; rows = -1; next }
+            { rows++ }
+            rows < 1 { next }
+            block == ".node" { n = rows - 1; for (c = 0; c < 4; c++) {
+                i = c ? 3 * n + c - 1 : n; if ($(5 + c) != int(i * i / 3) % 2) exit 1 } }
+            block == ".ele" { n = rows - 1; if ($7 != int(n * n / 3) % 2) exit 1; seen++ }
+            END { if (seen != 8) exit 1 }' back.tm
+    done
+}
+
 @test "meshio's files: text and binary, packed or not, with regions of Gmsh and Medit" {
     need_meshio
     "$vtk_python" - <<'END'
@@ -328,6 +369,14 @@ list() {
     [ "$(header .node rest.tm) $(header .ele rest.tm)" = "5 3 0 0 1 4 0" ]
     run -3 --separate-stderr vtu-import --strict rest.vtu
     [ "$output" = "" ]
+    grid "$corner" '10: 0 1 2 3' "$(data CellData heat 1)$(data PointData words '97 0 98 0 99 0 0')" |
+        sed 's/Float64\(" Name="words"\)/String\1/' >words.vtu
+    run -0 --separate-stderr vtu-import -o words.tm words.vtu
+    [[ "$stderr" == *"data: words (strings): left out"* ]]
+    run -3 --separate-stderr vtu-import --strict words.vtu
+    [ "$output" = "" ]
+    run -3 --separate-stderr vtu-import --region words words.vtu
+    [[ "$stderr" == *"words"* ]]
 }
 
 @test "the same bytes for any number of threads; packed by gzip, too" {
@@ -348,7 +397,7 @@ list() {
     grid "$corner" '10: 0 1 2 3' >good.vtu
     vtu-import -q good.vtu >good.tm
     sed 's/"UnstructuredGrid"/"PolyData"/' good.vtu >a.vtu
-    refuses "1: is a file of VTK of type 'PolyData' (UnstructuredGrid would be right)" a.vtu
+    refuses "1: is a file of VTK of type 'PolyData' (UnstructuredGrid would be right; vtk-import reads polygons of a legacy .vtk)" a.vtu
     sed 's/"UnstructuredGrid"/"PUnstructuredGrid"/' good.vtu >b.vtu
     refuses '3: a piece has no Source' b.vtu
     sed 's/byte_order/compressor="vtkLZ4DataCompressor" byte_order/' good.vtu >c.vtu

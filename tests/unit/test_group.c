@@ -9,6 +9,7 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -215,13 +216,55 @@ static void test_stl(void **state)
                   "1 none;2 a b;");
 }
 
+/* What the values of a joined name are as text, "" where it is none. */
+static void assert_parts(const tm_block *group, const char *name, const char *expected)
+{
+    int32_t *part;
+    size_t parts;
+    tm_text text = {0};
+    assert_int_equal(tm_group_parts(group, TM_GROUP_FACES, name, &part, &parts, NULL),
+                     TM_OK);
+    assert_int_equal(part != NULL, parts > 0);
+    for (size_t i = 0; i < parts; i++)
+        tm_text_format(&text, "%d ", (int)part[i]);
+    tm_text_append(&text, "", 1);
+    assert_string_equal(text.byte, expected);
+    tm_text_free(&text);
+    free(part);
+}
+
+static void test_parts(void **state)
+{
+    (void)state;
+    tm_block group;
+    tm_group_init(&group, ".group");
+    assert_int_equal(tm_group_add(&group, TM_GROUP_FACES, 9, "in", NULL), TM_OK);
+    assert_int_equal(tm_group_add(&group, TM_GROUP_FACES, 2, "a+b", NULL), TM_OK);
+    assert_int_equal(tm_group_add(&group, TM_GROUP_FACES, -1, "low", NULL), TM_OK);
+    assert_int_equal(tm_group_add(&group, TM_GROUP_REGIONS, 4, "steel", NULL), TM_OK);
+    assert_parts(&group, "in + a+b", "2 9 ");
+    assert_parts(&group, "in + 7 + a+b", "2 7 9 ");
+    assert_parts(&group, "low + in", "9 -1 ");
+    assert_parts(&group, "in + a+b + in", "2 9 ");
+    assert_parts(&group, "in", "");
+    assert_parts(&group, "in + in", "");
+    assert_parts(&group, "in + steel", ""); /* that is of regions */
+    assert_parts(&group, "in + ", "");
+    assert_parts(&group, " + in", "");
+    assert_parts(&group, "in + 2", ""); /* which has a name */
+    assert_parts(&group, "in + 0", "");
+    assert_parts(&group, "in + 99999999999", "");
+    assert_parts(NULL, "3 + 1", "1 3 ");
+    tm_group_free(&group);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_clean),   cmocka_unit_test(test_clean_random),
         cmocka_unit_test(test_markers), cmocka_unit_test(test_check),
         cmocka_unit_test(test_region),  cmocka_unit_test(test_obj),
-        cmocka_unit_test(test_stl)};
+        cmocka_unit_test(test_stl),     cmocka_unit_test(test_parts)};
     random_start();
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

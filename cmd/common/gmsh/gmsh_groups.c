@@ -211,7 +211,7 @@ static tm_status add_joined(const gmsh_set *set, tm_block *group, tm_error *erro
         const char *known =
             tm_group_find(group, (tm_group_dimension)set->dimension, set->group[i]);
         if (i > 0)
-            tm_text_string(&name, GMSH_AND);
+            tm_text_string(&name, TM_GROUP_AND);
         if (known)
             tm_text_string(&name, known);
         else

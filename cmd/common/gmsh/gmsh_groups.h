@@ -10,9 +10,6 @@
 
 #include <stdint.h>
 
-/* Between the names of groups, in the name of a set of several. */
-#define GMSH_AND " + "
-
 /* Physical groups, ascending; or where there are none, the entity that the elements are
  * of. */
 typedef struct gmsh_set {

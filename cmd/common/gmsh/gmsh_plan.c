@@ -173,56 +173,16 @@ static void number_values(gmsh_plan *plan, int d)
 
 /* Groups --------------------------------------------------------------------------- */
 
-/* The group of a name or a number: part of the name of several. */
-static bool find_group(const gmsh_plan *plan, int d, const char *name, size_t size,
-                       int32_t *group)
-{
-    int64_t number;
-    const int32_t *named = tm_group_named(plan->names, (tm_group_dimension)d, name, size);
-    if (named) {
-        *group = *named;
-        return *group > 0;
-    }
-    if (tm_read_int64(name, name + size, &number) != name + size || number < 1 ||
-        number > INT32_MAX)
-        return false;
-    *group = (int32_t)number;
-    return true;
-}
-
-/* Splits a name of several names; leaves none where one of them is not known. */
-static tm_status split_name(const gmsh_plan *plan, int d, const char *name,
-                            gmsh_value *value, tm_error *error)
-{
-    static const char joint[] = GMSH_AND;
-    const size_t length = sizeof joint - 1;
-    size_t room = 0;
-    for (const char *end; name; name = *end ? end + length : NULL) {
-        int32_t group;
-        end = strstr(name, joint);
-        if (!end)
-            end = name + strlen(name);
-        int32_t *moved =
-            tm_grow(value->group, &room, value->groups + 1, sizeof *value->group);
-        if (!moved)
-            return tm_fail_memory(error);
-        value->group = moved;
-        if (!find_group(plan, d, name, (size_t)(end - name), &group)) {
-            value->groups = 0;
-            return TM_OK;
-        }
-        value->group[value->groups++] = group;
-    }
-    return TM_OK;
-}
-
 /* The groups of a value: those that its name is made of, or the one with its number. */
 static tm_status find_groups(gmsh_plan *plan, int d, gmsh_value *value, tm_error *error)
 {
-    const char *name = tm_group_find(plan->names, (tm_group_dimension)d, value->value);
-    if (name && strstr(name, GMSH_AND)) {
-        const tm_status status = split_name(plan, d, name, value, error);
-        if (status != TM_OK || value->groups > 1)
+    const tm_group_dimension dimension = (tm_group_dimension)d;
+    const char *name = tm_group_find(plan->names, dimension, value->value);
+    if (name) {
+        const tm_status status = tm_group_parts(plan->names, dimension, name,
+                                                &value->group, &value->groups, error);
+        if (status != TM_OK || (value->groups > 0 && value->group[0] > 0 &&
+                                value->group[value->groups - 1] > 0))
             return status;
     }
     free(value->group);

@@ -74,9 +74,9 @@ typedef struct gmsh_plan {
 
 /* What is written: the cells, else the triangles, else all nodes as points; and of .face,
  * .facet, .edge and .node what has a marker other than 0 beside them. A name of several
- * names, joined as GMSH_AND says, is of all those groups. *plan has `points` set and is
- * to be freed, after an error too; the stream has to stay. TM_ERROR_SYSTEM where memory
- * is out. O(n log n). */
+ * names, joined as TM_GROUP_AND says, is of all those groups. *plan has `points` set and
+ * is to be freed, after an error too; the stream has to stay. TM_ERROR_SYSTEM where
+ * memory is out. O(n log n). */
 tm_status gmsh_plan_make(gmsh_plan *plan, const tm_stream *stream, tm_error *error);
 void gmsh_plan_free(gmsh_plan *plan);
 

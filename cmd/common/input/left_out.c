@@ -216,12 +216,20 @@ bool mesh_marks_boundary_nodes(const tm_stream *stream)
            content != TM_CONTENT_POINTS && (!has_faces || marks_nodes_of(node, face));
 }
 
+/* A mesh of octree-mesh, which has the surface as a part, or what polyhedra are made of
+ * it. */
+static bool is_of_octree(const tm_stream *stream)
+{
+    return tm_stream_find(stream, ".octant") ||
+           (tm_stream_find(stream, ".cell") && tm_stream_find(stream, "surface.face"));
+}
+
 static void add_nodes(finder *find)
 {
     const tm_block *node = tm_stream_find(find->stream, ".node");
     if (!node)
         return;
-    const size_t octree_mesh = tm_stream_find(find->stream, ".octant") ? 1 : 0;
+    const size_t octree_mesh = is_of_octree(find->stream) ? 1 : 0;
     if (node->count > 0 && node->attributes > octree_mesh)
         add(find, NODE_ATTRIBUTES, node->attributes - octree_mesh, "attributes of nodes",
             node->name);
@@ -305,7 +313,7 @@ static bool is_left_out(const finder *find, const tm_block *block)
         return block->kind == TM_UNKNOWN;
     if (find->keeps & PARTS && (block->kind <= TM_EDGE || block->kind == TM_GROUP))
         return false;
-    return !tm_stream_find(find->stream, ".octant") ||
+    return !is_of_octree(find->stream) ||
            strncmp(block->name, surface, sizeof surface - 1) != 0;
 }
 

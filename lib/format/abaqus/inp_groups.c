@@ -56,8 +56,7 @@ tm_status tm_inp_classes_put(tm_inp_classes *classes, uint32_t item, uint32_t gr
 
 /* Groups ---------------------------------------------------------------------------- */
 
-/* Nall and Eall are what CalculiX's cgx calls all nodes and elements. */
-static bool says_nothing(const tm_inp_set *set)
+bool tm_inp_says_nothing(const tm_inp_set *set)
 {
     return tm_word_is_like(set->name, "Nall") || tm_word_is_like(set->name, "Eall");
 }
@@ -71,7 +70,7 @@ static bool counts(const tm_inp_model *model, const tm_inp_set *set)
     if (set->kind == TM_INP_NODES &&
         tm_inp_find_set(model, TM_INP_ELEMENTS, set->scope, set->name))
         return false;
-    return !set->is_internal && !says_nothing(set) && !set->is_of_surface;
+    return !set->is_internal && !tm_inp_says_nothing(set) && !set->is_of_surface;
 }
 
 /* The group of a set in an instance, or TM_INP_NONE. They are in the order of sets. */
@@ -106,11 +105,45 @@ static uint32_t same_name(const tm_inp_groups *groups, uint32_t group)
     return same == TM_INP_NONE ? group : same;
 }
 
+/* "1 + 3", of values in the order of tm_group_parts(). */
+static void append_values(tm_text *key, const int32_t *value, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        tm_text_format(key, "%s%d", i > 0 ? TM_GROUP_AND : "", (int)value[i]);
+    tm_text_append(key, "", 1);
+}
+
+/* What names of the file's comments are joined. */
+static tm_status find_joined(tm_inp_groups *groups)
+{
+    const tm_block *said = &groups->model->group;
+    tm_error *error = groups->model->error;
+    tm_status status = TM_OK;
+    for (size_t g = 0; g < said->count && status == TM_OK; g++) {
+        const tm_group_dimension d = tm_group_dimension_of(said, g);
+        tm_text key = {0};
+        int32_t *part;
+        size_t parts;
+        status = tm_group_parts(said, d, tm_group_name(said, g), &part, &parts, error);
+        append_values(&key, part, parts);
+        if (status == TM_OK && key.failed)
+            status = tm_fail_memory(error);
+        if (status == TM_OK && parts > 0 &&
+            !tm_group_named(&groups->joined, d, key.byte, key.size - 1))
+            status = tm_group_add(&groups->joined, d, tm_group_value(said, g), key.byte,
+                                  error);
+        tm_text_free(&key);
+        free(part);
+    }
+    return status;
+}
+
 tm_status tm_inp_groups_find(tm_inp_groups *groups, tm_inp_model *model)
 {
     size_t room = 0;
     *groups = (tm_inp_groups){.model = model};
     tm_group_init(&groups->named, ".group");
+    tm_group_init(&groups->joined, ".group");
     for (size_t s = 0; s < model->sets; s++)
         for (size_t i = 0; counts(model, &model->set[s]) && i < model->instances; i++) {
             if (model->instance[i].scope != model->set[s].scope)
@@ -125,13 +158,14 @@ tm_status tm_inp_groups_find(tm_inp_groups *groups, tm_inp_model *model)
         }
     for (uint32_t g = 0; g < groups->groups; g++)
         groups->group[g].same = same_name(groups, g);
-    return TM_OK;
+    return find_joined(groups);
 }
 
 void tm_inp_groups_free(tm_inp_groups *groups)
 {
     free(groups->group);
     tm_group_free(&groups->named);
+    tm_group_free(&groups->joined);
 }
 
 /* Values and names ------------------------------------------------------------------ */
@@ -234,25 +268,70 @@ tm_status tm_inp_groups_name(tm_inp_groups *groups)
     return status;
 }
 
-/* "a + b" of a class; the first group that it was put in first. */
-static tm_status name_joined(const tm_inp_classes *classes, uint32_t class,
-                             tm_inp_groups *groups, int d)
+/* "a + b" of the groups of a class. */
+static tm_status name_joined(const tm_inp_class *class, tm_inp_groups *groups,
+                             const uint32_t *chain, size_t count, int d)
 {
+    tm_text name = {0};
+    for (size_t i = 0; i < count; i++) {
+        append_name(&name, groups, chain[i], d);
+        tm_text_string(&name, i + 1 < count ? TM_GROUP_AND : "");
+    }
+    const tm_status status = add_name(groups, d, class->value[d], &name);
+    tm_text_free(&name);
+    return status;
+}
+
+/* The value that abaqus-export says of what is in these groups, or NULL. */
+static const int32_t *find_said(const tm_inp_groups *groups, const uint32_t *chain,
+                                size_t count, int d, tm_status *status)
+{
+    tm_text key = {0};
+    const int32_t *said = NULL;
+    int32_t *value = tm_new(count, sizeof *value);
+    for (size_t i = 0; value && i < count; i++)
+        value[i] = groups->group[chain[i]].value[d];
+    if (value) {
+        qsort(value, count, sizeof *value, tm_compare_numbers);
+        append_values(&key, value, count);
+    }
+    if (!value || key.failed)
+        *status = tm_fail_memory(groups->model->error);
+    else
+        said = tm_group_named(&groups->joined, (tm_group_dimension)d, key.byte,
+                              key.size - 1);
+    tm_text_free(&key);
+    free(value);
+    return said;
+}
+
+/* The value of a class of several groups; the first that it was put in first. */
+static tm_status give_value(tm_inp_classes *classes, uint32_t c, tm_inp_groups *groups,
+                            int d, size_t *several)
+{
+    tm_inp_class *class = &classes->class[c];
     uint32_t *chain = NULL;
     size_t count = 0, room = 0;
-    for (uint32_t c = class; c != 0; c = classes->class[c].parent)
-        if (!tm_append(&chain, &count, &room, classes->class[c].group)) {
-            free(chain);
-            return tm_fail_memory(groups->model->error);
-        }
-    tm_text name = {0};
-    while (count-- > 0) {
-        append_name(&name, groups, chain[count], d);
-        tm_text_string(&name, count > 0 ? " + " : "");
+    tm_status status = TM_OK;
+    for (uint32_t at = c; at != 0 && status == TM_OK; at = classes->class[at].parent)
+        if (!tm_append(&chain, &count, &room, classes->class[at].group))
+            status = tm_fail_memory(groups->model->error);
+    for (size_t i = 0; i < count / 2; i++) {
+        const uint32_t group = chain[i];
+        chain[i] = chain[count - 1 - i];
+        chain[count - 1 - i] = group;
+    }
+    const int32_t *said = status == TM_OK && groups->joined.count > 0
+                              ? find_said(groups, chain, count, d, &status)
+                              : NULL;
+    if (said) {
+        class->value[d] = *said;
+    } else if (status == TM_OK) {
+        ++*several;
+        class->value[d] = groups->next[d]++;
+        status = name_joined(class, groups, chain, count, d);
     }
     free(chain);
-    const tm_status status = add_name(groups, d, classes->class[class].value[d], &name);
-    tm_text_free(&name);
     return status;
 }
 
@@ -269,9 +348,7 @@ tm_status tm_inp_classes_name(tm_inp_classes *classes, tm_inp_groups *groups,
                 class->value[d] = groups->group[class->group].value[d];
                 continue;
             }
-            ++*several;
-            class->value[d] = groups->next[d]++;
-            status = name_joined(classes, c, groups, d);
+            status = give_value(classes, c, groups, d, several);
         }
     return status;
 }

@@ -44,7 +44,12 @@ typedef struct tm_inp_groups {
     tm_inp_group *group;
     int32_t next[TM_GROUP_DIMENSIONS]; /* the value above all there are */
     tm_block named;                    /* .group */
+    tm_block joined; /* what abaqus-export says that stands for several: "1 + 3" */
 } tm_inp_groups;
+
+/* Whether a set is called Nall or Eall, as CalculiX's cgx calls all nodes and elements.
+ */
+bool tm_inp_says_nothing(const tm_inp_set *set);
 
 /* Lists the sets that count. */
 tm_status tm_inp_groups_find(tm_inp_groups *groups, tm_inp_model *model);
@@ -54,8 +59,8 @@ void tm_inp_groups_free(tm_inp_groups *groups);
  * And names. */
 tm_status tm_inp_groups_name(tm_inp_groups *groups);
 
-/* Gives classes that are used theirs: that of the one group, or one more, named "a + b";
- * *several counts those. */
+/* Gives classes that are used theirs: that of the one group, or that abaqus-export says,
+ * or one more, named "a + b"; *several counts those. */
 tm_status tm_inp_classes_name(tm_inp_classes *classes, tm_inp_groups *groups,
                               size_t *several);
 

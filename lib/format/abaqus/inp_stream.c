@@ -183,7 +183,9 @@ static tm_status find_turns(maker *m)
         const tm_inp_group *group = &m->groups.group[g];
         const tm_inp_set *set = &m->model.set[group->set];
         m->turn[g] = (turn){STRONG, group->same, g};
-        if (set->kind != TM_INP_FACES && has_all(group, all))
+        const bool is_said = set->dimension >= 0 && m->groups.joined.count > 0;
+        const bool is_material = set->is_of_section && !tm_inp_says_nothing(set);
+        if (set->kind != TM_INP_FACES && has_all(group, all) && !is_said && !is_material)
             m->turn[g].weight = OF_ALL;
         if (set->kind == TM_INP_ELEMENTS && is_of_gmsh(set->name))
             m->turn[g].weight = OF_GMSH;

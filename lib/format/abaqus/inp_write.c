@@ -309,8 +309,6 @@ static void write_sets(writer *w, tm_group_dimension dimension, const char *keyw
                        const tm_inp_names *names)
 {
     const bool faces = dimension == TM_GROUP_FACES && w->content != TM_CONTENT_SURFACE;
-    if (w->count > 0)
-        qsort(w->list, w->count, sizeof *w->list, compare_members);
     for (size_t first = 0, past; first < w->count; first = past) {
         const int32_t value = w->list[first].value;
         for (past = first + 1; past < w->count && w->list[past].value == value;)
@@ -321,7 +319,48 @@ static void write_sets(writer *w, tm_group_dimension dimension, const char *keyw
     }
 }
 
-/* The members of each set of a dimension. */
+/* Members first … past - 1, of a value that stands for several sets, become those of each
+ * of these, behind the others. */
+static tm_status join_parts(writer *w, tm_group_dimension dimension, size_t first,
+                            size_t past)
+{
+    int32_t *part = NULL;
+    size_t parts = 0;
+    const char *name = tm_group_find(w->group, dimension, w->list[first].value);
+    tm_status status =
+        name ? tm_group_parts(w->group, dimension, name, &part, &parts, w->error) : TM_OK;
+    for (size_t i = first; i < past && parts > 0 && status == TM_OK; i++) {
+        const member moved = w->list[i];
+        w->list[i].value = part[0];
+        for (size_t p = 1; p < parts && status == TM_OK; p++)
+            status = add_member(w, part[p], moved.item, moved.face);
+    }
+    free(part);
+    return status;
+}
+
+static void sort_members(writer *w)
+{
+    if (w->count > 0)
+        qsort(w->list, w->count, sizeof *w->list, compare_members);
+}
+
+static tm_status join_all_parts(writer *w, tm_group_dimension dimension)
+{
+    const size_t count = w->count;
+    tm_status status = TM_OK;
+    sort_members(w);
+    for (size_t first = 0, past; first < count && status == TM_OK; first = past) {
+        const int32_t value = w->list[first].value;
+        for (past = first + 1; past < count && w->list[past].value == value;)
+            past++;
+        status = join_parts(w, dimension, first, past);
+    }
+    sort_members(w);
+    return status;
+}
+
+/* The members of each value of a dimension. */
 static tm_status list_members(writer *w, tm_group_dimension dimension)
 {
     w->count = 0;
@@ -338,8 +377,6 @@ static tm_status list_members(writer *w, tm_group_dimension dimension)
 static tm_status name_values(writer *w, tm_group_dimension dimension, tm_inp_names *names)
 {
     tm_status status = TM_OK;
-    if (w->count > 0)
-        qsort(w->list, w->count, sizeof *w->list, compare_members);
     for (size_t i = 0; i < w->count && status == TM_OK; i++)
         if (i == 0 || w->list[i].value != w->list[i - 1].value)
             status = tm_inp_names_add(
@@ -361,6 +398,8 @@ static tm_status write_groups(writer *w)
             keyword = "*SURFACE, TYPE=ELEMENT, NAME";
         tm_inp_names names = {0};
         status = list_members(w, d);
+        if (status == TM_OK)
+            status = join_all_parts(w, d);
         if (status == TM_OK)
             status = name_values(w, d, &names);
         if (status == TM_OK)

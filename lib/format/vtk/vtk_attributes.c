@@ -53,7 +53,8 @@ static void add_array(const tm_vtk_maker *m, column_list *to, const tm_vtk_data 
                       size_t count, tm_text *names)
 {
     if (data->lacks)
-        list_name(m, &m->report->left_out, data, "not of all pieces");
+        list_name(m, &m->report->left_out, data,
+                  data->strings ? "strings" : "not of all pieces");
     else if (data->components > TM_ATTRIBUTES_MAX - to->count)
         list_name(m, &m->report->left_out, data, "more than 1000 attributes");
     else if (!is_finite(data, count))

@@ -23,8 +23,9 @@ enum {
 typedef struct tm_vtk_data {
     size_t name; /* names.byte + name */
     size_t components;
-    bool whole;    /* its numbers are whole */
-    bool lacks;    /* a piece has it not, or otherwise */
+    bool whole; /* its numbers are whole */
+    bool lacks; /* a piece has it not, or otherwise; or they are strings */
+    bool strings;
     bool measure;  /* vtu-export's: its values are not needed */
     double *value; /* [count][components] */
     size_t room;

@@ -88,6 +88,7 @@ typedef struct array {
     tm_vtk_number type;
 } array;
 
+/* Of strings the numbers are NULL. */
 static tm_status keep(tm_vtk_file *file, const array *a, const tm_numbers *numbers)
 {
     tm_vtk_mesh *cells = file->cells;
@@ -103,7 +104,8 @@ static tm_status keep(tm_vtk_file *file, const array *a, const tm_numbers *numbe
     if (!data)
         return tm_fail_memory(file->error);
     data->components = a->components;
-    return tm_vtk_add_values(data, 0, numbers, file->error);
+    data->strings = data->lacks = !numbers;
+    return numbers ? tm_vtk_add_values(data, 0, numbers, file->error) : TM_OK;
 }
 
 static tm_status take_array(tm_vtk_file *file, const array *a)
@@ -116,7 +118,10 @@ static tm_status take_array(tm_vtk_file *file, const array *a)
     if (a->type.kind == TM_VTK_STRINGS) {
         tm_text *groups = &file->cells->groups;
         const bool wanted = tm_word_is(a->name, "group_names") && groups->size == 0;
-        return take_strings(file, count, wanted ? groups : NULL);
+        tm_status status = take_strings(file, count, wanted ? groups : NULL);
+        if (status == TM_OK && a->list && count > 0)
+            status = keep(file, a, NULL);
+        return status;
     }
     tm_status status =
         tm_vtk_take_numbers(file, &a->type, count, "a number of an array", &numbers);

@@ -87,13 +87,8 @@ static tm_status take_bits(tm_vtk_file *file, size_t count, tm_numbers *numbers)
     const size_t size = count / BITS + (count % BITS != 0);
     if (size > (size_t)(scan->end - scan->at))
         return tm_scan_fail(scan, file->error, "the file ends in an array of bits");
-    if (!tm_text_room(&numbers->own, count + 1))
-        return tm_fail_memory(file->error);
-    for (size_t i = 0; i < count; i++)
-        numbers->own.byte[i] = scan->at[i / BITS] >> (BITS - 1 - i % BITS) & 1;
-    *numbers = (tm_numbers){numbers->own.byte, count, TM_UINT8, false, numbers->own};
     scan->at += size;
-    return TM_OK;
+    return tm_numbers_of_bits(numbers, scan->at - size, count, file->error);
 }
 
 tm_status tm_vtk_take_numbers(tm_vtk_file *file, const tm_vtk_number *type, size_t count,

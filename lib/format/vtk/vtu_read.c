@@ -250,7 +250,7 @@ static tm_status add_names(reader *r, tm_vtu_section section, tm_vtk_data_list *
     for (size_t i = tm_vtu_first(file, r->piece);
          i < file->entries && file->entry[i].piece == r->piece; i++) {
         const tm_vtu_entry *entry = &file->entry[i];
-        if (entry->section != section || entry->strings)
+        if (entry->section != section)
             continue;
         if (list->arrays == TM_ATTRIBUTES_MAX)
             return tm_vtu_fail(file, entry, r->error, "there are more than %d arrays",
@@ -260,6 +260,7 @@ static tm_status add_names(reader *r, tm_vtu_section section, tm_vtk_data_list *
         if (!data)
             return tm_fail_memory(r->error);
         data->components = entry->components;
+        data->strings = entry->strings;
     }
     return TM_OK;
 }

@@ -341,9 +341,15 @@ static tm_status read_numbers(source *s, unsigned threads, tm_numbers *numbers)
 tm_status tm_vtu_numbers(const tm_vtu_file *file, const tm_vtu_entry *entry, size_t count,
                          unsigned threads, tm_numbers *numbers, tm_error *error)
 {
+    enum { BITS = 8 };
+    const bool bits = entry->bits && entry->form != TM_VTU_ASCII;
+    const size_t items = bits ? count / BITS + (count % BITS != 0) : count;
     source s = {
-        .file = file, .entry = entry, .error = error, .least = count, .most = count};
-    return read_numbers(&s, threads, numbers);
+        .file = file, .entry = entry, .error = error, .least = items, .most = items};
+    const tm_status status = read_numbers(&s, threads, numbers);
+    return status == TM_OK && bits
+               ? tm_numbers_of_bits(numbers, numbers->bytes, count, error)
+               : status;
 }
 
 tm_status tm_vtu_all(const tm_vtu_file *file, const tm_vtu_entry *entry, size_t most,

@@ -98,8 +98,9 @@ static void take_type(parser *p, const char *type, tm_vtu_entry *entry)
         [TM_INT64] = "Int64",    [TM_UINT64] = "UInt64", [TM_FLOAT32] = "Float32",
         [TM_FLOAT64] = "Float64"};
     size_t t = 0;
-    if (type && strcmp(type, "String") == 0) {
-        entry->strings = true;
+    entry->strings = type && strcmp(type, "String") == 0;
+    entry->bits = type && strcmp(type, "Bit") == 0;
+    if (entry->strings || entry->bits) {
         entry->type = TM_UINT8;
         return;
     }
@@ -108,7 +109,8 @@ static void take_type(parser *p, const char *type, tm_vtu_entry *entry)
     if (type && t < TM_NUMBER_TYPES)
         entry->type = (tm_number_type)t;
     else if (p->section != TM_VTU_FIELD_DATA)
-        fail(p, "the type of an array is '%.40s' (Int8 … UInt64, Float32 or Float64)",
+        fail(p,
+             "the type of an array is '%.40s' (Bit, Int8 … UInt64, Float32 or Float64)",
              type ? type : "");
 }
 
@@ -134,8 +136,11 @@ static void begin_file(parser *p, const XML_Char **list)
     const char *compressor = attribute(list, "compressor");
     p->file->is_list = type && strcmp(type, "PUnstructuredGrid") == 0;
     if (!type || (strcmp(type, "UnstructuredGrid") != 0 && !p->file->is_list))
-        fail(p, "is a file of VTK of type '%.40s' (UnstructuredGrid would be right)",
-             type ? type : "");
+        fail(p, "is a file of VTK of type '%.40s' (UnstructuredGrid would be right%s)",
+             type ? type : "",
+             type && strcmp(type, "PolyData") == 0
+                 ? "; vtk-import reads polygons of a legacy .vtk"
+                 : "");
     else if (order && strcmp(order, "LittleEndian") != 0 &&
              strcmp(order, "BigEndian") != 0)
         fail(p, "byte_order=\"%.40s\" (LittleEndian or BigEndian)", order);

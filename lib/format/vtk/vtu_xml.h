@@ -28,6 +28,7 @@ typedef struct tm_vtu_entry {
     tm_vtu_form form;
     tm_number_type type;
     bool strings;      /* their bytes, each string with 0 behind it */
+    bool bits;         /* eight in a byte, but in text */
     size_t piece;      /* of PointData, CellData, Points and Cells */
     size_t name;       /* names.byte + name */
     size_t components; /* 1 where it does not say */
