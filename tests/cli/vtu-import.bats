@@ -327,8 +327,8 @@ list() {
     grid "$corner" '10: 0 1 2 3' >a_0.vtu
     list a_0.vtu gone.vtu >list.pvtu
     fails 4 'gone.vtu: cannot open: No such file or directory'
-    list a_0.vtu list.pvtu >list.pvtu
-    fails 3 'list.pvtu: is a list of pieces, and so no piece'
+    list a_0.vtu ./list.pvtu >list.pvtu
+    fails 3 "./list.pvtu: is a list of pieces, and so no piece"
     list >list.pvtu
     fails 3 'list.pvtu: has no element Piece'
     list '' >list.pvtu
