@@ -96,6 +96,20 @@ static void say(const tm_openfoam_report *report)
                     filter_input_name(&f), report->not_elements);
 }
 
+/* No stream has a place for zones of points. */
+static void say_point_zones(const char *folder)
+{
+    tm_openfoam_file file = {0};
+    size_t zones = 0;
+    read_file(folder, "pointZones", &file);
+    if (file.path && tm_openfoam_count_zones(&file, &zones, &error) != TM_OK)
+        mesh_input_fail(&f, &error);
+    if (zones > 0)
+        filter_leave_out(&f, "%zu zones of points (pointZones)", zones);
+    free((char *)file.path);
+    tm_text_free(&file.bytes);
+}
+
 static void read_folder(const char *folder, bool elements, tm_stream *stream)
 {
     tm_openfoam_file file[TM_OPENFOAM_FILES] = {0};
@@ -106,6 +120,7 @@ static void read_folder(const char *folder, bool elements, tm_stream *stream)
                          &error) != TM_OK)
         mesh_input_fail(&f, &error);
     say(&report);
+    say_point_zones(folder);
     tm_openfoam_report_free(&report);
     for (int i = 0; i < TM_OPENFOAM_FILES; i++) {
         free((char *)file[i].path);

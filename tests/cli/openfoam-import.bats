@@ -298,6 +298,27 @@ END
     [ "$output" = "" ]
 }
 
+@test "zones of points are said to be left out, or refused with --strict" {
+    cells 2 >cells.tm
+    rm -rf mesh
+    openfoam-export -q mesh cells.tm
+    for none in '0()' 0 ''; do
+        [ -n "$none" ] || none='0 ( )'
+        printf 'FoamFile { version 2.0; class regIOobject; }\n%s\n' "$none" >mesh/pointZones
+        openfoam-import --strict -o out.tm mesh
+    done
+    printf '2 ( a { type pointZone; pointLabels List<label> 1(0); }\nb { type pointZone; pointLabels 0(); } )' |
+        gzip >mesh/pointZones.gz
+    rm mesh/pointZones
+    run -0 --separate-stderr openfoam-import -o out.tm mesh
+    [[ "$stderr" == *"2 zones of points (pointZones): left out"* ]]
+    run -3 --separate-stderr openfoam-import --strict mesh
+    [ "$output" = "" ]
+    echo zones | gzip >mesh/pointZones.gz
+    run -3 --separate-stderr openfoam-import mesh
+    [[ "$stderr" == "openfoam-import: mesh/pointZones.gz"* ]]
+}
+
 @test "wrong folders and files: which, where, what" {
     refuses() {
         run -3 --separate-stderr openfoam-import mesh

@@ -87,6 +87,11 @@ tm_status tm_openfoam_read(tm_stream *stream,
                            const tm_openfoam_file file[TM_OPENFOAM_FILES], bool elements,
                            tm_openfoam_report *report, tm_error *error);
 
+/* How many zones a file of such has, as pointZones, which no stream has a place for:
+ * TM_ERROR_INPUT where that is not in it. O(1). */
+tm_status tm_openfoam_count_zones(const tm_openfoam_file *file, size_t *count,
+                                  tm_error *error);
+
 TM_EXTERN_C_END
 
 #endif

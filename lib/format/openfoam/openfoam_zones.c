@@ -141,16 +141,31 @@ static tm_status read_dictionary(reader *r, tm_foam *foam, zones *all, const cha
     return status;
 }
 
+/* The beginning of a list, N. */
+static tm_status begin_list(tm_foam *foam, const tm_openfoam_file *file, size_t *count,
+                            tm_error *error)
+{
+    const tm_status status = tm_openfoam_begin(foam, file, error);
+    *count = 0;
+    return status == TM_OK
+               ? tm_foam_count(foam, "the size of the list", UINT32_MAX - 1, count, error)
+               : status;
+}
+
+tm_status tm_openfoam_count_zones(const tm_openfoam_file *file, size_t *count,
+                                  tm_error *error)
+{
+    tm_foam foam;
+    return begin_list(&foam, file, count, error);
+}
+
 /* N(name {…} …), or nothing at all. */
 static tm_status read_all(reader *r, tm_openfoam_kind kind, zones *all,
                           const char *before, entry_reader *read)
 {
     tm_foam foam;
-    size_t count = 0;
-    tm_status status = tm_openfoam_begin(&foam, &r->file[kind], r->error);
-    if (status == TM_OK)
-        status = tm_foam_count(&foam, "the size of the list", UINT32_MAX - 1, &count,
-                               r->error);
+    size_t count;
+    tm_status status = begin_list(&foam, &r->file[kind], &count, r->error);
     const bool opens = status == TM_OK && tm_foam_is(&foam, '(');
     if (status == TM_OK && !opens && count > 0)
         status = tm_foam_expect(&foam, '(', r->error);
