@@ -389,18 +389,28 @@ static tm_status read_source(reader *r, const char *source)
     return status;
 }
 
+static tm_status read_sources(reader *r, const tm_vtu_file *list)
+{
+    tm_status status = TM_OK;
+    if (list->pieces == 0)
+        return tm_fail_at(r->error, TM_ERROR_INPUT, list->name, 0, NULL,
+                          "has no element Piece");
+    for (size_t i = 0; i < list->pieces && status == TM_OK; i++)
+        status = read_source(r, list->names.byte + list->piece[i].source);
+    return status;
+}
+
 /* The files of a list, one after the other. */
 static tm_status read_list(reader *r)
 {
     tm_vtu_file list = r->file;
-    tm_status status = TM_OK;
+    tm_status status;
     r->file = (tm_vtu_file){0};
-    if (!r->options->load || list.pieces == 0)
+    if (r->options->load)
+        status = read_sources(r, &list);
+    else
         status = tm_fail_at(r->error, TM_ERROR_INPUT, list.name, 0, NULL,
-                            list.pieces == 0 ? "has no element Piece"
-                                             : "is a list of other files");
-    for (size_t i = 0; i < list.pieces && status == TM_OK; i++)
-        status = read_source(r, list.names.byte + list.piece[i].source);
+                            "is a list of other files");
     r->cells.name = list.name;
     tm_vtu_file_free(&list);
     return status;
