@@ -6,7 +6,7 @@ bats_require_minimum_version 1.5.0
 @test "damaged streams: no crash, no hang, no invalid mesh, in the library and all filters" {
     filters=$(cd "$BATS_TEST_DIRNAME/../../cmd" && basename -s .c -- *.c export/*.c)
     # shellcheck disable=SC2086 # a list of words
-    run "$TM_BUILD/fuzz/fuzz" "$TM_BUILD/bin" 2000 $filters
+    run "$TM_BUILD/fuzz/fuzz" "$TM_BUILD/bin" 1200 $filters
     echo "$output"
     [ "$status" -eq 0 ]
 }

@@ -472,8 +472,8 @@ static void test_flat_mesh(void **state)
 {
     (void)state;
     const double heights[] = {0.1, 0.03, 0.01};
-    const double angles[] = {30, 45, 60};
-    for (int k = 0; k < 9; k++) {
+    const double angles[] = {30, 60};
+    for (int k = 0; k < 6; k++) {
         tm_stream stream;
         tm_tet_mesh mesh;
         make_box(&mesh, &stream, 4, 0.9, heights[k % 3]);
