@@ -2,7 +2,6 @@
 #include "evaluate.h"
 
 #include "../base/array.h"
-#include "../geom/barycentric.h"
 #include "../surface/point_table.h"
 
 #include <math.h>
@@ -58,16 +57,6 @@ static void list_tets(evaluation *e)
 /* In which tetrahedron -----------------------------------------------------------------
  */
 
-/* The barycentric coordinates of a point; returns how deep it is. */
-static double coordinates(const tm_tet_mesh *from, uint32_t t, const double p[3],
-                          double b[CORNERS])
-{
-    const double *x[CORNERS];
-    for (int i = 0; i < CORNERS; i++)
-        x[i] = from->xyz[from->tet[t][i]];
-    return tm_barycentric(x, p, b);
-}
-
 /* Pushes what is across the faces of t that were not met, that which the point is the
  * farthest beyond last. Returns the new height. */
 static size_t push_across(evaluation *e, uint32_t t, const double b[CORNERS],
@@ -102,7 +91,7 @@ static uint32_t find_tet(evaluation *e, const double p[3], uint32_t t)
     e->stack[height++] = t;
     while (height > 0 && most < rounding) {
         t = e->stack[--height];
-        const double depth = coordinates(e->from, t, p, b);
+        const double depth = tm_tet_coordinates(e->from, t, p, b);
         if (depth > most) {
             most = depth;
             best = t;

@@ -202,6 +202,15 @@ void tm_tet_mesh_forget_edge(tm_tet_mesh *mesh, uint32_t a, uint32_t b)
     tm_edge_map_remove(&mesh->edge_of, a, b);
 }
 
+double tm_tet_coordinates(const tm_tet_mesh *mesh, uint32_t t, const double p[3],
+                          double weight[4])
+{
+    const double *x[4];
+    for (int i = 0; i < 4; i++)
+        x[i] = mesh->xyz[mesh->tet[t][i]];
+    return tm_barycentric(x, p, weight);
+}
+
 void tm_tet_interpolate(const tm_tet_mesh *mesh, const uint32_t *tet, size_t count,
                         const double p[3], double *value)
 {
@@ -209,14 +218,11 @@ void tm_tet_interpolate(const tm_tet_mesh *mesh, const uint32_t *tet, size_t cou
     const uint32_t *nodes = mesh->tet[tet[0]];
     double weight[4] = {1, 0, 0, 0}, deepest = -HUGE_VAL;
     for (size_t i = 0; i < count && width > 0; i++) {
-        const uint32_t *n = mesh->tet[tet[i]];
-        const double *x[4] = {mesh->xyz[n[0]], mesh->xyz[n[1]], mesh->xyz[n[2]],
-                              mesh->xyz[n[3]]};
-        double w[4], depth = tm_barycentric(x, p, w);
+        double w[4], depth = tm_tet_coordinates(mesh, tet[i], p, w);
         if (!(depth > deepest))
             continue;
         deepest = depth;
-        nodes = n;
+        nodes = mesh->tet[tet[i]];
         memcpy(weight, w, sizeof weight);
     }
     for (size_t k = 0; k < width; k++) {

@@ -250,6 +250,11 @@ tm_marked_edge *tm_tet_mesh_edge(const tm_tet_mesh *mesh, uint32_t a, uint32_t b
 /* For an edge that is removed from the mesh: .edge forgets it too, if it had it. */
 void tm_tet_mesh_forget_edge(tm_tet_mesh *mesh, uint32_t a, uint32_t b);
 
+/* Writes the weights of the corners of tetrahedron t that make p; returns how deep p is
+ * in it: see tm_barycentric(). */
+double tm_tet_coordinates(const tm_tet_mesh *mesh, uint32_t t, const double p[3],
+                          double weight[4]);
+
 /* Attributes of nodes are a field that is linear in each tetrahedron: writes its values
  * at p to value[0 … node_attributes), by the tetrahedron of the `count` ones in tet that
  * p is deepest in. O(count). */

@@ -67,7 +67,6 @@ static tm_status load_piece(void *context, const char *source, tm_text *name,
     if (slash && *source != '/')
         tm_text_append(name, f->input, (size_t)(slash + 1 - f->input));
     tm_text_string(name, source);
-    tm_text_append(name, "", 1);
     if (name->failed)
         return tm_fail_memory(error);
     filter_read_file(f, name->byte, bytes);

@@ -110,7 +110,6 @@ static void append_values(tm_text *key, const int32_t *value, size_t count)
 {
     for (size_t i = 0; i < count; i++)
         tm_text_format(key, "%s%d", i > 0 ? TM_GROUP_AND : "", (int)value[i]);
-    tm_text_append(key, "", 1);
 }
 
 /* What names of the file's comments are joined. */
@@ -129,7 +128,7 @@ static tm_status find_joined(tm_inp_groups *groups)
         if (status == TM_OK && key.failed)
             status = tm_fail_memory(error);
         if (status == TM_OK && parts > 0 &&
-            !tm_group_named(&groups->joined, d, key.byte, key.size - 1))
+            !tm_group_named(&groups->joined, d, key.byte, key.size))
             status = tm_group_add(&groups->joined, d, tm_group_value(said, g), key.byte,
                                   error);
         tm_text_free(&key);
@@ -298,8 +297,7 @@ static const int32_t *find_said(const tm_inp_groups *groups, const uint32_t *cha
     if (!value || key.failed)
         *status = tm_fail_memory(groups->model->error);
     else
-        said = tm_group_named(&groups->joined, (tm_group_dimension)d, key.byte,
-                              key.size - 1);
+        said = tm_group_named(&groups->joined, (tm_group_dimension)d, key.byte, key.size);
     tm_text_free(&key);
     free(value);
     return said;

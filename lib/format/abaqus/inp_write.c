@@ -356,7 +356,8 @@ static tm_status join_all_parts(writer *w, tm_group_dimension dimension)
             past++;
         status = join_parts(w, dimension, first, past);
     }
-    sort_members(w);
+    if (w->count > count)
+        sort_members(w);
     return status;
 }
 

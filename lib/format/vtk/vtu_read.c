@@ -373,7 +373,6 @@ static tm_status read_source(reader *r, const char *source)
     tm_text name = {0}, bytes = {0};
     tm_status status =
         r->options->load(r->options->context, source, &name, &bytes, r->error);
-    tm_text_append(&name, "", 1);
     if (status == TM_OK && name.failed)
         status = tm_fail_memory(r->error);
     if (status == TM_OK)

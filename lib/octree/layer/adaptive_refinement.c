@@ -218,14 +218,8 @@ static tm_status try_split(tm_octree_mesh *mesh, tm_octree *octree, tm_surface *
     *better = status == TM_OK && made.report.off_surface < mesh->report.off_surface &&
               tm_topology_missing(&made.report, surface) <=
                   tm_topology_missing(&mesh->report, surface);
-    if (*better) {
-        const tm_octree_mesh worse = *mesh;
-        const tm_octree before = *octree;
-        *mesh = made;
-        *octree = finer;
-        made = worse;
-        finer = before;
-    }
+    if (*better)
+        tm_octree_mesh_exchange(mesh, octree, &made, &finer);
     tm_octree_mesh_free(&made);
     tm_octree_free(&finer);
     return status;

@@ -5,6 +5,7 @@
 #include "../forest/octree_estimate.h"
 #include "../interior/wall_sectors.h"
 #include "adaptive_refinement.h"
+#include "octree_mesh_parts.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -82,12 +83,7 @@ static tm_status try_plan(tm_octree_mesh *mesh, tm_octree *octree, tm_surface *s
     tm_octree other;
     const tm_status status = make(&made, &other, surface, plan, is_deeper, error);
     if (status == TM_OK && is_better(&made.report, &mesh->report, surface)) {
-        const tm_octree_mesh worse = *mesh;
-        const tm_octree before = *octree;
-        *mesh = made;
-        *octree = other;
-        made = worse;
-        other = before;
+        tm_octree_mesh_exchange(mesh, octree, &made, &other);
         *best = *plan;
     }
     tm_octree_mesh_free(&made);

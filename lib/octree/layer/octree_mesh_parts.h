@@ -127,8 +127,8 @@ tm_status tm_octree_mesh_complete_report(tm_octree_mesh *mesh, const tm_octree *
 
 /* adaptive_refinement.c: what adaptive_ranks.c does, too. */
 
-/* Of a mesh with more elements nothing is tried: it would be made twice again. So many
- * leaves behind a boundary that touch are many. */
+/* Of a mesh with more elements nothing is tried: there would be another one beside it. So
+ * many leaves behind a boundary that touch are many. */
 enum { TM_MOST_TO_SPLIT = 5000000, TM_BEHIND_MANY = 8 };
 
 /* Finds the leaves whose boundary is that of smaller ones, of those above a level, and
@@ -139,6 +139,18 @@ bool tm_interior_find_behind(const tm_interior *interior, const tm_octree *octre
 /* Sets split[leaves], those that the surface crosses and that have a corner that is near,
  * then makes their corners near. */
 void tm_octree_mark_ring(const tm_octree *octree, bool *near, uint8_t *split);
+
+/* One mesh, with its octree, becomes the other one. */
+static inline void tm_octree_mesh_exchange(tm_octree_mesh *mesh, tm_octree *octree,
+                                           tm_octree_mesh *other_mesh, tm_octree *other)
+{
+    const tm_octree_mesh moved = *mesh;
+    const tm_octree its_octree = *octree;
+    *mesh = *other_mesh;
+    *octree = *other;
+    *other_mesh = moved;
+    *other = its_octree;
+}
 
 /* By how much pieces and Euler number of the boundary differ from the surface's. */
 uint64_t tm_topology_missing(const tm_octree_mesh_report *report,
