@@ -156,9 +156,9 @@ tm_status tm_lepp_swap(tm_lepp_engine *e)
     size_t sweep = tm_lepp_bin(e->report->swap.sweeps++, TM_LEPP_SWEEPS);
     tm_features_free(&s->features);
     tm_status status = tm_features_find(&s->features, e->mesh, NULL, &s->marks, e->error);
-    tm_progress_at at = {
-        .what = "swapping faces", .pass = e->report->swap.sweeps, .of = e->mesh->slots};
+    tm_progress_at at = {.what = "swapping faces", .pass = e->report->swap.sweeps};
     for (uint32_t t = 0; t < e->mesh->slots && status == TM_OK; t++) {
+        at.of = e->mesh->slots; /* swaps may add some */
         tm_progress_step(e->options->progress, &at, t);
         if (tm_tet_lives(e->mesh, t))
             status = swap_at(e, t, sweep);
